@@ -1,0 +1,39 @@
+# One definition of every check, for a developer and for CI: `make help` lists the targets.
+PYTHON ?= python3
+RUN := .venv/bin
+TEST := .venv-test/bin
+
+.DEFAULT_GOAL := help
+.PHONY: help run test clean wheel
+
+help:  ## show this list
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
+
+run: fresh = .venv
+run: wheel  ## build and install rga in a fresh environment, and diagnose a generated bridge
+	$(RUN)/python -m pip install --quiet dist/rga-*.whl
+	$(RUN)/python examples/generated_bridge.py
+
+test: fresh = .venv-test
+test: export PYO3_PYTHON = $(abspath $(TEST)/python)
+test: wheel  ## build and install rga in a fresh environment, and run every check
+	$(TEST)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[test]"
+	$(TEST)/ruff check
+	$(TEST)/ruff format --check
+	$(TEST)/mypy --strict python/rga
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	cargo test --workspace
+	$(TEST)/python -m mypy.stubtest rga._core
+	$(TEST)/python -m pytest tests --pyargs rga
+
+# pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.
+wheel:
+	rm -rf dist $(fresh)
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rga needs Python 3.11 or newer")'
+	$(PYTHON) -m venv $(fresh)
+	$(fresh)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist .
+
+clean:  ## remove environments, builds and caches
+	rm -rf .venv .venv-test dist target .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,43 @@
+"""Reality Gap Analysis of digital twins of truss and frame structures."""
+
+from importlib import import_module
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rga.diagnosis import Findings, diagnose
+    from rga.model import Effect, Model, load_model
+    from rga.records import Record, load_record
+    from rga.simulation import Simulator
+
+__version__ = version("rga")
+
+# The doors open on first use, so that the command line starts without the heavy parts.
+_DOORS = {
+    "Effect": "rga.model",
+    "Findings": "rga.diagnosis",
+    "Model": "rga.model",
+    "Record": "rga.records",
+    "Simulator": "rga.simulation",
+    "diagnose": "rga.diagnosis",
+    "load_model": "rga.model",
+    "load_record": "rga.records",
+}
+
+__all__ = [
+    "Effect",
+    "Findings",
+    "Model",
+    "Record",
+    "Simulator",
+    "__version__",
+    "diagnose",
+    "load_model",
+    "load_record",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _DOORS:
+        return getattr(import_module(_DOORS[name]), name)
+    raise AttributeError(f"module 'rga' has no attribute {name!r}")

@@ -1,0 +1,78 @@
+"""All hidden kinds, and the drawing of one: a place, then a value of the size asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from .draft import Bridge
+from .effect import Kind, Setting, Span
+from .hidden_gauge import GAUGE
+from .hidden_load import LOAD
+from .hidden_structure import STRUCTURE
+
+HIDDEN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
+KINDS = ("null", *HIDDEN)
+_PLACES = 8
+_HALVINGS = 9
+_VISIBLE = 8.0
+
+
+class Hidden(NamedTuple):
+    """A drawn effect; ``value`` is None where the kind has none, ``onset`` in [s]."""
+
+    span: Span
+    value: float | None
+    onset: float | None
+    d_prime: float
+
+
+def fits(kind: str, bridge: Bridge) -> bool:
+    """Whether the bridge has what the kind acts on."""
+    if kind == "null":
+        return True
+    wide = bridge.model.get("plane") is None
+    return (bool(bridge.carts) or not HIDDEN[kind].needs_cart) and (
+        wide or not HIDDEN[kind].needs_width
+    )
+
+
+def draw_hidden(
+    kind: str,
+    setting: Setting,
+    rng: np.random.Generator,
+    time: np.ndarray,
+    size_of: Callable[[Span, float | None, float | None], float],
+) -> Hidden:
+    """Draw a place that can be seen, then the value whose d' meets a drawn aim.
+
+    ``size_of`` gives the d' of (span, value, onset). The aim is 15..60 in three cases of four,
+    5..15 in the others; where no value reaches it, the nearest is taken.
+    """
+    low, high = (15.0, 60.0) if rng.random() < 0.75 else (5.0, 15.0)
+    aim = float(np.exp(rng.uniform(np.log(low), np.log(high))))
+    late = rng.random() < HIDDEN[kind].onset
+    onset = float(time[int(rng.uniform(0.25, 0.7) * len(time))]) if late else None
+    best: tuple[float, Span] | None = None
+    for _ in range(_PLACES):
+        span = HIDDEN[kind].draw(setting, rng)
+        most = size_of(span, span.at(1.0), onset)
+        if best is None or most > best[0]:
+            best = (most, span)
+        if most >= _VISIBLE:
+            break
+    assert best is not None
+    most, span = best
+    if span.mild is None or span.mild == span.severe or most <= aim:
+        return Hidden(span, span.at(1.0), onset, most)
+    below, above = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (below + above)
+        if size_of(span, span.at(middle), onset) < aim:
+            below = middle
+        else:
+            above = middle
+    value = float(f"{span.at(above):.6g}")
+    return Hidden(span, value, onset, size_of(span, value, onset))

@@ -1,0 +1,5 @@
+"""The command line: `rga`."""
+
+from rga.cli.app import main
+
+__all__ = ["main"]

@@ -1,0 +1,67 @@
+"""The commands of `rga`, and how their errors reach the user."""
+
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from rga import __version__
+from rga.cli.dataset import dataset
+from rga.cli.diagnose import diagnose
+from rga.cli.doctor import doctor
+from rga.cli.run import run
+from rga.cli.schema import schema
+from rga.cli.simulate import simulate
+from rga.cli.verify import verify
+from rga.cli.whatif import whatif
+from rga.errors import InputError
+
+app = typer.Typer(
+    help="Find what a structure's digital twin gets wrong.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for command in (run, diagnose, simulate, dataset, whatif, verify, schema, doctor):
+    app.command()(command)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"rga {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show it.")
+    ] = False,
+) -> None:
+    pass
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run a command and leave with its exit code: 0 done, 2 bad input, 1 fault.
+
+    Args:
+        arguments: as typed after `rga`; None: those of the process.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        app(args=_json_with_target(given), prog_name="rga")
+    except InputError as error:
+        typer.echo("error: " + " ".join(str(error).split()), err=True)
+        sys.exit(2)
+
+
+def _json_with_target(arguments: list[str]) -> list[str]:
+    """Arguments in which `--json` without a file has the target "-", the standard output."""
+    complete: list[str] = []
+    for place, argument in enumerate(arguments):
+        complete.append(argument)
+        following = arguments[place + 1 : place + 2]
+        if argument == "--json" and (not following or following[0][:1] == "-" != following[0]):
+            complete.append("-")
+    return complete

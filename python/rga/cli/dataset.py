@@ -1,0 +1,28 @@
+"""`rga dataset`: a synthetic dataset."""
+
+from typing import Annotated
+
+import typer
+
+from rga.cli.options import ModelFile, OutputFile, Seed
+
+Rows = Annotated[int, typer.Option("-n", min=1, help="Number of rows.")]
+Noise = Annotated[bool, typer.Option("--noise", help="Add the sensors' noise.")]
+
+
+def dataset(
+    model: ModelFile, rows: Rows, output: OutputFile, seed: Seed = 0, noise: Noise = False
+) -> None:
+    """Draw contexts over their ranges and simulate the sensors (Parquet)."""
+    from rga.cli.output import whole_file
+    from rga.cli.progress import shown_progress
+    from rga.errors import InputError
+    from rga.model import load_model
+    from rga.simulation.dataset import write_dataset
+
+    if output.suffix.lower() != ".parquet":
+        raise InputError("a dataset is a Parquet file", str(output), "name a .parquet file")
+    structure = load_model(model)
+    with whole_file(output) as draft, shown_progress() as progress:
+        write_dataset(structure, rows, draft, seed=seed, noise=noise, progress=progress)
+    typer.echo(f"{rows} rows of {len(structure.sensors)} sensors are in {output}.")

@@ -1,0 +1,49 @@
+"""`rga diagnose`: what is wrong, why, where, and how sure."""
+
+from pathlib import Path
+
+import typer
+
+from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory, RecordFile, Seed
+
+
+def diagnose(
+    model: ModelFile,
+    record: RecordFile,
+    output: OutputDirectory,
+    mapping: MappingFile = None,
+    seed: Seed = 0,
+    json: JsonTarget = None,
+) -> None:
+    """Diagnose what the model gets wrong of a record."""
+    diagnose_into(output, model, record, mapping, seed, json)
+
+
+def diagnose_into(
+    output: Path, model: Path, record: Path, mapping: Path | None, seed: int, target: str | None
+) -> None:
+    """Write findings, extended model and report, and say the verdict."""
+    import json
+
+    from rga.cli.output import whole_directory, write_json
+    from rga.cli.progress import shown_progress
+    from rga.model import load_model
+    from rga.records import load_record
+
+    structure = load_model(model)
+    measured = load_record(record, structure, mapping)
+    for warning in measured.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    # Not needed before the input is known to be good, and slow to import.
+    from rga.diagnosis import diagnose
+
+    with whole_directory(output) as draft:
+        with shown_progress() as progress:
+            findings = diagnose(structure, measured, seed=seed, progress=progress)
+        findings.write(draft)
+        content = json.loads((draft / "findings.json").read_text(encoding="utf-8"))
+    if target is not None:
+        write_json(content, target)
+    if target != "-":
+        typer.echo(findings.sentence())
+        typer.echo(f"The report is {output / 'report.html'}.")

@@ -1,0 +1,32 @@
+"""Arguments and options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ModelFile = Annotated[
+    Path, typer.Argument(metavar="MODEL", help="Model file (JSON, TOML or YAML).")
+]
+RecordFile = Annotated[Path, typer.Argument(metavar="RECORD", help="Record (CSV or Parquet).")]
+MappingFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--import",
+        metavar="FILE",
+        help="How to read the record; left out, import.toml beside it, else beside the model.",
+    ),
+]
+OutputDirectory = Annotated[
+    Path, typer.Option("-o", "--output", metavar="DIR", help="Directory for the results.")
+]
+OutputFile = Annotated[
+    Path, typer.Option("-o", "--output", metavar="FILE", help="File for the result.")
+]
+JsonTarget = Annotated[
+    str | None,
+    typer.Option(
+        "--json", metavar="[FILE]", help="Write the result as JSON; without FILE to the output."
+    ),
+]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]

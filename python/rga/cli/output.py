@@ -1,0 +1,80 @@
+"""Results on the disk: whole or not at all."""
+
+import json
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from rga.errors import InputError
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A temporary file beside `path` to write to, which takes its place at the end.
+
+    Raises:
+        InputError: the place cannot be written to.
+    """
+    with _scratch(path) as scratch:
+        draft = scratch / path.name
+        yield draft
+        draft.replace(path)
+
+
+@contextmanager
+def whole_directory(path: Path) -> Iterator[Path]:
+    """A temporary directory to write to, which becomes `path` at the end.
+
+    Files of a directory that exists are replaced one by one; its other files stay.
+
+    Raises:
+        InputError: the place cannot be written to.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError("the output is a file", str(path), "give a directory")
+    with _scratch(path) as scratch:
+        draft = scratch / path.name
+        draft.mkdir()
+        yield draft
+        if not path.exists():
+            draft.rename(path)
+            return
+        for file in sorted(draft.rglob("*")):
+            target = path / file.relative_to(draft)
+            if file.is_dir():
+                target.mkdir(exist_ok=True)
+            else:
+                file.replace(target)
+
+
+def write_json(content: Any, target: str) -> None:
+    """Write JSON to a file, or to the standard output where the target is "-"."""
+    text = json.dumps(content, indent=1, allow_nan=False) + "\n"
+    if target == "-":
+        typer.echo(text, nl=False)
+        return
+    with whole_file(Path(target)) as draft:
+        draft.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def _scratch(path: Path) -> Iterator[Path]:
+    """A temporary directory beside `path`, removed at the end."""
+    parent = path.absolute().parent
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        scratch = Path(tempfile.mkdtemp(prefix=".rga-", dir=parent))
+    except OSError as error:
+        reason = (error.strerror or "refused").lower()
+        raise InputError(
+            f"the output cannot be written, {reason}", str(path), "give another place"
+        ) from None
+    try:
+        yield scratch
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)

@@ -1,0 +1,42 @@
+"""`rga simulate`: contexts in, sensor values out."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rga.cli.options import ModelFile, OutputFile
+from rga.errors import InputError
+
+ContextFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="CONTEXTS",
+        help="Context variables (CSV or Parquet), with time where it matters.",
+    ),
+]
+
+
+def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> None:
+    """Simulate the sensors for given contexts; the result is a record (CSV or Parquet)."""
+    import polars as pl
+
+    from rga.cli.output import whole_file
+    from rga.model import load_model
+    from rga.records import load_contexts
+    from rga.simulation import Simulator
+
+    suffix = output.suffix.lower()
+    if suffix not in (".csv", ".parquet"):
+        raise InputError(f"{suffix!r} is no format", str(output), "name a .csv or .parquet file")
+    structure = load_model(model)
+    given = load_contexts(contexts, structure)
+    readings = Simulator(structure).predict(given.values)
+    sensors = [pl.Series(name, readings[:, k]) for k, name in enumerate(structure.sensors)]
+    frame = given.frame.with_columns(sensors)
+    with whole_file(output) as draft:
+        if suffix == ".csv":
+            frame.write_csv(draft)
+        else:
+            frame.write_parquet(draft)
+    typer.echo(f"{frame.height} rows of {len(sensors)} sensors are in {output}.")

@@ -1,0 +1,147 @@
+"""The part of a record that a diagnosis works on, beside the contexts it has to believe."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rga.diagnosis.covariance import BoolArray
+from rga.model.effect import Values
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.simulation import Simulator
+
+#: share of its range that a measured context may be off before anything is known of its noise
+FIRST_GUESS = 0.01
+
+
+@dataclass(frozen=True)
+class Belief:
+    """What is believed of the contexts, row by row and for the whole record.
+
+    Attributes:
+        table: best values so far, `time` [s] included, float[rows] each.
+        centre: prior mean of the contexts that are uncertain row by row, float[rows] each.
+        spread: prior standard deviation of each of them.
+        known: those of them whose spread is given, by the model or by the range of a latent one.
+        latent: those of them that nothing measured.
+        lines: contexts that are a line in time (law `constant` or `linear`), with the prior
+            standard deviations of the level and of the slope [unit, unit/s].
+    """
+
+    table: Values
+    centre: Values
+    spread: dict[str, float]
+    known: frozenset[str]
+    latent: frozenset[str]
+    lines: dict[str, tuple[float, float]]
+
+    def with_values(self, changes: Values) -> "Belief":
+        """The same belief with other best values."""
+        return replace(self, table={**self.table, **changes})
+
+    def rows(self, chosen: BoolArray) -> "Belief":
+        """The belief for some of the rows."""
+        return replace(
+            self,
+            table={name: column[chosen] for name, column in self.table.items()},
+            centre={name: column[chosen] for name, column in self.centre.items()},
+        )
+
+    @property
+    def middle(self) -> float:
+        """Time about which lines are written [s]."""
+        return float(self.table["time"].mean())
+
+
+@dataclass(frozen=True)
+class Data:
+    """Readings with the belief of their contexts.
+
+    Attributes:
+        sensors: names of the channels.
+        columns: column of each in the simulator's output, int[sensors].
+        readings: float[rows, sensors], zero where missing.
+        observed: bool[rows, sensors].
+        belief: what is believed of the contexts.
+    """
+
+    sensors: tuple[str, ...]
+    columns: list[int]
+    readings: FloatArray
+    observed: BoolArray
+    belief: Belief
+
+    @property
+    def time(self) -> FloatArray:
+        """Clock of the rows [s], float[rows]."""
+        return self.belief.table["time"]
+
+    def predict(self, simulator: Simulator, changes: Values | None = None) -> FloatArray:
+        """Simulated channels at the believed contexts, float[rows, sensors]; zero where unknown.
+
+        Args:
+            simulator: of a model with these sensors.
+            changes: other values for some of the contexts.
+        """
+        table = {**self.belief.table, **(changes or {})}
+        return np.nan_to_num(simulator.predict(table)[:, self.columns])
+
+    def rows(self, chosen: BoolArray) -> "Data":
+        """Some of the rows."""
+        return replace(
+            self,
+            readings=self.readings[chosen],
+            observed=self.observed[chosen],
+            belief=self.belief.rows(chosen),
+        )
+
+    def without(self, sensors: set[str]) -> "Data":
+        """The same rows with some channels taken as missing."""
+        hidden = np.array([name in sensors for name in self.sensors])
+        return replace(self, observed=self.observed & ~hidden)
+
+
+def first_belief(model: Model, time: FloatArray, measured: Values) -> Belief:
+    """What is believed before any reading is looked at.
+
+    Args:
+        model: with its context variables.
+        time: clock of the rows [s], float[rows].
+        measured: measured contexts, NaN where missing.
+    """
+    table: Values = {"time": time}
+    centre: Values = {}
+    spread: dict[str, float] = {}
+    known = set()
+    latent = set()
+    lines = {}
+    needed = Simulator(model).needed
+    for name, variable in model.context.items():
+        low, high = variable.range
+        if name in measured:
+            table[name] = _filled(time, measured[name], (low + high) / 2)
+        else:
+            table[name] = np.full(len(time), (low + high) / 2)
+        if name not in needed:
+            continue
+        if name not in measured and variable.law in ("constant", "linear"):
+            slope = 0.0 if variable.rate is None else max(abs(bound) for bound in variable.rate)
+            lines[name] = ((high - low) / 2, slope)
+            continue
+        centre[name] = table[name].copy()
+        if name not in measured:
+            latent.add(name)
+            spread[name] = (high - low) / np.sqrt(12)
+        elif variable.noise is not None:
+            known.add(name)
+            spread[name] = variable.noise
+        else:
+            spread[name] = FIRST_GUESS * (high - low)
+    return Belief(table, centre, spread, frozenset(known | latent), frozenset(latent), lines)
+
+
+def _filled(time: FloatArray, column: FloatArray, otherwise: float) -> FloatArray:
+    seen = np.isfinite(column)
+    if not seen.any():
+        return np.full(len(column), otherwise)
+    return np.asarray(np.interp(time, time[seen], column[seen]))

@@ -1,0 +1,158 @@
+"""The evidence for hypotheses: fits on the real model, and Laplace's approximation.
+
+For parameters theta(z) with z standard normal beforehand, the log evidence against no effect is
+
+    1/2 (r0' C^-1 r0 - r' C^-1 r - z' z - log det(I + S' C^-1 S)) + log prior
+
+at the most likely z, with r the residual and S = d simulation / d z there (Laplace; MacKay 2003,
+chapter 27). Kinds, places and onsets enter through the prior, so that many hypotheses do not make
+one of them likely.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.problem import Problem
+from rga.errors import InputError
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+STEP = 1e-3
+FARTHEST = 8.0
+STEPS = 12
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Hypotheses fitted together.
+
+    Attributes:
+        hypotheses: those fitted.
+        z: standard normal coordinates of all parameters, in their order, float[parameters].
+        simulated: float[rows, sensors].
+        information: I + S' C^-1 S, float[parameters, parameters].
+        log_evidence: against no effect at all.
+        signatures: derivatives of the simulation by z, float[rows, sensors, parameters].
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+    z: FloatArray
+    simulated: FloatArray
+    information: FloatArray
+    log_evidence: float
+    signatures: FloatArray
+
+    def slices(self) -> list[slice]:
+        """The parameters of each hypothesis in z."""
+        ends = np.cumsum([0, *(len(one.priors) for one in self.hypotheses)])
+        return [slice(int(a), int(b)) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+
+    def simulator(self, base: Simulator) -> Simulator:
+        """The base with the effects as fitted."""
+        return extended(base, self.hypotheses, self.z)
+
+    def spreads(self) -> FloatArray:
+        """Posterior standard deviation of each coordinate z."""
+        return np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information)))) if len(self.z) else self.z
+
+
+def extended(base: Simulator, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Simulator:
+    """A simulator with the effects of hypotheses at coordinates z, named by number."""
+    effects = {}
+    first = 0
+    for number, one in enumerate(hypotheses):
+        count = len(one.priors)
+        effects[f"cause {number + 1}"] = one.effect(z[first : first + count])
+        first += count
+    return base.extended(effects)
+
+
+def fit(
+    problem: Problem,
+    base: Simulator,
+    hypotheses: Sequence[Hypothesis],
+    start: Sequence[float] | FloatArray,
+    steps: int = STEPS,
+) -> Fit:
+    """The most likely parameters of hypotheses together, by Gauss-Newton steps on the real model.
+
+    Args:
+        problem: gives residual and covariance.
+        base: the simulator without the hypotheses.
+        hypotheses: fitted together.
+        start: coordinates to begin with.
+        steps: largest number of steps.
+
+    Returns:
+        The fit; its log evidence is minus infinity where the model cannot be simulated.
+    """
+    covariance = problem.covariance
+
+    def simulate(z: FloatArray) -> FloatArray | None:
+        try:
+            return problem.data.predict(extended(base, hypotheses, z))
+        except InputError:
+            return None
+
+    def misfit(simulated: FloatArray, z: FloatArray) -> float:
+        reduced = covariance.reduce(problem.residual(simulated)[:, :, None])
+        return float(covariance.squares(reduced)[0] + z @ z)
+
+    z = np.array(start, dtype=float)
+    simulated = simulate(z)
+    if simulated is None:
+        return _impossible(problem, hypotheses, z)
+    loss = misfit(simulated, z)
+    for step in range(steps + 1):
+        signatures = _signatures(simulate, problem, simulated, z)
+        if signatures is None:
+            return _impossible(problem, hypotheses, z)
+        reduced = covariance.reduce(signatures)
+        information = covariance.product(reduced, reduced) + np.eye(len(z))
+        if step == steps or not len(z):
+            break
+        gradient = covariance.product(
+            reduced, covariance.reduce(problem.residual(simulated)[:, :, None])
+        )[:, 0]
+        move = np.linalg.solve(information, gradient - z)
+        longest = np.abs(move).max()
+        move *= min(1.0, 2.0 / max(longest, 1e-12))
+        better = False
+        for _ in range(6):
+            trial = np.clip(z + move, -FARTHEST, FARTHEST)
+            there = simulate(trial)
+            if there is not None and (lower := misfit(there, trial)) < loss:
+                better = True
+                break
+            move = move / 3
+        if not better or there is None:
+            break
+        gained, z, simulated, loss = loss - lower, trial, there, lower
+        if gained < 1e-3:
+            break
+    nothing = problem.data.predict(base)
+    at_nothing = misfit(nothing, np.zeros(0))
+    log_evidence = 0.5 * (at_nothing - loss - float(np.linalg.slogdet(information)[1]))
+    log_evidence += sum(one.log_prior for one in hypotheses)
+    return Fit(tuple(hypotheses), z, simulated, information, log_evidence, signatures)
+
+
+def _signatures(
+    simulate: Callable[[FloatArray], FloatArray | None], problem: Problem, simulated: FloatArray, z: FloatArray
+) -> FloatArray | None:
+    columns = []
+    for number in range(len(z)):
+        ahead = simulate(z + STEP * np.eye(len(z))[number])
+        if ahead is None:
+            return None
+        columns.append(np.where(problem.data.observed, (ahead - simulated) / STEP, 0.0))
+    return np.stack(columns, axis=2) if columns else np.zeros((*simulated.shape, 0))
+
+
+def _impossible(problem: Problem, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Fit:
+    rows, sensors = problem.simulated.shape
+    nothing = np.zeros((rows, sensors, len(z)))
+    return Fit(tuple(hypotheses), z, problem.simulated, np.eye(len(z)), -np.inf, nothing)

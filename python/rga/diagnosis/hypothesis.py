@@ -1,0 +1,94 @@
+"""Hypotheses: kinds of effects at places, with what is known of their parameters beforehand."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from rga.model.effect import Effect
+from rga.model.parameter import FloatArray, Prior
+from rga.model.schema import Model
+
+#: onsets that are told apart when the prior is spread over time
+ONSETS = 20
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """An effect of a kind at a place, its parameters unknown.
+
+    Attributes:
+        kind: class of the effect.
+        place: as in the model file.
+        priors: of the parameters, by name.
+        onset: time at which the effect begins [s], or None for always.
+        places: number of places at which the kind could act.
+        kinds: number of kinds that could act.
+    """
+
+    kind: type[Effect]
+    place: Mapping[str, Any]
+    priors: Mapping[str, Prior]
+    places: int
+    kinds: int
+    onset: float | None = None
+
+    def effect(self, z: Sequence[float] | FloatArray) -> Effect:
+        """The effect with parameters at standard normal coordinates z, one a parameter."""
+        values = {
+            name: prior.value(float(one))
+            for (name, prior), one in zip(self.priors.items(), z, strict=True)
+        }
+        return self.kind(kind=self.name, **self.place, **values, onset=self.onset)
+
+    @property
+    def name(self) -> str:
+        """The kind as in the model file."""
+        return str(self.kind.model_fields["kind"].default)
+
+    @property
+    def log_prior(self) -> float:
+        """Log prior: kinds, places of a kind, and moments of an onset count alike."""
+        onset = np.log(2) + (0.0 if self.onset is None else np.log(ONSETS))
+        return float(-np.log(self.places) - np.log(self.kinds) - onset)
+
+    def beginning(self, onset: float | None) -> "Hypothesis":
+        """The same with another onset."""
+        return replace(self, onset=onset)
+
+    def same_place(self, other: "Hypothesis") -> bool:
+        """True for the same kind at the same place."""
+        return self.kind is other.kind and self.place == other.place
+
+
+def hypotheses(model: Model, sensors: Sequence[str]) -> list[Hypothesis]:
+    """All hypotheses that the vocabulary allows on a model.
+
+    Args:
+        model: as it was given.
+        sensors: channels that work; a hypothesis on another sensor is left out.
+    """
+    found: list[Hypothesis] = []
+    by_kind = {
+        kind: [place for place in kind.places(model) if _works(kind, place, sensors)]
+        for kind in Effect.vocabulary.values()
+    }
+    kinds = sum(bool(places) for places in by_kind.values())
+    for kind, places in by_kind.items():
+        for place in places:
+            found.append(Hypothesis(kind, place, kind.priors(model, place), len(places), kinds))
+    return found
+
+
+def _works(kind: type[Effect], place: Mapping[str, Any], sensors: Sequence[str]) -> bool:
+    return all(
+        one in sensors
+        for field, mark in kind.place_fields().items()
+        if mark.of == "sensor" and place.get(field) is not None
+        for one in _listed(place[field])
+    )
+
+
+def _listed(names: Any) -> Iterator[str]:
+    yield from ([names] if isinstance(names, str) else names)

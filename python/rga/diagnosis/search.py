@@ -1,0 +1,219 @@
+"""The search for causes: forward, backward and swap, by evidence."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.diagnosis.data import Data
+from rga.diagnosis.evidence import Fit, extended, fit
+from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.problem import Problem, pose, relaxed
+from rga.diagnosis.screening import Prospect, screen
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+#: log-odds that a cause must have to be named, a thousand to one
+NAMED = 6.9
+#: log-odds within which two causes cannot be told apart, a hundred to one
+RIVAL = 4.6
+FITTED = 10
+MOST_CAUSES = 5
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A hypothesis that could stand in the place of a cause, fitted beside the other causes."""
+
+    hypothesis: Hypothesis
+    fit: Fit
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search ends with.
+
+    Attributes:
+        problem: the record about the extended simulation.
+        fit: the causes fitted together.
+        base: the simulator without causes.
+        alternatives: for each cause what could stand in its place, the best first.
+        log_odds: of each cause against leaving it out.
+    """
+
+    problem: Problem
+    fit: Fit
+    base: Simulator
+    alternatives: tuple[tuple[Alternative, ...], ...]
+    log_odds: tuple[float, ...]
+
+
+def search(base: Simulator, data: Data, candidates: Sequence[Hypothesis], progress: Progress) -> Found:
+    """Find the causes that the record names.
+
+    Args:
+        base: the simulation as it was given.
+        data: readings and belief of the contexts.
+        candidates: all hypotheses.
+        progress: told what is done and which share of it.
+    """
+    problem = settled(base, data)
+    current = fit(problem, base, [], [])
+    for number in range(MOST_CAUSES):
+        stage = f"looking for cause {number + 1}"
+        simulator = current.simulator(base)
+        prospects = screen(
+            problem, simulator, _others(candidates, current), progress=lambda x, s=stage: progress(s, x)
+        )
+        best = _best(problem, base, current, prospects)
+        if best is None or best.log_evidence - current.log_evidence < NAMED:
+            break
+        best = with_moment(problem, base, best, len(best.hypotheses) - 1)
+        problem, current = _settled_with(base, problem, best)
+        problem, current = _swapped(base, problem, current, candidates, progress)
+        problem, current = _pruned(base, problem, current)
+    alternatives, odds = [], []
+    for number in range(len(current.hypotheses)):
+        progress("weighing rivals", number / len(current.hypotheses))
+        without = _without(problem, base, current, number)
+        odds.append(current.log_evidence - without.log_evidence)
+        alternatives.append(tuple(_alternatives(problem, base, current, without, number, candidates)))
+    return Found(problem, current, base, tuple(alternatives), tuple(odds))
+
+
+def settled(simulator: Simulator, data: Data) -> Problem:
+    """The problem of a simulation, its latent contexts moved to where the record puts them."""
+    problem = pose(simulator, data)
+    for _ in range(4):
+        moved = relaxed(problem)
+        if moved is problem.data:
+            break
+        problem = pose(simulator, moved, problem)
+    return problem
+
+
+def with_moment(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:
+    """The fit with the onset of one of its hypotheses moved to its most likely row."""
+    hypothesis = current.hypotheses[number]
+    if hypothesis.onset is None:
+        return current
+    moments, chances = onset_chances(problem, base, current, number)
+    moved = hypothesis.beginning(float(moments[np.argmax(chances)]))
+    hypotheses = [moved if k == number else one for k, one in enumerate(current.hypotheses)]
+    return fit(problem, base, hypotheses, current.z)
+
+
+def onset_chances(
+    problem: Problem, base: Simulator, current: Fit, number: int
+) -> tuple[FloatArray, FloatArray]:
+    """Possible onsets of a hypothesis [s] and their posterior probabilities, float[moments] each."""
+    always = [
+        one.beginning(None) if k == number else one for k, one in enumerate(current.hypotheses)
+    ]
+    full = problem.data.predict(extended(base, always, current.z))
+    others = [one for k, one in enumerate(current.hypotheses) if k != number]
+    z = np.delete(current.z, current.slices()[number])
+    without = problem.data.predict(extended(base, others, z))
+    time = problem.data.time
+    rows = np.unique(np.linspace(1, len(time) - 1, 400).astype(int))
+    change = np.where(problem.data.observed, full - without, 0.0)
+    steps = time[:, None] >= time[rows]
+    covariance = problem.covariance
+    columns = covariance.reduce(change[:, :, None] * steps[:, None, :])
+    residual = covariance.reduce(problem.residual(without)[:, :, None])
+    log_chance = covariance.product(columns, residual)[:, 0] - covariance.squares(columns) / 2
+    chances = np.exp(log_chance - log_chance.max())
+    return time[rows], chances / chances.sum()
+
+
+def _best(problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]) -> Fit | None:
+    fits = [
+        fit(problem, base, [*current.hypotheses, p.hypothesis], [*current.z, *p.z])
+        for p in worth_fitting(prospects)
+        if p.score > 0
+    ]
+    return max(fits, key=lambda one: one.log_evidence, default=None)
+
+
+def worth_fitting(prospects: Sequence[Prospect]) -> list[Prospect]:
+    """The best prospects, less those that stay far behind the best."""
+    least = min(0.3 * prospects[0].score, prospects[0].score - 30) if prospects else 0.0
+    return [prospect for prospect in prospects[:FITTED] if prospect.score > least]
+
+
+def _settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem, Fit]:
+    """The problem posed anew about the extended simulation, and the causes fitted again."""
+    current = best
+    for _ in range(2):
+        problem = pose(current.simulator(base), problem.data, problem)
+        problem = _relaxed_about(problem, current.simulator(base))
+        current = fit(problem, base, current.hypotheses, current.z)
+    return problem, current
+
+
+def _relaxed_about(problem: Problem, simulator: Simulator) -> Problem:
+    """The problem with latent contexts moved, if there are any."""
+    moved = relaxed(problem)
+    return problem if moved is problem.data else pose(simulator, moved, problem)
+
+
+def _swapped(
+    base: Simulator, problem: Problem, current: Fit, candidates: Sequence[Hypothesis], progress: Progress
+) -> tuple[Problem, Fit]:
+    """Exchange an earlier cause for a better one, now that others stand beside it."""
+    if len(current.hypotheses) < 2:
+        return problem, current
+    for number in range(len(current.hypotheses) - 1):
+        progress("reconsidering earlier causes", number / len(current.hypotheses))
+        without = _without(problem, base, current, number)
+        found = _alternatives(problem, base, current, without, number, candidates)
+        if found and found[0].fit.log_evidence > current.log_evidence + 1.0:
+            return _settled_with(base, problem, found[0].fit)
+    return problem, current
+
+
+def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, Fit]:
+    """Take out causes that the others have made needless."""
+    while len(current.hypotheses) > 1:
+        fits = [_without(problem, base, current, k) for k in range(len(current.hypotheses))]
+        best = max(fits, key=lambda one: one.log_evidence)
+        if current.log_evidence - best.log_evidence >= NAMED:
+            break
+        problem, current = _settled_with(base, problem, best)
+    return problem, current
+
+
+def _without(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:
+    others = [one for k, one in enumerate(current.hypotheses) if k != number]
+    return fit(problem, base, others, np.delete(current.z, current.slices()[number]))
+
+
+def _alternatives(
+    problem: Problem,
+    base: Simulator,
+    current: Fit,
+    without: Fit,
+    number: int,
+    candidates: Sequence[Hypothesis],
+) -> list[Alternative]:
+    """Other hypotheses in the place of a cause, fitted beside the others, the best first."""
+    cause = current.hypotheses[number]
+    rest = [one for one in candidates if not any(one.same_place(h) for h in current.hypotheses)]
+    simulator = without.simulator(base)
+    if cause.onset is not None:
+        rest = [one.beginning(cause.onset) for one in rest]
+    prospects = screen(problem, simulator, rest, onsets=False)
+    found = []
+    for prospect in worth_fitting(prospects):
+        one = fit(
+            problem, base, [*without.hypotheses, prospect.hypothesis], [*without.z, *prospect.z]
+        )
+        found.append(Alternative(prospect.hypothesis, one))
+    return sorted(found, key=lambda one: -one.fit.log_evidence)
+
+
+def _others(candidates: Sequence[Hypothesis], current: Fit) -> list[Hypothesis]:
+    return [
+        one for one in candidates if not any(one.same_place(taken) for taken in current.hypotheses)
+    ]

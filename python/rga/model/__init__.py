@@ -1,0 +1,18 @@
+"""The model: a structure as data, with its contexts, effects and sensors."""
+
+from rga.model import effects as effects
+from rga.model.effect import Effect
+from rga.model.load import load_model, model_content, read_model, write_model
+from rga.model.schema import ContextVariable, Model, Sensor, read_effect
+
+__all__ = [
+    "ContextVariable",
+    "Effect",
+    "Model",
+    "Sensor",
+    "load_model",
+    "model_content",
+    "read_effect",
+    "read_model",
+    "write_model",
+]

@@ -1,0 +1,142 @@
+"""The base of every effect: a physical influence on a structure, on its loads or on its sensors."""
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from rga.model.parameter import Driven, Estimated, FloatArray, Parameter, Place, Prior, marks, resolve
+
+if TYPE_CHECKING:
+    from rga.model.readings import Readings
+    from rga.model.schema import Model
+    from rga.model.structure import Load, Structure
+
+Values = dict[str, FloatArray]
+
+
+class Effect(BaseModel):
+    """One physical influence. A subclass with a `kind` joins the vocabulary when it is defined.
+
+    A subclass declares its place and its parameters as fields marked with `Place` and `Parameter`,
+    says with `places` where in a model it may act and with `priors` what is known of its
+    parameters, and overrides those of the `change_...` methods and `loads` that it needs.
+
+    Attributes:
+        onset: time at which the effect begins, as in the record [s or ISO 8601]; None: always.
+        end: time at which a ramp is full; None: the last row.
+        profile: "step", or "ramp" from 0 at the onset to full at the end.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    vocabulary: ClassVar[dict[str, type["Effect"]]] = {}
+
+    kind: str
+    onset: float | str | None = None
+    end: float | str | None = None
+    profile: Literal["step", "ramp"] = "step"
+
+    #: True where the parameters change the structure itself.
+    structural: ClassVar[bool] = False
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        kind = cls.model_fields["kind"].default
+        if isinstance(kind, str):
+            Effect.vocabulary[kind] = cls
+
+    @classmethod
+    def parameters(cls) -> dict[str, Parameter]:
+        """The marked parameters by field name."""
+        found = ((name, marks(field, Parameter)) for name, field in cls.model_fields.items())
+        return {name: mark for name, mark in found if mark is not None}
+
+    @classmethod
+    def place_fields(cls) -> dict[str, Place]:
+        """The marked place fields by name."""
+        found = ((name, marks(field, Place)) for name, field in cls.model_fields.items())
+        return {name: mark for name, mark in found if mark is not None}
+
+    @property
+    def place(self) -> dict[str, Any]:
+        """The place as the keys and values of the model file."""
+        chosen = ((name, getattr(self, name)) for name in self.place_fields())
+        return {name: value for name, value in chosen if value is not None}
+
+    @classmethod
+    def places(cls, model: "Model") -> Iterator[dict[str, Any]]:
+        """Places at which a diagnosis may propose this effect; none by default."""
+        return iter(())
+
+    @classmethod
+    def priors(cls, model: "Model", place: Mapping[str, Any]) -> dict[str, Prior]:
+        """What is known beforehand of each parameter at a place."""
+        return {}
+
+    def with_values(self, values: Mapping[str, float | Estimated]) -> Self:
+        """The same effect with other parameter values."""
+        return self.model_copy(update=dict(values))
+
+    def weight(self, time: FloatArray) -> FloatArray:
+        """Share of the effect that is present at each time [s], float[rows] in 0..1."""
+        if self.onset is None:
+            return np.ones(len(time))
+        onset = seconds(self.onset)
+        if self.profile == "step":
+            return (time >= onset).astype(float)
+        end = float(time[-1]) if self.end is None else seconds(self.end)
+        return np.clip((time - onset) / max(end - onset, 1e-12), 0.0, 1.0)
+
+    def values(self, contexts: Mapping[str, FloatArray], rows: int) -> Values:
+        """Parameter values of every row, the onset included."""
+        resolved = {}
+        weight = self.weight(contexts["time"]) if self.onset is not None else None
+        for name, parameter in self.parameters().items():
+            raw = getattr(self, name)
+            if raw is None:
+                continue
+            value = resolve(raw, contexts, rows)
+            if weight is not None and parameter.neutral is not None:
+                value = blend(value, parameter.neutral, weight)
+            resolved[name] = value
+        return resolved
+
+    def drivers(self) -> set[str]:
+        """Context variables that drive parameters of this effect."""
+        given = (getattr(self, name) for name in self.parameters())
+        return {value.context for value in given if isinstance(value, Driven)}
+
+    def change_contexts(self, contexts: Values, values: Values) -> None:
+        """Turn measured contexts into true ones, in place."""
+
+    def change_values(self, all_values: dict[str, Values], values: Values, time: FloatArray) -> None:
+        """Change parameter values of other effects, by effect name, in place."""
+
+    def change_structure(self, structure: "Structure", value: Mapping[str, float]) -> None:
+        """Change the structure, in place."""
+
+    def loads(self, structure: "Structure", values: Values, others: dict[str, Values]) -> list["Load"]:
+        """Loads of this effect: patterns with a coefficient a row."""
+        return []
+
+    def change_loads(self, loads: dict[str, list["Load"]], structure: "Structure", values: Values) -> None:
+        """Change loads of other effects, by effect name, in place."""
+
+    def change_readings(self, readings: "Readings", values: Values) -> None:
+        """Change what the sensors show, in place."""
+
+
+def blend(value: FloatArray, neutral: float, weight: FloatArray) -> FloatArray:
+    """Between neutral (weight 0) and value (weight 1); in compliance where neutral is infinite."""
+    if np.isinf(neutral):
+        with np.errstate(divide="ignore"):
+            return value / weight
+    return neutral + weight * (value - neutral)
+
+
+def seconds(moment: float | str) -> float:
+    """A time of a record [s]: a number as it is, an ISO 8601 text since 1970 (UTC if it says none)."""
+    if isinstance(moment, str):
+        return float(np.datetime64(moment.removesuffix("Z"), "us").astype(np.int64)) / 1e6
+    return float(moment)

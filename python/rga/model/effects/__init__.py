@@ -1,0 +1,31 @@
+"""The vocabulary of effects: loads, and the mechanisms that a diagnosis may propose."""
+
+from rga.model.effects import (
+    axles,
+    bearings,
+    contexts,
+    floor,
+    joints,
+    loads,
+    loading,
+    sensors,
+    settlement,
+    stiffness,
+    temperature,
+    thermal,
+)
+
+__all__ = [
+    "axles",
+    "bearings",
+    "contexts",
+    "floor",
+    "joints",
+    "loading",
+    "loads",
+    "sensors",
+    "settlement",
+    "stiffness",
+    "temperature",
+    "thermal",
+]

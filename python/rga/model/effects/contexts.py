@@ -1,0 +1,75 @@
+"""Measurements of the context that are off."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from rga.model.effect import Effect, Values
+from rga.model.parameter import Factor, Normal, Parameter, Place, Prior, Value
+from rga.model.readings import Readings
+from rga.model.schema import Model
+
+OneContext = Annotated[str, Place("context")]
+
+
+class ContextBias(Effect):
+    """An offset of a context channel: measured = true + offset [its unit]."""
+
+    kind: Literal["context_bias"] = "context_bias"
+    context: OneContext
+    offset: Annotated[Value, Parameter("unit", 0.0)] = 0.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from ({"context": context} for context in model.context)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        low, high = model.context[place["context"]].range
+        return {"offset": Normal(0.0, 0.05 * (high - low))}
+
+    def change_contexts(self, contexts: Values, values: Values) -> None:
+        contexts[self.context] = contexts[self.context] - values["offset"]
+
+
+class ContextGain(Effect):
+    """A factor on a context channel: measured = factor * true."""
+
+    kind: Literal["context_gain"] = "context_gain"
+    context: OneContext
+    factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from ({"context": context} for context in model.context)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"factor": Factor(0.15)}
+
+    def change_contexts(self, contexts: Values, values: Values) -> None:
+        contexts[self.context] = contexts[self.context] / values["factor"]
+
+
+class ClockLag(Effect):
+    """A clock that is late [s]: a reading shows what was true that much earlier.
+
+    Without a sensor it is the clock of all sensors against that of the contexts.
+    """
+
+    kind: Literal["clock_lag"] = "clock_lag"
+    sensor: Annotated[str | None, Place("sensor")] = None
+    time: Annotated[Value, Parameter("s", 0.0)] = 0.0
+
+    def change_contexts(self, contexts: Values, values: Values) -> None:
+        if self.sensor is not None:
+            return
+        clock = contexts["time"]
+        for name in contexts.keys() - {"time"}:
+            contexts[name] = np.interp(clock - values["time"], clock, contexts[name])
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        if self.sensor is not None:
+            column = readings.values[:, readings.columns[self.sensor]]
+            column[:] = np.interp(readings.time - values["time"], readings.time, column.copy())

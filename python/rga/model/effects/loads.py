@@ -1,0 +1,79 @@
+"""Loads at nodes and along members."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from rga.model.effect import Effect, Values
+from rga.model.parameter import Number, Parameter, Place, Value
+from rga.model.structure import Load, Structure
+
+LOCAL = ("x", "y", "z")
+
+
+class NodalLoad(Effect):
+    """Forces [N] and moments [N m] at nodes, times a factor."""
+
+    kind: Literal["nodal_load"] = "nodal_load"
+    forces: dict[str, list[Number]]
+    factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
+
+    @model_validator(mode="after")
+    def _components(self) -> "NodalLoad":
+        for node, force in self.forces.items():
+            if len(force) not in (3, 6):
+                raise ValueError(f"forces.{node}: give [fx, fy, fz] or [fx, fy, fz, mx, my, mz]")
+        return self
+
+    @property
+    def nodes(self) -> list[str]:
+        """Nodes that must be in the model."""
+        return list(self.forces)
+
+    def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
+        forces = {
+            structure.nodes[node]: np.array([*force, 0.0, 0.0, 0.0][:6])
+            for node, force in self.forces.items()
+        }
+        return [Load(values["factor"], forces=forces)]
+
+
+class MemberLoad(Effect):
+    """A load along a member, in its local axes: uniform, trapezoidal or at a point.
+
+    Attributes:
+        uniform: [wx, wy, wz] over the whole member [N/m].
+        trapezoid: axis, from x1 to x2 [m], growing from w1 to w2 [N/m].
+        point: [Px, Py, Pz] at x [m] from the first node [N].
+    """
+
+    kind: Literal["member_load"] = "member_load"
+    member: Annotated[str | list[str], Place("member")]
+    uniform: tuple[Number, Number, Number] | None = None
+    axis: Literal["x", "y", "z"] = "y"
+    trapezoid: tuple[Number, Number, Number, Number] | None = None
+    point: tuple[Number, Number, Number] | None = None
+    x: Annotated[float, Field(ge=0)] = 0.0
+    factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> "MemberLoad":
+        given = [shape for shape in (self.uniform, self.trapezoid, self.point) if shape is not None]
+        if len(given) != 1:
+            raise ValueError("give exactly one of 'uniform', 'trapezoid' and 'point'")
+        return self
+
+    def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
+        spread = []
+        for name in [self.member] if isinstance(self.member, str) else self.member:
+            member = structure.members[name]
+            length = float(structure.lengths[member])
+            if self.uniform is not None:
+                spread += [(member, a, 0.0, length, w, w) for a, w in enumerate(self.uniform) if w]
+            elif self.trapezoid is not None:
+                x1, x2, w1, w2 = self.trapezoid
+                spread.append((member, LOCAL.index(self.axis), x1, x2, w1, w2))
+            elif self.point is not None:
+                spread += [(member, a, self.x, self.x, p, 0.0) for a, p in enumerate(self.point) if p]
+        return [Load(values["factor"], spread=spread)]

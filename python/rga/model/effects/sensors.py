@@ -1,0 +1,174 @@
+"""Sensors that do not show what they should."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from rga.model.effect import Effect, Values, seconds
+from rga.model.parameter import Normal, Parameter, Place, Prior, Value
+from rga.model.readings import Readings
+from rga.model.schema import Model
+from rga.model.structure import Structure
+from rga.model.units import UNITS
+
+OneSensor = Annotated[str, Place("sensor")]
+#: a large zero offset of a sensor [SI unit], by kind
+OFFSET = {"displacement": 5e-3, "rotation": 1e-3, "strain": 3e-5, "force": 2e4, "reaction": 2e4}
+
+
+class SensorBias(Effect):
+    """A constant offset of a sensor [its unit]."""
+
+    kind: Literal["sensor_bias"] = "sensor_bias"
+    sensor: OneSensor
+    offset: Annotated[Value, Parameter("unit", 0.0)] = 0.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from each_sensor(model)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"offset": Normal(0.0, offset_scale(model, place["sensor"]))}
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        readings.values[:, readings.columns[self.sensor]] += values["offset"]
+
+
+class SensorGain(Effect):
+    """A factor on a sensor; -1 is a wrong sign."""
+
+    kind: Literal["sensor_gain"] = "sensor_gain"
+    sensor: OneSensor
+    factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from each_sensor(model)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"factor": Normal(1.0, 0.3)}
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        readings.values[:, readings.columns[self.sensor]] *= values["factor"]
+
+
+class SensorDrift(Effect):
+    """An offset that grows from the first row, or from the onset [unit/day]."""
+
+    kind: Literal["sensor_drift"] = "sensor_drift"
+    sensor: OneSensor
+    rate: Annotated[Value, Parameter("unit/day", 0.0)] = 0.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from each_sensor(model)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"rate": Normal(0.0, offset_scale(model, place["sensor"]) / 30)}
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        days = readings.days
+        if self.onset is not None and len(days):
+            days = np.maximum(readings.time - seconds(self.onset), 0.0) / 86400
+        readings.values[:, readings.columns[self.sensor]] += values["rate"] * days
+
+
+class SensorFault(Effect):
+    """A sensor that does not work: its channel says nothing."""
+
+    kind: Literal["sensor_fault"] = "sensor_fault"
+    sensor: OneSensor
+    mode: Literal["dead", "stuck", "spiking"]
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        faulty = self.weight(readings.time) > 0
+        readings.values[faulty, readings.columns[self.sensor]] = np.nan
+
+
+class SensorSwap(Effect):
+    """Two sensors whose cables are exchanged."""
+
+    kind: Literal["sensor_swap"] = "sensor_swap"
+    sensors: Annotated[tuple[str, str], Place("sensor")]
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        names = list(model.sensors)
+        for number, first in enumerate(names):
+            for second in names[number + 1 :]:
+                if model.sensors[first].unit == model.sensors[second].unit:
+                    yield {"sensors": (first, second)}
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        swapped = self.weight(readings.time) > 0
+        first, second = (readings.columns[name] for name in self.sensors)
+        rows = np.flatnonzero(swapped)
+        readings.values[np.ix_(rows, [first, second])] = readings.values[np.ix_(rows, [second, first])]
+
+
+class SensorTemperature(Effect):
+    """A sensor that follows the temperature [unit/K]."""
+
+    kind: Literal["sensor_temperature"] = "sensor_temperature"
+    sensor: OneSensor
+    rate: Annotated[Value, Parameter("unit/K", 0.0)] = 0.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        if any(effect.kind == "temperature" for effect in model.effects.values()):
+            yield from each_sensor(model)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"rate": Normal(0.0, offset_scale(model, place["sensor"]) / 30)}
+
+    def change_readings(self, readings: Readings, values: Values) -> None:
+        readings.values[:, readings.columns[self.sensor]] += values["rate"] * readings.warmth
+
+
+class GaugePosition(Effect):
+    """A strain gauge off the axis of a frame member: it reads bending too [m]."""
+
+    kind: Literal["gauge_position"] = "gauge_position"
+    structural = True
+    sensor: OneSensor
+    y: Annotated[Value, Parameter("m", 0.0)] = 0.0
+    z: Annotated[Value, Parameter("m", 0.0)] = 0.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        joints = {
+            name
+            for effect in model.effects.values()
+            if effect.kind == "joint_rigidity"
+            for group in [getattr(effect, "group")]  # noqa: B009
+            for one in ([group] if isinstance(group, str) else group)
+            for name in model.groups[one]
+        }
+        for name, sensor in model.sensors.items():
+            if sensor.kind == "strain" and sensor.member is not None:
+                if sensor.member in joints or model.members[sensor.member].kind == "frame":
+                    yield {"sensor": name}
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"y": Normal(0.0, 0.15), "z": Normal(0.0, 0.15)}
+
+    def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
+        row = structure.sensors[self.sensor]
+        structure.outputs["vector"][row, 1:] = value["y"], value["z"]
+
+
+def each_sensor(model: Model) -> Iterator[dict[str, Any]]:
+    """Every sensor as a place."""
+    yield from ({"sensor": sensor} for sensor in model.sensors)
+
+
+def offset_scale(model: Model, sensor: str) -> float:
+    """A large zero offset of a sensor in its own unit."""
+    kind = model.sensors[sensor].kind
+    return OFFSET[kind] * UNITS[kind][model.sensors[sensor].unit]

@@ -1,0 +1,43 @@
+"""The temperature of members."""
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+
+from rga.model.effect import Effect, Values
+from rga.model.parameter import FloatArray, Number, Parameter, Value
+from rga.model.structure import Load, Structure
+
+if TYPE_CHECKING:
+    from rga.model.schema import Model
+
+
+class Temperature(Effect):
+    """Warming of groups of members: kelvin per group times delta."""
+
+    kind: Literal["temperature"] = "temperature"
+    groups: dict[str, Number]
+    delta: Annotated[Value, Parameter("K", 0.0)] = 1.0
+
+    def check_groups(self, model: "Model") -> None:
+        """ValueError where a group is missing, or a member is in two of the listed groups."""
+        seen: dict[str, str] = {}
+        for group in self.groups:
+            if group not in model.groups:
+                raise ValueError(f"groups: there is no group {group!r} in the model")
+            for member in model.groups[group]:
+                if member in seen:
+                    raise ValueError(
+                        f"groups: member {member!r} is in both {seen[member]!r} and {group!r}"
+                    )
+                seen[member] = group
+
+    def field(self, structure: Structure) -> FloatArray:
+        """Kelvin of every member per unit of delta, float[members]."""
+        kelvin = np.zeros(len(structure.host))
+        for group, warming in self.groups.items():
+            kelvin[structure.groups[group]] = warming
+        return kelvin[structure.host]
+
+    def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
+        return [Load(values["delta"], strain=structure.alpha * self.field(structure))]

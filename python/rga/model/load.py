@@ -1,0 +1,98 @@
+"""Reading and writing model files."""
+
+import hashlib
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import ValidationError
+
+from rga.errors import InputError
+from rga.model.schema import Model
+
+
+def load_model(path: str | Path) -> Model:
+    """Read a model file (JSON, TOML or YAML).
+
+    Args:
+        path: the file; the format follows from its suffix.
+
+    Returns:
+        The validated model.
+
+    Raises:
+        InputError: the file is missing or unreadable, or breaks the schema.
+    """
+    path = Path(path)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError("the model file cannot be read", str(path), error.strerror or "check it") from None
+    try:
+        content = _parse(raw, path.suffix.lower())
+    except (ValueError, yaml.YAMLError, RecursionError) as error:
+        problem = " ".join(str(error).split())
+        raise InputError(f"this is no {path.suffix[1:].upper()} text: {problem}", str(path), "mend the syntax") from None
+    model = read_model(content, str(path))
+    model._sha256 = hashlib.sha256(raw).hexdigest()
+    model._path = path
+    return model
+
+
+def read_model(content: Any, where: str) -> Model:
+    """A model from parsed content; InputError with the key, the value and what would be right."""
+    try:
+        return Model.model_validate(content)
+    except ValidationError as error:
+        raise _explained(error, where) from None
+
+
+def write_model(model: Model, path: Path) -> None:
+    """Write a model file as JSON: to a temporary file, then renamed."""
+    temporary = path.with_name(path.name + ".partial")
+    temporary.write_text(json.dumps(model_content(model), indent=1) + "\n", encoding="utf-8")
+    temporary.replace(path)
+
+
+def model_content(model: Model) -> dict[str, Any]:
+    """The model as it stands in a file: keys that have their default are left out."""
+    content = model.model_dump(mode="json", exclude_defaults=True)
+    content["effects"] = {
+        name: {"kind": effect.kind, **effect.model_dump(mode="json", exclude_defaults=True)}
+        for name, effect in model.effects.items()
+    }
+    for name, member in model.members.items():
+        content["members"][name]["kind"] = member.kind
+    return content
+
+
+def _parse(raw: bytes, suffix: str) -> Any:
+    text = raw.decode("utf-8")
+    if suffix == ".toml":
+        return tomllib.loads(text)
+    if suffix in (".yaml", ".yml"):
+        return yaml.safe_load(text)
+    return json.loads(text, object_pairs_hook=_unique)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the key {twice!r} stands twice")
+    return content
+
+
+def _explained(error: ValidationError, where: str) -> InputError:
+    first = error.errors(include_url=False)[0]
+    key = ".".join(str(part) for part in first["loc"])
+    message = first["msg"].removeprefix("Value error, ")
+    if first["type"] == "extra_forbidden":
+        message = "this key is unknown"
+    value = first.get("input")
+    shown = f" (value {value!r})" if isinstance(value, str | int | float | list) else ""
+    what = f"{key}: {message}{shown if len(shown) < 80 else ''}" if key else message
+    return InputError(what, where, "see `rga schema model` for what is right")

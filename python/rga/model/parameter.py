@@ -1,0 +1,155 @@
+"""Parameters of effects: their values in a model file, and what is known of them beforehand."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+FloatArray = NDArray[np.float64]
+
+
+class Driven(BaseModel):
+    """A parameter that follows a context variable: times * (context - minus)."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    context: str
+    times: float = Field(default=1.0, allow_inf_nan=False)
+    minus: float = Field(default=0.0, allow_inf_nan=False)
+
+
+class Estimated(BaseModel):
+    """A parameter that a diagnosis found, with its 90 % credible interval."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    value: float = Field(allow_inf_nan=False)
+    ci90: tuple[float, float]
+
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Value = Number | Driven | Estimated
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Marks a field of an effect as a parameter.
+
+    Attributes:
+        unit: unit of the value, "-" for a pure number.
+        neutral: the value at which the effect does nothing; before an onset the effect has it.
+            None for a parameter that an onset leaves alone.
+    """
+
+    unit: str
+    neutral: float | None
+
+
+@dataclass(frozen=True)
+class Place:
+    """Marks a field of an effect as its place: the part of the model that it names.
+
+    Attributes:
+        of: "member", "group", "support", "sensor", "context", "effect", "material", or "" for a
+            word that stands in no part of the model (a degree of freedom, a direction).
+    """
+
+    of: str
+
+
+class Prior(Protocol):
+    """What is known of a parameter beforehand, as a map from a standard normal variable z."""
+
+    def value(self, z: float) -> float: ...
+
+    def z(self, value: float) -> float: ...
+
+    @property
+    def trials(self) -> tuple[float, ...]: ...
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A value that may lie on either side of `centre`.
+
+    >>> Normal(0.0, 2.0).value(1.5)
+    3.0
+    """
+
+    centre: float
+    spread: float
+
+    def value(self, z: float) -> float:
+        return self.centre + self.spread * z
+
+    def z(self, value: float) -> float:
+        return (value - self.centre) / self.spread
+
+    @property
+    def trials(self) -> tuple[float, ...]:
+        return (0.1,)
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A positive factor, log-normal about one.
+
+    >>> round(Factor(0.3).value(0.0), 3)
+    1.0
+    """
+
+    spread: float
+
+    def value(self, z: float) -> float:
+        return float(np.exp(self.spread * z))
+
+    def z(self, value: float) -> float:
+        return float(np.log(value)) / self.spread
+
+    @property
+    def trials(self) -> tuple[float, ...]:
+        return (-1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Positive:
+    """A positive value known to within some powers of e about its median.
+
+    >>> Positive(100.0, 2.0).value(0.0)
+    100.0
+    """
+
+    median: float
+    spread: float
+
+    def value(self, z: float) -> float:
+        return float(self.median * np.exp(self.spread * z))
+
+    def z(self, value: float) -> float:
+        return float(np.log(value / self.median)) / self.spread
+
+    @property
+    def trials(self) -> tuple[float, ...]:
+        return (-1.5, -0.5, 0.5, 1.5)
+
+
+def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> FloatArray:
+    """Values of a parameter, one a row.
+
+    Args:
+        value: the parameter as it stands in the model.
+        contexts: context variables, float[rows] each.
+        rows: number of rows.
+
+    Returns:
+        float[rows], in the parameter's unit.
+    """
+    if isinstance(value, Driven):
+        return value.times * (contexts[value.context] - value.minus)
+    return np.full(rows, value.value if isinstance(value, Estimated) else value)
+
+
+def marks(annotation: Any, kind: type) -> Any:
+    """The mark of the given kind in the metadata of a field, or None."""
+    return next((mark for mark in annotation.metadata if isinstance(mark, kind)), None)

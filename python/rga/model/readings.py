@@ -1,0 +1,31 @@
+"""What the sensors show: the simulated channels as effects on sensors change them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.model.parameter import FloatArray
+
+
+@dataclass
+class Readings:
+    """Simulated channels on their way to the logger.
+
+    Attributes:
+        values: float[rows, sensors] in the units of the sensors.
+        columns: sensor -> column.
+        time: float[rows] [s].
+        warmth: temperature change of each sensor's surroundings, float[rows] [K].
+    """
+
+    values: FloatArray
+    columns: dict[str, int]
+    time: FloatArray
+    warmth: FloatArray
+
+    @property
+    def days(self) -> FloatArray:
+        """Days since the first row, float[rows]."""
+        if not len(self.time):
+            return self.time
+        return np.asarray((self.time - self.time[0]) / 86400.0)

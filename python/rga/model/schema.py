@@ -1,0 +1,304 @@
+"""The model file: the structure as data, its contexts, its effects and its sensors."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    SerializeAsAny,
+    field_validator,
+    model_validator,
+)
+
+from rga.errors import InputError
+from rga.model.effect import Effect
+from rga.model.parameter import Number
+from rga.model.units import UNITS
+
+DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
+Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
+Vector = tuple[Number, Number, Number]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class Part(BaseModel):
+    """A part of a model file: unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Material(Part):
+    """E [Pa], nu [-], alpha [1/K], density [kg/m3]."""
+
+    E: Positive
+    nu: Annotated[float, Field(gt=-1, lt=0.5)] = 0.3
+    alpha: Number = 0.0
+    density: Annotated[float, Field(ge=0)] = 0.0
+
+
+class Section(Part):
+    """A [m2], second moments Iy and Iz [m4], torsion constant J [m4], shear areas [m2]."""
+
+    A: Positive
+    Iy: Annotated[float, Field(ge=0)] = 0.0
+    Iz: Annotated[float, Field(ge=0)] = 0.0
+    J: Annotated[float, Field(ge=0)] = 0.0
+    Asy: Positive | None = None
+    Asz: Positive | None = None
+
+
+class Releases(Part):
+    """Degrees of freedom that the member does not pass on at its ends, in local axes."""
+
+    i: list[Dof] = []
+    j: list[Dof] = []
+
+
+class EndSprings(Part):
+    """Stiffness of the connection of the member's ends, in local axes [N m/rad or N/m]."""
+
+    i: dict[Dof, Positive] = {}
+    j: dict[Dof, Positive] = {}
+
+
+class Member(Part):
+    """A straight member between two nodes: `truss` (axial) or `frame`."""
+
+    nodes: tuple[str, str]
+    section: str
+    material: str
+    kind: Literal["truss", "frame"] = "truss"
+    groups: list[str] = []
+    local_y: Vector | None = None
+    releases: Releases = Releases()
+    end_springs: EndSprings = EndSprings()
+
+
+class Support(Part):
+    """A support: fixed degrees of freedom of a node, or the direction in which it is held."""
+
+    node: str
+    fixed: list[Dof] = []
+    along: Vector | None = None
+
+
+class Spring(Part):
+    """A spring from a node to the ground, or between two nodes [N/m or N m/rad]."""
+
+    node: str
+    to: str | None = None
+    dof: Dof
+    stiffness: Positive
+
+
+class Tie(Part):
+    """Two nodes that share the degrees of freedom named."""
+
+    nodes: tuple[str, str]
+    dofs: list[Dof]
+
+
+class ContextVariable(Part):
+    """What changes from record to record.
+
+    Attributes:
+        range: prior of a latent variable, range of validity of a measured one.
+        noise: standard deviation of its measurement; None: estimated.
+        law: how a latent variable moves; rate bounds the law `linear` [unit/s].
+    """
+
+    unit: str
+    range: tuple[Number, Number]
+    noise: Positive | None = None
+    law: Literal["independent", "constant", "linear", "smooth"] = "independent"
+    rate: tuple[Number, Number] | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "ContextVariable":
+        if not self.range[0] < self.range[1]:
+            raise ValueError(f"range {list(self.range)} must grow: [smallest, largest]")
+        if self.law == "linear" and self.rate is None:
+            raise ValueError("the law 'linear' needs a rate: [smallest, largest] per second")
+        return self
+
+
+class Sensor(Part):
+    """A sensor; `direction` for displacement, rotation and reaction, `member` for strain and force.
+
+    Attributes:
+        at: place along the member, 0..1; y, z: fibre of a frame member [m].
+        total: a strain that contains thermal expansion.
+        zero: the logger's mean over this time was taken off.
+        noise: standard deviation of one reading [unit]; None: estimated.
+    """
+
+    kind: Literal["displacement", "rotation", "strain", "force", "reaction"]
+    unit: str
+    node: str | None = None
+    direction: Vector | None = None
+    relative_to: str | None = None
+    member: str | None = None
+    at: Annotated[float, Field(ge=0, le=1)] = 0.5
+    y: Number = 0.0
+    z: Number = 0.0
+    total: bool = False
+    zero: tuple[float | str, float | str] | None = None
+    noise: Positive | None = None
+    groups: list[str] = []
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Sensor":
+        if self.unit not in UNITS[self.kind]:
+            raise ValueError(
+                f"the unit {self.unit!r} is not one of a {self.kind} sensor; use "
+                + ", ".join(UNITS[self.kind])
+            )
+        if self.kind in ("strain", "force"):
+            if self.member is None:
+                raise ValueError(f"a {self.kind} sensor needs 'member'")
+        elif self.node is None or self.direction is None:
+            raise ValueError(f"a {self.kind} sensor needs 'node' and 'direction'")
+        elif not any(self.direction):
+            raise ValueError("the direction [0, 0, 0] points nowhere")
+        return self
+
+
+class Analysis(Part):
+    """How the structure is analysed."""
+
+    geometry: Literal["linear"] = "linear"
+
+
+class Model(Part):
+    """A model file. SI units, z up, tension and elongation positive; see the design of the format.
+
+    Raises on validation: unknown keys, members between missing nodes, places that do not exist.
+    """
+
+    rga_model: Literal[1]
+    name: str
+    plane: Literal["xy", "xz", "yz"] | None = None
+    materials: dict[str, Material]
+    sections: dict[str, Section]
+    nodes: dict[str, Vector]
+    members: dict[str, Member]
+    supports: dict[str, Support]
+    springs: list[Spring] = []
+    ties: list[Tie] = []
+    context: dict[str, ContextVariable] = {}
+    effects: dict[str, SerializeAsAny[Effect]] = {}
+    sensors: dict[str, Sensor] = {}
+    analysis: Analysis = Analysis()
+
+    _sha256: str = PrivateAttr(default="")
+    _path: Path | None = PrivateAttr(default=None)
+
+    @field_validator("effects", mode="before")
+    @classmethod
+    def _effects_by_kind(cls, effects: Any) -> Any:
+        if not isinstance(effects, dict):
+            raise ValueError("effects must be a table of named effects")
+        return {name: read_effect(effect, name) for name, effect in effects.items()}
+
+    @model_validator(mode="after")
+    def _references(self) -> "Model":
+        for name, member in self.members.items():
+            for node in member.nodes:
+                self._known("nodes", node, f"members.{name}.nodes")
+            if member.nodes[0] == member.nodes[1]:
+                raise ValueError(f"members.{name}.nodes: both ends are node {member.nodes[0]!r}")
+            if self.nodes[member.nodes[0]] == self.nodes[member.nodes[1]]:
+                raise ValueError(f"members.{name}.nodes: the member has no length")
+            self._known("sections", member.section, f"members.{name}.section")
+            self._known("materials", member.material, f"members.{name}.material")
+        for name, support in self.supports.items():
+            self._known("nodes", support.node, f"supports.{name}.node")
+        for number, spring in enumerate(self.springs):
+            for node in filter(None, (spring.node, spring.to)):
+                self._known("nodes", node, f"springs[{number}]")
+        for number, tie in enumerate(self.ties):
+            for node in tie.nodes:
+                self._known("nodes", node, f"ties[{number}]")
+        for name, sensor in self.sensors.items():
+            if sensor.member is not None:
+                self._known("members", sensor.member, f"sensors.{name}.member")
+            for node in filter(None, (sensor.node, sensor.relative_to)):
+                self._known("nodes", node, f"sensors.{name}")
+        for name, effect in self.effects.items():
+            self.check_effect(effect, f"effects.{name}")
+        return self
+
+    def _known(self, table: str, name: str, where: str) -> None:
+        if name not in getattr(self, table):
+            raise ValueError(f"{where}: there is no {name!r} in {table}")
+
+    def check_effect(self, effect: Effect, where: str) -> None:
+        """Refuse an effect whose place or driving context is not in the model (ValueError)."""
+        tables: dict[str, Any] = {
+            "member": self.members,
+            "group": self.groups,
+            "support": self.supports,
+            "sensor": self.sensors,
+            "context": self.context,
+            "effect": self.effects,
+            "material": self.materials,
+            "node": self.nodes,
+        }
+        for field, mark in effect.place_fields().items():
+            named = getattr(effect, field)
+            if named is None or mark.of not in tables:
+                continue
+            for one in [named] if isinstance(named, str) else named:
+                if one not in tables[mark.of]:
+                    raise ValueError(f"{where}.{field}: there is no {mark.of} {one!r} in the model")
+        for node in getattr(effect, "nodes", ()):
+            self._known("nodes", node, where)
+        if check_groups := getattr(effect, "check_groups", None):
+            check_groups(self)
+        for context in effect.drivers():
+            if context not in self.context:
+                raise ValueError(f"{where}: there is no context {context!r} in the model")
+
+    @property
+    def groups(self) -> dict[str, list[str]]:
+        """Members of each group, in the order of the file."""
+        found: dict[str, list[str]] = {}
+        for name, member in self.members.items():
+            for group in member.groups:
+                found.setdefault(group, []).append(name)
+        return found
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the file the model came from; empty for a model made in memory."""
+        return self._sha256
+
+    @property
+    def path(self) -> Path | None:
+        """The file the model came from."""
+        return self._path
+
+    def extended(self, effects: dict[str, Effect]) -> "Model":
+        """The same model with more effects; refuses those that do not fit it."""
+        for name, effect in effects.items():
+            try:
+                self.check_effect(effect, f"effects.{name}")
+            except ValueError as error:
+                raise InputError(str(error), f"model {self.name!r}", "name a part it has") from None
+        return self.model_copy(update={"effects": {**self.effects, **effects}})
+
+
+def read_effect(effect: Any, name: str) -> Effect:
+    """An effect of the vocabulary from its keys; ValueError where the kind is unknown."""
+    if isinstance(effect, Effect):
+        return effect
+    kind = effect.get("kind") if isinstance(effect, dict) else None
+    if kind not in Effect.vocabulary:
+        raise ValueError(
+            f"effects.{name}.kind: {kind!r} is no kind of effect; known are "
+            + ", ".join(sorted(Effect.vocabulary))
+        )
+    return Effect.vocabulary[kind].model_validate(effect)

@@ -1,0 +1,242 @@
+"""A structure as arrays: what effects change and what the core solves."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga.model.parameter import FloatArray
+from rga.model.schema import DOFS, Model, Sensor
+from rga.model.units import per_si
+
+IntArray = NDArray[np.int64]
+OUTPUT_KIND = {"displacement": 0, "rotation": 1, "strain": 2, "force": 3, "reaction": 4}
+HELD_BY_PLANE = {"xz": (1, 3, 5), "xy": (2, 3, 4), "yz": (0, 4, 5)}
+
+
+@dataclass
+class Load:
+    """A load pattern with a coefficient for every row.
+
+    Attributes:
+        coefficient: float[rows].
+        forces: node -> six force and moment components [N, N m].
+        strain: initial axial strain of every member, float[members], or None.
+        curvature: initial curvature about local y and z, float[members, 2] [1/m], or None.
+        prescribed: (node, dof) -> displacement of a support [m or rad].
+        prescribed_inclined: number of the inclined support -> displacement [m].
+        spread: (member, axis, from, to, start, end) of loads along members.
+    """
+
+    coefficient: FloatArray
+    forces: dict[int, FloatArray] = field(default_factory=dict)
+    strain: FloatArray | None = None
+    curvature: FloatArray | None = None
+    prescribed: dict[tuple[int, int], float] = field(default_factory=dict)
+    prescribed_inclined: dict[int, float] = field(default_factory=dict)
+    spread: list[tuple[int, int, float, float, float, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """A support direction with Coulomb friction."""
+
+    node: int
+    dof: int
+    mu: float
+    permanent_force: float
+
+
+@dataclass
+class Structure:
+    """The structure of a model as arrays in the form that the core takes.
+
+    Attributes:
+        nodes, members, supports, sensors: names -> numbers.
+        groups: group -> numbers of its members.
+        materials: material of every member of the model.
+        arrays: coordinates [m], member properties, supports, springs, ties.
+        outputs: one row a sensor, as the core takes them.
+        per_si: sensor units per SI unit, float[sensors].
+        alpha: thermal expansion [1/K], float[members].
+        host: number of the member whose temperature a member shares, int[members].
+        bearings: bearings with friction.
+    """
+
+    nodes: dict[str, int]
+    members: dict[str, int]
+    supports: dict[str, int]
+    sensors: dict[str, int]
+    groups: dict[str, IntArray]
+    materials: tuple[str, ...]
+    arrays: dict[str, NDArray[Any]]
+    outputs: dict[str, NDArray[Any]]
+    per_si: FloatArray
+    alpha: FloatArray
+    host: IntArray
+    bearings: list[Bearing]
+
+    def copy(self) -> "Structure":
+        """An independent copy: effects change copies only."""
+        return Structure(
+            self.nodes,
+            self.members,
+            self.supports,
+            self.sensors,
+            self.groups,
+            self.materials,
+            {name: array.copy() for name, array in self.arrays.items()},
+            {name: array.copy() for name, array in self.outputs.items()},
+            self.per_si,
+            self.alpha.copy(),
+            self.host.copy(),
+            list(self.bearings),
+        )
+
+    @property
+    def lengths(self) -> FloatArray:
+        """Member lengths, float[members] [m]."""
+        ends = self.arrays["coordinates"][self.arrays["ends"]]
+        return np.asarray(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+
+    def of_material(self, material: str) -> NDArray[np.bool_]:
+        """True for members of a material, those that share a host's temperature included."""
+        made_of = np.array([name == material for name in self.materials], dtype=bool)
+        return np.asarray(made_of[self.host])
+
+    def named(self, member: str | list[str] | None, group: str | list[str] | None) -> IntArray:
+        """Numbers of the members that a place names, each once."""
+        members = [member] if isinstance(member, str) else member or []
+        groups = [group] if isinstance(group, str) else group or []
+        numbers = [self.members[name] for name in members]
+        return np.unique(np.concatenate([numbers, *(self.groups[name] for name in groups)]).astype(np.int64))
+
+    def add_nodes(self, coordinates: FloatArray) -> IntArray:
+        """Add nodes at coordinates float[k, 3] [m]; their numbers."""
+        first = len(self.arrays["coordinates"])
+        self.arrays["coordinates"] = np.vstack([self.arrays["coordinates"], coordinates])
+        held = np.zeros((len(coordinates), 6), dtype=bool)
+        self.arrays["fixed"] = np.vstack([self.arrays["fixed"], held])
+        return np.arange(first, first + len(coordinates))
+
+    def add_bars(self, ends: IntArray, area: float, hosts: IntArray) -> None:
+        """Add truss members int[k, 2] of an area [m2] with modulus and temperature of their hosts."""
+        arrays = self.arrays
+        for name in ("E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end"):
+            arrays[name] = np.concatenate([arrays[name], arrays[name][hosts]])
+        arrays["A"][-len(hosts) :] = area
+        arrays["ends"] = np.vstack([arrays["ends"], ends])
+        arrays["frame"] = np.concatenate([arrays["frame"], np.zeros(len(hosts), dtype=bool)])
+        self.alpha = np.concatenate([self.alpha, self.alpha[hosts]])
+        self.host = np.concatenate([self.host, self.host[hosts]])
+
+    def add_spring(self, node: int, to: int, dof: int, stiffness: float) -> None:
+        """Add a spring between two nodes, or to the ground (to = -1) [N/m or N m/rad]."""
+        arrays = self.arrays
+        arrays["spring_node"] = np.vstack([arrays["spring_node"], [[node, to]]])
+        arrays["spring_dof"] = np.append(arrays["spring_dof"], dof)
+        arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], stiffness)
+
+
+def build_structure(model: Model) -> Structure:
+    """The arrays of a model, before any of its effects.
+
+    Raises:
+        InputError: a sensor's unit does not belong to its kind.
+    """
+    nodes = {name: number for number, name in enumerate(model.nodes)}
+    members = {name: number for number, name in enumerate(model.members)}
+    arrays = {**_member_arrays(model, nodes), **_restraint_arrays(model, nodes)}
+    sensors = list(model.sensors.items())
+    outputs = [_output(sensor, nodes, members) for _, sensor in sensors]
+    return Structure(
+        nodes=nodes,
+        members=members,
+        supports={name: nodes[support.node] for name, support in model.supports.items()},
+        sensors={name: number for number, (name, _) in enumerate(sensors)},
+        groups={
+            group: np.array([members[name] for name in names], dtype=np.int64)
+            for group, names in model.groups.items()
+        },
+        materials=tuple(member.material for member in model.members.values()),
+        arrays=arrays,
+        outputs={
+            "kind": np.array([row[0] for row in outputs], dtype=np.int64),
+            "index": np.array([row[1] for row in outputs], dtype=np.int64),
+            "other": np.array([row[2] for row in outputs], dtype=np.int64),
+            "vector": np.array([row[3] for row in outputs], dtype=float).reshape(-1, 3),
+            "total": np.array([row[4] for row in outputs], dtype=bool),
+        },
+        per_si=np.array([per_si(s.kind, s.unit, f"sensor {name!r}") for name, s in sensors]),
+        alpha=np.array([model.materials[m.material].alpha for m in model.members.values()]),
+        host=np.arange(len(members)),
+        bearings=[],
+    )
+
+
+def _member_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any]]:
+    chosen = list(model.members.values())
+    materials = [model.materials[member.material] for member in chosen]
+    sections = [model.sections[member.section] for member in chosen]
+    connection = np.full((len(chosen), 12), np.inf)
+    for row, member in zip(connection, chosen, strict=True):
+        for first, released, springs in (
+            (0, member.releases.i, member.end_springs.i),
+            (6, member.releases.j, member.end_springs.j),
+        ):
+            for dof in released:
+                row[first + DOFS.index(dof)] = 0.0
+            for dof, stiffness in springs.items():
+                row[first + DOFS.index(dof)] = stiffness
+    nowhere = (np.nan, np.nan, np.nan)
+    return {
+        "coordinates": np.array(list(model.nodes.values()), dtype=float).reshape(-1, 3),
+        "ends": np.array([[nodes[n] for n in member.nodes] for member in chosen], dtype=np.int64).reshape(-1, 2),
+        "frame": np.array([member.kind == "frame" for member in chosen], dtype=bool),
+        "E": np.array([material.E for material in materials]),
+        "G": np.array([material.E / (2 * (1 + material.nu)) for material in materials]),
+        "A": np.array([section.A for section in sections]),
+        "Iy": np.array([section.Iy for section in sections]),
+        "Iz": np.array([section.Iz for section in sections]),
+        "J": np.array([section.J for section in sections]),
+        "Asy": np.array([section.Asy or np.inf for section in sections]),
+        "Asz": np.array([section.Asz or np.inf for section in sections]),
+        "local_y": np.array([member.local_y or nowhere for member in chosen], dtype=float).reshape(-1, 3),
+        "connection": connection,
+        "rigid_end": np.zeros((len(chosen), 2)),
+    }
+
+
+def _restraint_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any]]:
+    fixed = np.zeros((len(nodes), 6), dtype=bool)
+    if model.plane is not None:
+        fixed[:, HELD_BY_PLANE[model.plane]] = True
+    for support in model.supports.values():
+        fixed[nodes[support.node], [DOFS.index(dof) for dof in support.fixed]] = True
+    inclined = [support for support in model.supports.values() if support.along is not None]
+    ties = [(tie.nodes, dof) for tie in model.ties for dof in tie.dofs]
+    return {
+        "fixed": fixed,
+        "inclined_node": np.array([nodes[support.node] for support in inclined], dtype=np.int64),
+        "inclined_direction": np.array([support.along for support in inclined], dtype=float).reshape(-1, 3),
+        "spring_node": np.array(
+            [[nodes[s.node], -1 if s.to is None else nodes[s.to]] for s in model.springs], dtype=np.int64
+        ).reshape(-1, 2),
+        "spring_dof": np.array([DOFS.index(s.dof) for s in model.springs], dtype=np.int64),
+        "spring_stiffness": np.array([s.stiffness for s in model.springs], dtype=float),
+        "tie_node": np.array([[nodes[n] for n in pair] for pair, _ in ties], dtype=np.int64).reshape(-1, 2),
+        "tie_dof": np.array([DOFS.index(dof) for _, dof in ties], dtype=np.int64),
+    }
+
+
+def _output(
+    sensor: Sensor, nodes: dict[str, int], members: dict[str, int]
+) -> tuple[int, int, int, tuple[float, float, float], bool]:
+    kind = OUTPUT_KIND[sensor.kind]
+    if sensor.member is not None and sensor.kind in ("strain", "force"):
+        return kind, members[sensor.member], -1, (sensor.at, sensor.y, sensor.z), sensor.total
+    assert sensor.node is not None and sensor.direction is not None  # by the schema
+    x, y, z = np.array(sensor.direction) / np.linalg.norm(sensor.direction)
+    other = -1 if sensor.relative_to is None else nodes[sensor.relative_to]
+    return kind, nodes[sensor.node], other, (float(x), float(y), float(z)), False

@@ -1,0 +1,66 @@
+"""Response of a structure to loads: the way into the core."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga import _core
+from rga.errors import InputError, UnstableStructureError
+from rga.model.parameter import FloatArray
+from rga.model.schema import DOFS
+from rga.model.structure import Load, Structure
+
+
+def respond(structure: Structure, loads: list[Load], outputs: dict[str, NDArray[Any]]) -> FloatArray:
+    """Outputs under each load pattern with coefficient one, float[loads, outputs] in SI units.
+
+    Raises:
+        UnstableStructureError: names the node and the direction that can move.
+        InputError: a property that the core refuses.
+    """
+    try:
+        return _core.respond(structure.arrays, patterns(structure, loads), outputs)
+    except _core.UnstableStructure as error:
+        names = list(structure.nodes)
+        node = names[error.node] if error.node < len(names) else f"of the floor beside {names[0]}"
+        raise UnstableStructureError(
+            f"the structure can move: node {node!r} in {DOFS[error.dof]} meets no resistance",
+            "members and supports",
+            "add a member, a support or a stiffness there, or hold the plane",
+        ) from None
+    except _core.InvalidInput as error:
+        raise InputError(str(error), "the structure as it reaches the solver", "mend that value") from None
+
+
+def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]:
+    """Load patterns in the form that the core takes."""
+    count, nodes, members = len(loads), len(structure.arrays["coordinates"]), len(structure.host)
+    forces = np.zeros((count, nodes, 6))
+    strain = np.zeros((count, members, 3))
+    prescribed = np.zeros((count, nodes, 6))
+    inclined = np.zeros((count, len(structure.arrays["inclined_node"])))
+    spread: list[tuple[int, int, int, float, float, float, float]] = []
+    for number, load in enumerate(loads):
+        for node, force in load.forces.items():
+            forces[number, node] += force
+        if load.strain is not None:
+            strain[number, :, 0] = load.strain
+        if load.curvature is not None:
+            strain[number, :, 1:] = load.curvature
+        for (node, dof), displacement in load.prescribed.items():
+            prescribed[number, node, dof] = displacement
+        for support, displacement in load.prescribed_inclined.items():
+            inclined[number, support] = displacement
+        spread += [(number, *one) for one in load.spread]
+    table = np.array(spread, dtype=float).reshape(-1, 7)
+    names = ("member_pattern", "member_index", "member_axis")
+    reals = ("member_from", "member_to", "member_start", "member_end")
+    return {
+        "forces": forces,
+        "strain": strain,
+        "prescribed": prescribed,
+        "prescribed_inclined": inclined,
+        **{name: table[:, k].astype(np.int64) for k, name in enumerate(names)},
+        **{name: table[:, 3 + k].copy() for k, name in enumerate(reals)},
+    }

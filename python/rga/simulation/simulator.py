@@ -1,0 +1,191 @@
+"""Contexts in, sensor values out."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rga.errors import InputError
+from rga.model.effect import Effect, Values
+from rga.model.parameter import FloatArray
+from rga.model.readings import Readings
+from rga.model.schema import Model
+from rga.model.structure import Load, Structure, build_structure
+from rga.model.effect import seconds
+from rga.simulation.friction import respond_with_friction
+from rga.simulation.response import respond
+
+
+class Simulator:
+    """The simulation of a model with all of its effects.
+
+    The response is linear in the loads, so one solve for every load pattern serves all rows that
+    share a structure: y = Q R with the coefficients Q[rows, patterns] and the responses
+    R[patterns, sensors]. Rows whose structural parameters differ are solved apart.
+
+    Args:
+        model: the structure with its effects and sensors.
+    """
+
+    def __init__(self, model: Model, _structure: Structure | None = None) -> None:
+        self.model = model
+        self._structure = build_structure(model) if _structure is None else _structure
+
+    def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
+        """A simulator of the same structure with more effects."""
+        return Simulator(self.model.extended(dict(effects)), self._structure)
+
+    @property
+    def needed(self) -> set[str]:
+        """Context variables that drive effects of the model."""
+        return set().union(*(effect.drivers() for effect in self.model.effects.values()))
+
+    def predict(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
+        """Simulated sensor values.
+
+        Args:
+            contexts: context variables in their units, and `time` [s] where an onset, a lag, a
+                drift or friction needs it; every one float[rows], or a number for all rows.
+
+        Returns:
+            float[rows, sensors] in the units of the sensors, in the order of the model.
+
+        Raises:
+            InputError: a context is missing, not finite, or of another length.
+            UnstableStructureError: the structure can move; names node and direction.
+        """
+        table = self._table(contexts)
+        time, rows = table["time"], len(table["time"])
+        effects = self.model.effects
+        values = self._values(table)
+        readings = Readings(
+            values=self._respond(values, rows) * self._structure.per_si,
+            columns={name: number for number, name in enumerate(self.model.sensors)},
+            time=time,
+            warmth=sum((v["delta"] for v in values.values() if "delta" in v), np.zeros(rows)),
+        )
+        for name, effect in effects.items():
+            effect.change_readings(readings, values[name])
+        return self._zeroed(readings)
+
+    def load_coefficients(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
+        """Coefficients of all load patterns: what any linear structure responds to.
+
+        Args:
+            contexts: as for `predict`.
+
+        Returns:
+            float[rows, patterns].
+        """
+        table = self._table(contexts)
+        loads = self._loads(self._structure, self._values(table))
+        none = np.zeros((len(table["time"]), 0))
+        return np.column_stack([none, *(load.coefficient for load in loads)])
+
+    def jacobian(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
+        """Derivatives of the sensors by the context variables of the model.
+
+        Args:
+            contexts: as for `predict`.
+
+        Returns:
+            float[rows, sensors, contexts], by central differences over 1e-4 of each range.
+        """
+        table = self._table(contexts)
+        columns = []
+        for name, variable in self.model.context.items():
+            step = 1e-4 * (variable.range[1] - variable.range[0])
+            ahead = self.predict({**table, name: table[name] + step})
+            behind = self.predict({**table, name: table[name] - step})
+            columns.append((ahead - behind) / (2 * step))
+        rows = len(table["time"])
+        if not columns:
+            return np.zeros((rows, len(self.model.sensors), 0))
+        return np.stack(columns, axis=2)
+
+    def _table(self, contexts: Mapping[str, ArrayLike]) -> Values:
+        given = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in contexts.items()}
+        rows = max((len(column) for column in given.values()), default=1)
+        table = {}
+        for name in ("time", *self.model.context):
+            if name == "time" and name not in given:
+                table[name] = np.zeros(rows)
+                continue
+            if name not in given:
+                if name in self.needed:
+                    raise InputError(f"the context {name!r} is missing", "contexts", "give a value a row")
+                continue
+            column = given[name]
+            if column.ndim != 1 or len(column) not in (1, rows):
+                raise InputError(
+                    f"the context {name!r} has shape {column.shape}", "contexts", f"give {rows} values"
+                )
+            if not np.isfinite(column).all():
+                row = int(np.flatnonzero(~np.isfinite(column))[0])
+                raise InputError(
+                    f"the context {name!r} is not a number", f"contexts, row {row + 1}", "give a finite value"
+                )
+            table[name] = np.broadcast_to(column, rows)
+        return table
+
+    def _values(self, measured: Values) -> dict[str, Values]:
+        """Parameters of all effects, row by row, as the true contexts and the effects make them."""
+        effects, rows = self.model.effects, len(measured["time"])
+        true = dict(measured)
+        for effect in effects.values():
+            effect.change_contexts(true, effect.values(measured, rows))
+        values = {name: effect.values(true, rows) for name, effect in effects.items()}
+        for name, effect in effects.items():
+            effect.change_values(values, values[name], measured["time"])
+        return values
+
+    def _respond(self, values: dict[str, Values], rows: int) -> FloatArray:
+        effects = self.model.effects
+        structural = [name for name, effect in effects.items() if effect.structural]
+        parameters = [(name, key) for name in structural for key in values[name]]
+        table = np.column_stack([values[n][k] for n, k in parameters]) if parameters else np.zeros((rows, 0))
+        states, state_of_row = np.unique(table, axis=0, return_inverse=True)
+        if not parameters:
+            states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
+        out = np.empty((rows, len(self.model.sensors)))
+        for number, state in enumerate(states):
+            chosen = np.flatnonzero(state_of_row.ravel() == number)
+            structure = self._structure
+            if structural:
+                structure = structure.copy()
+                for name in structural:
+                    own = {key: state[k] for k, (of, key) in enumerate(parameters) if of == name}
+                    effects[name].change_structure(structure, own)
+            of_rows = {
+                name: {key: column[chosen] for key, column in resolved.items()}
+                for name, resolved in values.items()
+            }
+            out[chosen] = _rows(structure, self._loads(structure, of_rows), len(chosen))
+        return out
+
+    def _loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
+        effects = self.model.effects
+        loads = {name: effect.loads(structure, values[name], values) for name, effect in effects.items()}
+        for name, effect in effects.items():
+            effect.change_loads(loads, structure, values[name])
+        return [load for of_effect in loads.values() for load in of_effect]
+
+    def _zeroed(self, readings: Readings) -> FloatArray:
+        for name, sensor in self.model.sensors.items():
+            if sensor.zero is not None:
+                first, last = (seconds(moment) for moment in sensor.zero)
+                column = readings.values[:, readings.columns[name]]
+                lead_in = (readings.time >= first) & (readings.time <= last)
+                if lead_in.any():
+                    column -= column[lead_in].mean()
+        return readings.values
+
+
+def _rows(structure: Structure, loads: list[Load], rows: int) -> FloatArray:
+    if not loads:
+        return np.zeros((rows, len(structure.per_si)))
+    if structure.bearings:
+        return respond_with_friction(structure, loads)
+    coefficients: Any = np.column_stack([load.coefficient for load in loads])
+    return np.asarray(coefficients @ respond(structure, loads, structure.outputs))

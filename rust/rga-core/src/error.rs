@@ -1,0 +1,38 @@
+//! What can go wrong, in words a user can act on.
+
+use thiserror::Error;
+
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Names of the dofs of a node, in their order.
+pub const DOFS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Error {
+    #[error("{0}")]
+    InvalidInput(String),
+
+    /// `direction` is the motion of `node` in the null vector, normalised.
+    #[error(
+        "the structure is unstable: nothing holds node {node} in {name}; \
+         add a support, a member or a spring there",
+        name = DOFS[*dof]
+    )]
+    UnstableStructure {
+        node: usize,
+        dof: usize,
+        direction: [f64; 6],
+    },
+
+    #[error(
+        "friction at row {row} does not settle: reduce mu or the influence of friction on the \
+         normal forces (normal_influence)"
+    )]
+    NotConverged { row: usize },
+}
+
+impl Error {
+    pub fn invalid(message: impl Into<String>) -> Self {
+        Self::InvalidInput(message.into())
+    }
+}

@@ -1,0 +1,149 @@
+//! The arrays that describe a structure, its loads and the wanted outputs.
+
+use std::ops::Index;
+
+/// A borrowed array in C order.
+#[derive(Debug, Clone, Copy)]
+pub struct Array<'a, T> {
+    pub values: &'a [T],
+    pub shape: &'a [usize],
+}
+
+impl<'a, T> Array<'a, T> {
+    pub fn new(values: &'a [T], shape: &'a [usize]) -> Self {
+        Self { values, shape }
+    }
+
+    /// Length of the first axis.
+    pub fn len(&self) -> usize {
+        self.shape.first().copied().unwrap_or(0)
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Everything behind the first index, flat.
+    pub fn row(&self, index: usize) -> &'a [T] {
+        let width: usize = self.shape[1..].iter().product();
+        &self.values[index * width..(index + 1) * width]
+    }
+}
+
+impl<T> Index<usize> for Array<'_, T> {
+    type Output = T;
+
+    fn index(&self, index: usize) -> &T {
+        &self.values[index]
+    }
+}
+
+impl Array<'_, i64> {
+    /// A checked index: negative values do not get past `check`.
+    pub fn at(&self, index: usize) -> usize {
+        self.values[index] as usize
+    }
+}
+
+/// n nodes, m members, k inclined supports, s springs, t ties.
+#[derive(Debug, Clone, Copy)]
+pub struct Structure<'a> {
+    /// `[n, 3]`
+    pub coordinates: Array<'a, f64>,
+    /// `[m, 2]` first and second node
+    pub ends: Array<'a, i64>,
+    /// `[m]` true: bends; false: a truss member, axial only
+    pub frame: Array<'a, bool>,
+    /// `[m]` Young's modulus E
+    pub young: Array<'a, f64>,
+    /// `[m]` shear modulus G
+    pub shear: Array<'a, f64>,
+    /// `[m]` A
+    pub area: Array<'a, f64>,
+    /// `[m]` bends in the local x-z plane
+    pub iy: Array<'a, f64>,
+    /// `[m]` bends in the local x-y plane
+    pub iz: Array<'a, f64>,
+    /// `[m]` J
+    pub torsion: Array<'a, f64>,
+    /// `[m]` infinite: Euler-Bernoulli; finite: Timoshenko
+    pub shear_area_y: Array<'a, f64>,
+    pub shear_area_z: Array<'a, f64>,
+    /// `[m, 3]` a row of NaN takes the default axes
+    pub local_y: Array<'a, f64>,
+    /// `[m, 12]` stiffness in series with each local end dof
+    pub connection: Array<'a, f64>,
+    /// `[m, 2]` lengths of the rigid zones
+    pub rigid_end: Array<'a, f64>,
+    /// `[n, 6]`
+    pub fixed: Array<'a, bool>,
+    /// `[k]`
+    pub inclined_node: Array<'a, i64>,
+    /// `[k, 3]` n of n.u = value
+    pub inclined_direction: Array<'a, f64>,
+    /// `[s, 2]` the second is -1 for ground
+    pub spring_node: Array<'a, i64>,
+    /// `[s]`
+    pub spring_dof: Array<'a, i64>,
+    /// `[s]`
+    pub spring_stiffness: Array<'a, f64>,
+    /// `[t, 2]`
+    pub tie_node: Array<'a, i64>,
+    /// `[t]`
+    pub tie_dof: Array<'a, i64>,
+}
+
+impl Structure<'_> {
+    pub fn node_count(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    pub fn member_count(&self) -> usize {
+        self.ends.len()
+    }
+}
+
+/// p patterns, each solved on its own; q member loads.
+#[derive(Debug, Clone, Copy)]
+pub struct Loads<'a> {
+    /// `[p, n, 6]`
+    pub forces: Array<'a, f64>,
+    /// `[p, m, 3]` initial axial strain and its local gradients d/dy, d/dz
+    pub strain: Array<'a, f64>,
+    /// `[p, n, 6]` displacement of fixed dofs
+    pub prescribed: Array<'a, f64>,
+    /// `[p, k]`
+    pub prescribed_inclined: Array<'a, f64>,
+    /// `[q]`
+    pub member_pattern: Array<'a, i64>,
+    pub member_index: Array<'a, i64>,
+    /// 0..2 local forces, 3..5 local moments
+    pub member_axis: Array<'a, i64>,
+    /// metres from the first node; from == to is a point load
+    pub member_from: Array<'a, f64>,
+    pub member_to: Array<'a, f64>,
+    /// value at `from` and at `to`
+    pub member_start: Array<'a, f64>,
+    pub member_end: Array<'a, f64>,
+}
+
+impl Loads<'_> {
+    pub fn pattern_count(&self) -> usize {
+        self.forces.len()
+    }
+}
+
+/// o outputs, each one number a pattern.
+#[derive(Debug, Clone, Copy)]
+pub struct Outputs<'a> {
+    /// `[o]` see `observe::Output`
+    pub kind: Array<'a, i64>,
+    /// `[o]` node or member
+    pub index: Array<'a, i64>,
+    /// `[o]` reference node or local end dof, else -1
+    pub other: Array<'a, i64>,
+    /// `[o, 3]`
+    pub vector: Array<'a, f64>,
+    /// `[o]` strain with (true) or without the initial strain
+    pub total: Array<'a, bool>,
+}

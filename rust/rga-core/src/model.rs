@@ -1,0 +1,89 @@
+//! Members and springs together: the unreduced stiffness.
+
+use crate::element::Vector12;
+use crate::error::{Error, Result};
+use crate::input::Structure;
+use crate::member::Member;
+
+#[derive(Debug, Clone, Copy)]
+pub struct Spring {
+    pub dof: usize,
+    /// Nothing: the spring goes to ground.
+    pub other: Option<usize>,
+    pub stiffness: f64,
+}
+
+#[derive(Debug, Clone)]
+pub struct Model {
+    pub members: Vec<Member>,
+    pub springs: Vec<Spring>,
+    pub dofs: usize,
+}
+
+impl Model {
+    pub fn new(structure: &Structure) -> Result<Self> {
+        let members = (0..structure.member_count()).map(|index| Member::new(structure, index));
+        let springs = (0..structure.spring_node.len()).map(|index| {
+            let ends = structure.spring_node.row(index);
+            let axis = structure.spring_dof.at(index);
+            Spring {
+                dof: 6 * ends[0] as usize + axis,
+                other: (ends[1] >= 0).then(|| 6 * ends[1] as usize + axis),
+                stiffness: structure.spring_stiffness[index],
+            }
+        });
+        Ok(Self {
+            members: members.collect::<Result<_>>()?,
+            springs: springs.collect(),
+            dofs: 6 * structure.node_count(),
+        })
+    }
+
+    /// Calls `add(row, column, value)` for all entries; entries repeat.
+    pub fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
+        for member in &self.members {
+            member.for_each_stiffness(&mut add);
+        }
+        for spring in &self.springs {
+            add(spring.dof, spring.dof, spring.stiffness);
+            if let Some(other) = spring.other {
+                add(other, other, spring.stiffness);
+                add(spring.dof, other, -spring.stiffness);
+                add(other, spring.dof, -spring.stiffness);
+            }
+        }
+    }
+
+    pub fn diagonal(&self) -> Result<Vec<f64>> {
+        let mut diagonal = vec![0.0; self.dofs];
+        self.for_each_stiffness(|row, column, value| {
+            if row == column {
+                diagonal[row] += value;
+            }
+        });
+        match diagonal.iter().position(|value: &f64| !value.is_finite()) {
+            None => Ok(diagonal),
+            Some(dof) => Err(Error::invalid(format!(
+                "the stiffness at node {} overflows; check the members and springs there",
+                dof / 6
+            ))),
+        }
+    }
+
+    /// Forces of the nodes on members and springs: K u + fixed-end forces.
+    pub fn internal_forces(&self, displacements: &[f64], fixed_end: &[Vector12]) -> Vec<f64> {
+        let mut total = vec![0.0; self.dofs];
+        for (member, fixed_end) in self.members.iter().zip(fixed_end) {
+            member.add_forces(&member.end_forces(displacements, fixed_end), &mut total);
+        }
+        for spring in &self.springs {
+            let far = spring.other.map_or(0.0, |other| displacements[other]);
+            let force = spring.stiffness * (displacements[spring.dof] - far);
+            total[spring.dof] += force;
+            if let Some(other) = spring.other {
+                total[other] -= force;
+            }
+        }
+        total
+    }
+}

@@ -1,0 +1,174 @@
+//! Outputs read off a solved pattern.
+
+use crate::constraint::Constraints;
+use crate::element::Vector12;
+use crate::input::Outputs;
+use crate::load::{MemberLoad, PatternLoads};
+use crate::model::Model;
+
+/// One pattern, solved.
+pub struct State<'a> {
+    pub loads: &'a PatternLoads,
+    pub strain: &'a [f64],
+    pub forces: &'a [f64],
+    pub fixed_end: Vec<Vector12>,
+    pub displacements: Vec<f64>,
+    /// Applied minus internal forces.
+    pub unbalanced: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Output<'a> {
+    /// Displacement or rotation of a node (first dof), relative to another.
+    Motion(usize, Option<usize>, &'a [f64]),
+    /// At (place in 0..1, y, z); total or mechanical.
+    Strain(usize, &'a [f64], bool),
+    /// At a place in 0..1.
+    AxialForce(usize, f64),
+    /// Force or moment of supports on a node (first dof).
+    Reaction(usize, &'a [f64]),
+    /// Local end dof of a member.
+    EndForce(usize, usize),
+}
+
+pub struct Observer<'a> {
+    model: &'a Model,
+    constraints: &'a Constraints,
+    outputs: Vec<Output<'a>>,
+}
+
+/// Axial force and bending moments EI (v'' + free curvature) of a section.
+struct Section {
+    axial: f64,
+    /// In the local x-y and x-z planes.
+    moments: [f64; 2],
+}
+
+impl<'a> Observer<'a> {
+    pub fn new(model: &'a Model, constraints: &'a Constraints, outputs: &Outputs<'a>) -> Self {
+        let count = outputs.kind.len();
+        Self {
+            model,
+            constraints,
+            outputs: (0..count).map(|at| read_output(outputs, at)).collect(),
+        }
+    }
+
+    pub fn read(&self, state: &State, results: &mut Vec<f64>) {
+        let reacts = |output: &Output| matches!(output, Output::Reaction(..));
+        let reactions = if self.outputs.iter().any(reacts) {
+            self.reactions(state)
+        } else {
+            Vec::new()
+        };
+        let values = self.outputs.iter().map(|output| match *output {
+            Output::Motion(first, reference, direction) => {
+                let own = along(&state.displacements, first, direction);
+                own - reference.map_or(0.0, |at| along(&state.displacements, at, direction))
+            }
+            Output::Strain(index, place, total) => self.strain(state, index, place, total),
+            Output::AxialForce(index, place) => {
+                let x = place * self.model.members[index].length;
+                self.section(state, index, x).axial
+            }
+            Output::Reaction(first, direction) => along(&reactions, first, direction),
+            Output::EndForce(index, dof) => self.end_forces(state, index)[dof],
+        });
+        results.extend(values);
+    }
+
+    fn reactions(&self, state: &State) -> Vec<f64> {
+        let needed: Vec<f64> = state.unbalanced.iter().map(|force| -force).collect();
+        let mut reactions = self.constraints.support_forces(&needed);
+        for spring in self
+            .model
+            .springs
+            .iter()
+            .filter(|spring| spring.other.is_none())
+        {
+            reactions[spring.dof] -= spring.stiffness * state.displacements[spring.dof];
+        }
+        reactions
+    }
+
+    fn end_forces(&self, state: &State, index: usize) -> Vector12 {
+        let member = &self.model.members[index];
+        member.end_forces(&state.displacements, &state.fixed_end[index])
+    }
+
+    fn section(&self, state: &State, index: usize, x: f64) -> Section {
+        let ends = self.end_forces(state, index);
+        let mut section = Section {
+            axial: -ends[0],
+            moments: [ends[1] * x - ends[5], ends[2] * x + ends[4]],
+        };
+        for load in state.loads.of(index) {
+            section.add(load, x);
+        }
+        section
+    }
+
+    fn strain(&self, state: &State, index: usize, place: &[f64], total: bool) -> f64 {
+        let member = &self.model.members[index];
+        let initial = &state.strain[3 * index..3 * index + 3];
+        let Some(frame) = &member.frame else {
+            let elongation = member.elongation(&state.displacements) / member.length;
+            return elongation - if total { 0.0 } else { initial[0] };
+        };
+        let section = self.section(state, index, place[0] * member.length);
+        let fibre = &place[1..];
+        let mut strain = section.axial / frame.beam.ea;
+        for ((plane, moment), distance) in frame.beam.planes.iter().zip(section.moments).zip(fibre)
+        {
+            if *distance != 0.0 {
+                strain -= distance * moment / plane.ei;
+            }
+        }
+        if total {
+            strain += initial[0] + initial[1] * fibre[0] + initial[2] * fibre[1];
+        }
+        strain
+    }
+}
+
+impl Section {
+    /// The part of a member load between the first node and the section at x.
+    fn add(&mut self, load: &MemberLoad, x: f64) {
+        if load.from >= x {
+            return;
+        }
+        for (at, size) in load.points(0.0, x) {
+            match load.axis {
+                0 => self.axial -= size,
+                1 => self.moments[0] += size * (x - at),
+                2 => self.moments[1] += size * (x - at),
+                4 => self.moments[1] += size,
+                5 => self.moments[0] -= size,
+                _ => {}
+            }
+        }
+    }
+}
+
+fn read_output<'a>(outputs: &Outputs<'a>, at: usize) -> Output<'a> {
+    let index = outputs.index.at(at);
+    let other = outputs.other[at];
+    let vector = outputs.vector.row(at);
+    match outputs.kind[at] {
+        kind @ (0 | 1) => {
+            let first = 3 * kind as usize;
+            let reference = (other >= 0).then(|| 6 * other as usize + first);
+            Output::Motion(6 * index + first, reference, vector)
+        }
+        2 => Output::Strain(index, vector, outputs.total[at]),
+        3 => Output::AxialForce(index, vector[0]),
+        4 => Output::Reaction(6 * index, vector),
+        5 => Output::Reaction(6 * index + 3, vector),
+        _ => Output::EndForce(index, other as usize),
+    }
+}
+
+fn along(values: &[f64], first: usize, direction: &[f64]) -> f64 {
+    let terms = values[first..first + 3].iter().zip(direction);
+    terms.map(|(value, cosine)| value * cosine).sum()
+}

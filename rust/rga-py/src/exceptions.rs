@@ -1,0 +1,52 @@
+//! Errors of the core as Python exceptions.
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyArithmeticError, PyValueError};
+use pyo3::prelude::*;
+use rga_core::Error;
+
+create_exception!(
+    rga._core,
+    InvalidInput,
+    PyValueError,
+    "An array is missing, malformed or out of range; the message names it."
+);
+create_exception!(
+    rga._core,
+    UnstableStructure,
+    PyArithmeticError,
+    "Part of the structure can move freely.\n\n\
+     node, dof (0..5 for ux uy uz rx ry rz): what moves most.\n\
+     direction: the motion of that node, six numbers of norm 1."
+);
+create_exception!(
+    rga._core,
+    NotConverged,
+    PyArithmeticError,
+    "Friction forces did not settle.\n\nrow: the row of the time series."
+);
+
+pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
+    let message = error.to_string();
+    match error {
+        Error::InvalidInput(_) => InvalidInput::new_err(message),
+        Error::UnstableStructure {
+            node,
+            dof,
+            direction,
+        } => {
+            let raised = UnstableStructure::new_err(message);
+            let value = raised.value(py);
+            let set = value
+                .setattr("node", node)
+                .and_then(|()| value.setattr("dof", dof))
+                .and_then(|()| value.setattr("direction", direction.to_vec()));
+            set.err().unwrap_or(raised)
+        }
+        Error::NotConverged { row } => {
+            let raised = NotConverged::new_err(message);
+            let set = raised.value(py).setattr("row", row);
+            set.err().unwrap_or(raised)
+        }
+    }
+}

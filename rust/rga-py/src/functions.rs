@@ -1,0 +1,172 @@
+//! The functions of `rga._core`.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rga_core::{Bearings, Loads, Outputs, Structure};
+
+use crate::arrays::Held;
+use crate::exceptions::to_python;
+
+/// `let view = Kind { field: dict["key"], ... }`, named `name` in messages.
+macro_rules! read {
+    ($view:ident = $kind:ident from $dict:ident { $($field:ident: $key:literal),* $(,)? }) => {
+        $(let $field = Held::entry($dict, stringify!($dict), $key)?;)*
+        let $view = $kind { $($field: $field.view()),* };
+    };
+}
+
+type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+
+/// Linear static response of a truss or frame structure.
+///
+/// Dofs of a node are ux uy uz rx ry rz; tension and elongation are positive.
+/// Local x runs from a member's first node to its second, z = x cross y.
+/// Without local_y, y is global z cross x (horizontal), and global y for a
+/// vertical member. Rotations that nothing stiffens are held.
+///
+/// Parameters
+/// ----------
+/// structure : n nodes, m members, k inclined supports, s springs, t ties
+///     coordinates f64[n, 3]; ends i64[m, 2]; frame bool[m] (False: truss);
+///     E, G, A, Iy, Iz, J f64[m] (Iz bends in the local x-y plane);
+///     Asy, Asz f64[m] (inf: Euler-Bernoulli, finite: Timoshenko);
+///     local_y f64[m, 3] (NaN row: default);
+///     connection f64[m, 12] (stiffness in series with each local end dof of a
+///     frame member, at the face of its rigid zone: inf rigid, 0 released);
+///     rigid_end f64[m, 2] (lengths of rigid zones of frame members);
+///     fixed bool[n, 6]; inclined_node i64[k], inclined_direction f64[k, 3]
+///     (normalised here; n.u is prescribed); spring_node i64[s, 2] (second -1:
+///     ground), spring_dof i64[s], spring_stiffness f64[s];
+///     tie_node i64[t, 2], tie_dof i64[t].
+/// loads : p patterns, each solved on its own
+///     forces f64[p, n, 6]; strain f64[p, m, 3] (initial axial strain, then
+///     its gradients along local y and z; a truss has only the first);
+///     prescribed f64[p, n, 6] (of fixed dofs); prescribed_inclined f64[p, k];
+///     and a flat list of member loads: member_pattern, member_index,
+///     member_axis i64[q] (0..2 local forces, 3..5 local moments, these only
+///     as point loads), member_from, member_to f64[q] (metres from the first
+///     node; equal: a point load of size member_start), member_start,
+///     member_end f64[q].
+/// outputs : o numbers for each pattern
+///     kind, index, other i64[o], vector f64[o, 3], total bool[o].
+///     kind 0 displacement and 1 rotation of node index along vector, relative
+///     to node other (or -1); 2 strain of member index at vector = (place in
+///     0..1, y, z), total or mechanical; 3 axial force of member index at
+///     vector[0]; 4 reaction force and 5 reaction moment on node index along
+///     vector, of supports and springs to ground; 6 force of the node on
+///     member index at local end dof other (0..11). Directions are taken as
+///     given, not normalised.
+///
+/// Returns
+/// -------
+/// f64[p, o]
+///
+/// Raises
+/// ------
+/// InvalidInput, UnstableStructure
+#[pyfunction]
+pub fn respond<'py>(
+    py: Python<'py>,
+    structure: &Bound<'py, PyDict>,
+    loads: &Bound<'py, PyDict>,
+    outputs: &Bound<'py, PyDict>,
+) -> PyResult<Matrix<'py>> {
+    read!(model = Structure from structure {
+        coordinates: "coordinates",
+        ends: "ends",
+        frame: "frame",
+        young: "E",
+        shear: "G",
+        area: "A",
+        iy: "Iy",
+        iz: "Iz",
+        torsion: "J",
+        shear_area_y: "Asy",
+        shear_area_z: "Asz",
+        local_y: "local_y",
+        connection: "connection",
+        rigid_end: "rigid_end",
+        fixed: "fixed",
+        inclined_node: "inclined_node",
+        inclined_direction: "inclined_direction",
+        spring_node: "spring_node",
+        spring_dof: "spring_dof",
+        spring_stiffness: "spring_stiffness",
+        tie_node: "tie_node",
+        tie_dof: "tie_dof",
+    });
+    read!(patterns = Loads from loads {
+        forces: "forces",
+        strain: "strain",
+        prescribed: "prescribed",
+        prescribed_inclined: "prescribed_inclined",
+        member_pattern: "member_pattern",
+        member_index: "member_index",
+        member_axis: "member_axis",
+        member_from: "member_from",
+        member_to: "member_to",
+        member_start: "member_start",
+        member_end: "member_end",
+    });
+    read!(wanted = Outputs from outputs {
+        kind: "kind",
+        index: "index",
+        other: "other",
+        vector: "vector",
+        total: "total",
+    });
+    let results = py
+        .detach(|| rga_core::respond(&model, &patterns, &wanted))
+        .map_err(|error| to_python(py, error))?;
+    let shape = [patterns.pattern_count(), wanted.kind.len()];
+    PyArray1::from_vec(py, results).reshape(shape)
+}
+
+/// Coulomb friction at b bearings through n_t rows of time, in sequence.
+///
+/// Displacements are u = free_displacement + flexibility r and normal forces
+/// N = max(0, normal_free + normal_influence r), with r the friction forces on
+/// the structure. Each row sticks to the place of the row before or slips with
+/// abs(r) = mu N against the motion; the start is u = 0, r = 0.
+///
+/// Parameters
+/// ----------
+/// free_displacement, normal_free : f64[n_t, b]
+/// flexibility, normal_influence : f64[b, b]
+/// mu : f64[b]
+///
+/// Returns
+/// -------
+/// f64[n_t, b], the friction forces
+///
+/// Raises
+/// ------
+/// InvalidInput, NotConverged
+#[pyfunction]
+pub fn slide<'py>(
+    py: Python<'py>,
+    free_displacement: &Bound<'py, PyAny>,
+    flexibility: &Bound<'py, PyAny>,
+    normal_free: &Bound<'py, PyAny>,
+    normal_influence: &Bound<'py, PyAny>,
+    mu: &Bound<'py, PyAny>,
+) -> PyResult<Matrix<'py>> {
+    let free_displacement = Held::new(free_displacement, "free_displacement")?;
+    let flexibility = Held::new(flexibility, "flexibility")?;
+    let normal_free = Held::new(normal_free, "normal_free")?;
+    let normal_influence = Held::new(normal_influence, "normal_influence")?;
+    let mu = Held::new(mu, "mu")?;
+    let bearings = Bearings {
+        free_displacement: free_displacement.view(),
+        flexibility: flexibility.view(),
+        normal_free: normal_free.view(),
+        normal_influence: normal_influence.view(),
+        mu: mu.view(),
+    };
+    let friction = py
+        .detach(|| rga_core::slide(&bearings))
+        .map_err(|error| to_python(py, error))?;
+    let shape = [bearings.free_displacement.len(), bearings.mu.len()];
+    PyArray1::from_vec(py, friction).reshape(shape)
+}

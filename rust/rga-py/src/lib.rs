@@ -1,0 +1,21 @@
+//! Python binding of the finite-element core: converts and documents.
+
+mod arrays;
+mod exceptions;
+mod functions;
+
+use pyo3::prelude::*;
+
+/// Finite elements for truss and frame bridges.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("InvalidInput", py.get_type::<exceptions::InvalidInput>())?;
+    module.add(
+        "UnstableStructure",
+        py.get_type::<exceptions::UnstableStructure>(),
+    )?;
+    module.add("NotConverged", py.get_type::<exceptions::NotConverged>())?;
+    module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
+    module.add_function(wrap_pyfunction!(functions::slide, module)?)
+}

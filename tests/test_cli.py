@@ -1,0 +1,193 @@
+"""The command line: what the commands write, and what they leave alone."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+from rga.cli.output import whole_directory, whole_file
+from rga.model import load_model
+from rga.records import load_record
+from rga.simulation import Simulator
+from rga.simulation.dataset import write_dataset
+
+Rga = Callable[..., Any]
+VERIFICATION = Path(__file__).parents[2] / "shared" / "verification"
+
+
+def test_starting_imports_nothing_heavy() -> None:
+    heavy = {"torch", "matplotlib", "scipy", "polars", "numpy", "pydantic", "rga._core"}
+    code = f"import sys, rga.cli; print(*({heavy!r} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+def test_help_and_version(rga: Rga) -> None:
+    outcome = rga("--help")
+    assert outcome.code == 0
+    for command in ("run", "diagnose", "simulate", "dataset", "whatif", "verify", "schema"):
+        assert command in outcome.out
+    assert rga("--version").out.startswith("rga 0.")
+
+
+def test_unknown_option_is_bad_input(rga: Rga, model_file: Path) -> None:
+    assert rga("whatif", model_file, "--speed", "3").code == 2
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_simulation_is_a_record_of_the_model(
+    suffix: str, tmp_path: Path, model_file: Path, rga: Rga
+) -> None:
+    contexts = tmp_path / "contexts.csv"
+    contexts.write_text(
+        "time,temperature,load\n2024-01-01T00:00,10,0\n2024-01-01T01:00,30,5e4\n", encoding="utf-8"
+    )
+    output = tmp_path / f"simulated.{suffix}"
+    assert rga("simulate", model_file, contexts, "-o", output).code == 0
+    model = load_model(model_file)
+    record = load_record(output, model)
+    expected = Simulator(model).predict(
+        {"time": [0, 3600], "temperature": [10, 30], "load": [0, 5e4]}
+    )
+    np.testing.assert_allclose(record.readings, expected, rtol=1e-12)
+    assert record.time.tolist() == [0, 3600]
+    # Two bars of 5 m at a height of 4 m: N = -F/2 * 5/4, strain = N / EA.
+    assert record.readings[1, 1] == pytest.approx(-2.5e4 * 1.25 / (2e11 * 0.01) * 1e6)
+
+
+def test_dataset_is_reproducible_and_says_what_made_it(
+    tmp_path: Path, model_file: Path, rga: Rga
+) -> None:
+    for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+        output = tmp_path / f"{name}.parquet"
+        assert rga("dataset", model_file, "-n", 100, "--seed", seed, "-o", output).code == 0
+    a, b, c = (pl.read_parquet(tmp_path / f"{name}.parquet") for name in "abc")
+    assert a.equals(b)
+    assert not a.equals(c)
+    assert a.columns == ["temperature", "load", "D1", "S1"]
+    metadata = pl.read_parquet_metadata(tmp_path / "a.parquet")
+    model = load_model(model_file)
+    assert metadata["seed"] == "1"
+    assert metadata["model_sha256"] == model.sha256
+    contexts = {name: a[name].to_numpy() for name in model.context}
+    np.testing.assert_allclose(a[:, 2:].to_numpy(), Simulator(model).predict(contexts))
+    assert contexts["temperature"].min() < -15
+    assert contexts["temperature"].max() > 35
+
+
+def test_dataset_in_chunks_is_the_same_sequence(
+    tmp_path: Path, model_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = load_model(model_file)
+    done = []
+    write_dataset(model, 100, tmp_path / "whole.parquet", seed=3, noise=True)
+    monkeypatch.setattr("rga.simulation.dataset.CHUNK", 32)
+    write_dataset(
+        model,
+        100,
+        tmp_path / "parts.parquet",
+        seed=3,
+        noise=True,
+        progress=lambda _, share: done.append(share),
+    )
+    whole, parts = (pl.read_parquet(tmp_path / f"{n}.parquet") for n in ("whole", "parts"))
+    np.testing.assert_allclose(parts.to_numpy(), whole.to_numpy(), rtol=1e-12, atol=1e-12)
+    assert done == [0.32, 0.64, 0.96, 1.0]
+
+
+def test_noise_of_a_dataset_is_the_sensors(tmp_path: Path, model_file: Path) -> None:
+    model = load_model(model_file)
+    write_dataset(model, 4096, tmp_path / "clean.parquet")
+    write_dataset(model, 4096, tmp_path / "noisy.parquet", noise=True)
+    clean, noisy = (pl.read_parquet(tmp_path / f"{n}.parquet") for n in ("clean", "noisy"))
+    for name, sensor in model.sensors.items():
+        assert (noisy[name] - clean[name]).std() == pytest.approx(sensor.noise, rel=0.1)
+
+
+def test_whatif_compares_with_mid_range(tmp_path: Path, model_file: Path, rga: Rga) -> None:
+    outcome = rga("whatif", model_file, "--set", "load=1e5", "--json")
+    result = json.loads(outcome.out)
+    assert result["contexts"] == {"temperature": 10.0, "load": 1e5}
+    strain = result["sensors"]["S1"]
+    assert strain["after"] == pytest.approx(2 * strain["before"])
+    assert strain["unit"] == "microstrain"
+    (tmp_path / "softer.json").write_text(
+        '{"kind": "elastic_modulus", "material": "steel", "factor": 0.5}', encoding="utf-8"
+    )
+    target = tmp_path / "result.json"
+    outcome = rga("whatif", model_file, "--add", tmp_path / "softer.json", "--json", target)
+    sensors = json.loads(target.read_text(encoding="utf-8"))["sensors"]
+    assert sensors["D1"]["after"] == pytest.approx(2 * sensors["D1"]["before"])
+    assert "D1" in outcome.out
+
+
+def test_whatif_warns_outside_the_range(model_file: Path, rga: Rga) -> None:
+    outcome = rga("whatif", model_file, "--set", "temperature=55")
+    assert outcome.code == 0
+    assert outcome.err == ("warning: temperature = 55 lies outside its range -20..40 degC\n")
+
+
+@pytest.mark.parametrize("of", ["model", "record", "findings"])
+def test_schema(of: str, rga: Rga) -> None:
+    if of == "findings":
+        pytest.importorskip("rga.diagnosis.findings", exc_type=ImportError)
+    assert json.loads(rga("schema", of).out)["type"] == "object"
+
+
+def test_doctor(rga: Rga) -> None:
+    assert "python" in rga("doctor").out
+    result = json.loads(rga("doctor", "--json").out)
+    assert result["core"] == "loads"
+    assert result["threads"]["cores"] >= 1
+
+
+def test_verify_fails_with_exit_code_1(tmp_path: Path, rga: Rga) -> None:
+    if not VERIFICATION.exists():
+        pytest.skip("the verification cases are not part of this project")
+    case = json.loads((VERIFICATION / "truss_bar_thermal_spring.json").read_text(encoding="utf-8"))
+    (tmp_path / "good.json").write_text(json.dumps(case), encoding="utf-8")
+    assert rga("verify", tmp_path).code == 0
+    case["load_cases"][0]["expected"][0]["value"] += 1.0
+    (tmp_path / "wrong.json").write_text(json.dumps(case), encoding="utf-8")
+    outcome = rga("verify", tmp_path, "--json", tmp_path / "out" / "result.json")
+    assert outcome.code == 1
+    assert "1 of 2 cases passed" in outcome.out
+    result = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
+    assert [case["passed"] for case in result["cases"]] == [True, False]
+    (tmp_path / "torn.json").write_text("{", encoding="utf-8")
+    assert rga("verify", tmp_path).code == 2
+
+
+def interrupted(whole: Callable[..., Any], target: Path, name: str) -> None:
+    with whole(target) as draft:
+        (draft / name).write_text("half", encoding="utf-8")
+        raise OSError("disk full")
+
+
+def test_a_directory_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    target = tmp_path / "deep" / "out"
+    with pytest.raises(OSError, match="disk full"):
+        interrupted(whole_directory, target, "figures")
+    assert list((tmp_path / "deep").iterdir()) == []
+    for text in ("first", "second"):
+        with whole_directory(target) as draft:
+            (draft / "figures").mkdir()
+            (draft / "figures" / "a").write_text(text, encoding="utf-8")
+        assert (target / "figures" / "a").read_text(encoding="utf-8") == text
+        (target / "notes").write_text("mine", encoding="utf-8")
+    assert sorted(path.name for path in target.iterdir()) == ["figures", "notes"]
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old", encoding="utf-8")
+    with pytest.raises(OSError, match="disk full"):
+        interrupted(whole_file, target, "")
+    assert target.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [target]
