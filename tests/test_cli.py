@@ -164,6 +164,37 @@ def test_verify_fails_with_exit_code_1(tmp_path: Path, rga: Rga) -> None:
     assert rga("verify", tmp_path).code == 2
 
 
+class Nothing:
+    """Findings of a diagnosis that finds nothing."""
+
+    def __init__(self, model: Any, record: Any, *, seed: int, progress: Any) -> None:
+        progress("screening", 1.0)
+        self.content = {"verdict": "nothing_wrong", "seed": seed, "rows": len(record)}
+
+    def write(self, directory: Path) -> None:
+        (directory / "findings.json").write_text(json.dumps(self.content), encoding="utf-8")
+
+    def sentence(self) -> str:
+        return "Nothing is wrong."
+
+
+@pytest.mark.parametrize("command", ["run", "diagnose"])
+def test_diagnosis_is_written_and_said(
+    command: str, tmp_path: Path, model_file: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rga.diagnosis.diagnose", Nothing)
+    record, target = tmp_path / "record.csv", tmp_path / "out"
+    record.write_text("time,D1,S1,temperature\n0,1,2,50\n1,1,2,3\n", encoding="utf-8")
+    said = rga(command, model_file, record, "-o", target, "--seed", 7)
+    assert said.code == 0
+    assert said.out.startswith("Nothing is wrong.\n")
+    assert said.err.startswith("warning: temperature lies outside its range")
+    findings = json.loads((target / "findings.json").read_text(encoding="utf-8"))
+    assert findings == {"verdict": "nothing_wrong", "seed": 7, "rows": 2}
+    printed = rga(command, model_file, record, "-o", target, "--seed", 8, "--json")
+    assert json.loads(printed.out)["seed"] == 8
+
+
 def interrupted(whole: Callable[..., Any], target: Path, name: str) -> None:
     with whole(target) as draft:
         (draft / name).write_text("half", encoding="utf-8")

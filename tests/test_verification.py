@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from rga.benchmark.verification import verify_case
 
 FOLDER = Path(__file__).resolve().parents[2] / "shared" / "verification"

@@ -177,10 +177,11 @@ class Loads:
 
 
 def _elongation(load: Json) -> float:
-    for key in ("value", "elongation", "initial_elongation", "delta", "dL", "e0"):
-        if key in load:
-            return float(load[key])
-    raise KeyError("initial_elongation without a value")
+    """The one number of the load: the format does not name it."""
+    given = {key: value for key, value in load.items() if key not in ("element", "kind", "note")}
+    if len(given) != 1:
+        raise KeyError(f"initial_elongation must have one value, not {sorted(given)}")
+    return float(next(iter(given.values())))
 
 
 def _axis(name: str | int) -> int:
@@ -208,26 +209,20 @@ def _fixed(case: Json, nodes: Mapping[str, int], plane: bool) -> NDArray[np.bool
 
 
 def _sections(elements: Sequence[Json], plane: bool) -> Arrays:
-    def column(key: str, default: float | None) -> Floats:
-        def value(element: Json) -> float:
-            if element["type"] == "truss" and key not in ("E", "A"):
-                return 0.0
-            return float(element[key] if default is None else element.get(key, default))
+    def value(element: Json, key: str) -> float:
+        if key in element:
+            return float(element[key])
+        if element["type"] == "truss" and key not in ("E", "A"):
+            return 0.0
+        if key in ("Asy", "Asz"):
+            return math.inf
+        sheared = "Asy" in element or "Asz" in element
+        if plane and key in ("Iy", "J", "G") and not (key == "G" and sheared):
+            return 1.0  # only stiffens what a plane model holds
+        raise KeyError(f"element {element['id']} lacks {key}")
 
-        return np.array([value(element) for element in elements])
-
-    # What bends or twists out of a plane model is held: its stiffness does not count.
-    held = 1.0 if plane else None
-    return {
-        "E": column("E", None),
-        "A": column("A", None),
-        "Iz": column("Iz", None),
-        "Iy": column("Iy", held),
-        "J": column("J", held),
-        "G": column("G", held if not any("Asy" in e for e in elements) else None),
-        "Asy": column("Asy", math.inf),
-        "Asz": column("Asz", math.inf),
-    }
+    keys = ("E", "A", "Iz", "Iy", "J", "G", "Asy", "Asz")
+    return {key: np.array([value(element, key) for element in elements]) for key in keys}
 
 
 def _springs(springs: Sequence[Json], nodes: Mapping[str, int]) -> Arrays:

@@ -63,6 +63,8 @@ class Data:
         readings: float[rows, sensors], zero where missing.
         observed: bool[rows, sensors].
         belief: what is believed of the contexts.
+        zero_time: clock of rows whose mean the logger took off every channel [s], float[rows];
+            empty where it took off nothing.
     """
 
     sensors: tuple[str, ...]
@@ -70,6 +72,7 @@ class Data:
     readings: FloatArray
     observed: BoolArray
     belief: Belief
+    zero_time: FloatArray
 
     @property
     def time(self) -> FloatArray:
@@ -84,7 +87,22 @@ class Data:
             changes: other values for some of the contexts.
         """
         table = {**self.belief.table, **(changes or {})}
-        return np.nan_to_num(simulator.predict(table)[:, self.columns])
+        leading = len(self.zero_time)
+        if leading:
+            table = {name: self._with_zero_rows(name, column) for name, column in table.items()}
+        simulated = np.nan_to_num(simulator.predict(table)[:, self.columns])
+        if leading:
+            simulated = simulated[leading:] - simulated[:leading].mean(0)
+        return simulated
+
+    def _with_zero_rows(self, name: str, column: FloatArray) -> FloatArray:
+        """A context with its values at the zero rows in front; a line is prolonged to them."""
+        if name == "time":
+            return np.concatenate([self.zero_time, column])
+        if name in self.belief.lines and len(column) > 1:
+            rate = (column[-1] - column[0]) / (self.time[-1] - self.time[0])
+            return np.concatenate([column[0] + rate * (self.zero_time - self.time[0]), column])
+        return np.concatenate([np.full(len(self.zero_time), column[0]), column])
 
     def rows(self, chosen: BoolArray) -> "Data":
         """Some of the rows."""

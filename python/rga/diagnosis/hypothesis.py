@@ -1,6 +1,6 @@
 """Hypotheses: kinds of effects at places, with what is known of their parameters beforehand."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -62,16 +62,19 @@ class Hypothesis:
         return self.kind is other.kind and self.place == other.place
 
 
-def hypotheses(model: Model, sensors: Sequence[str]) -> list[Hypothesis]:
+def hypotheses(
+    model: Model, sensors: Sequence[str], measured: Collection[str]
+) -> list[Hypothesis]:
     """All hypotheses that the vocabulary allows on a model.
 
     Args:
         model: as it was given.
         sensors: channels that work; a hypothesis on another sensor is left out.
+        measured: contexts that were measured; one on another context is left out.
     """
     found: list[Hypothesis] = []
     by_kind = {
-        kind: [place for place in kind.places(model) if _works(kind, place, sensors)]
+        kind: [place for place in kind.places(model) if _seen(kind, place, sensors, measured)]
         for kind in Effect.vocabulary.values()
     }
     kinds = sum(bool(places) for places in by_kind.values())
@@ -81,11 +84,14 @@ def hypotheses(model: Model, sensors: Sequence[str]) -> list[Hypothesis]:
     return found
 
 
-def _works(kind: type[Effect], place: Mapping[str, Any], sensors: Sequence[str]) -> bool:
+def _seen(
+    kind: type[Effect], place: Mapping[str, Any], sensors: Sequence[str], measured: Collection[str]
+) -> bool:
+    present: dict[str, Collection[str]] = {"sensor": sensors, "context": measured}
     return all(
-        one in sensors
+        one in present[mark.of]
         for field, mark in kind.place_fields().items()
-        if mark.of == "sensor" and place.get(field) is not None
+        if mark.of in present and place.get(field) is not None
         for one in _listed(place[field])
     )
 

@@ -52,6 +52,8 @@ class Problem:
         covariance: of the residual.
         noise: of sensors and contexts.
         levels: of the scatter: members, gains, patterns.
+        factors: patterns over the sensors that vary from row to row for reasons unknown,
+            float[sensors, factors].
     """
 
     data: Data
@@ -61,6 +63,7 @@ class Problem:
     covariance: Covariance
     noise: Noise
     levels: FloatArray
+    factors: FloatArray
 
     def residual(self, simulated: FloatArray) -> FloatArray:
         """Readings less a simulation, zero where missing, float[rows, sensors]."""
@@ -74,13 +77,19 @@ class Problem:
         return np.asarray(scatter + np.einsum("tsi,ti->ts", rows.context_jacobian, error))
 
 
-def pose(simulator: Simulator, data: Data, before: Problem | None = None) -> Problem:
+def pose(
+    simulator: Simulator,
+    data: Data,
+    before: Problem | None = None,
+    factors: FloatArray | None = None,
+) -> Problem:
     """Linearise a record about a simulation, and estimate noise and scatter.
 
     Args:
         simulator: the simulation with its effects.
         data: the readings with the belief of the contexts.
         before: an earlier problem on the same data, to start the estimates from.
+        factors: patterns over the sensors that vary for reasons unknown, float[sensors, factors].
     """
     belief = data.belief
     simulated = data.predict(simulator)
@@ -89,6 +98,10 @@ def pose(simulator: Simulator, data: Data, before: Problem | None = None) -> Pro
         belief.spread
     ) else np.zeros((len(data.time), 0))
     shift = np.einsum("tsi,ti->ts", jacobian, offsets)
+    if factors is None:
+        factors = before.factors if before is not None else np.zeros((len(data.sensors), 0))
+    unknown = np.where(data.observed[:, :, None], factors, 0.0)
+    jacobian = np.concatenate([jacobian, unknown], axis=2)
     residual = np.where(data.observed, data.readings - simulated - shift, 0.0)
 
     basis = load_basis(simulator, data)
@@ -96,12 +109,15 @@ def pose(simulator: Simulator, data: Data, before: Problem | None = None) -> Pro
     scale = np.sqrt((left**2).sum(0) / np.maximum(data.observed.sum(0), 1))
     stated = np.array([simulator.model.sensors[name].noise or 0.0 for name in data.sensors])
     floor = np.maximum(0.3 * stated, 1e-9 + 1e-4 * np.abs(simulated).max(0, initial=0.0))
-    start = before.noise if before is not None else Noise(
+    start = Noise(
         sigma=np.maximum(scale, floor),
         phi=np.full(len(data.sensors), 0.3),
-        context_sigma=np.array(list(belief.spread.values())),
+        context_sigma=np.array([*belief.spread.values(), *np.ones(factors.shape[1])]),
     )
-    known = np.array([name in belief.known for name in belief.spread], dtype=bool)
+    if before is not None and len(before.noise.context_sigma) == len(start.context_sigma):
+        start = before.noise
+    unknown_spread = [False] * factors.shape[1]
+    known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
     noise = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
     scatter, family, fixed = scatter_effects(simulator, data, simulated, basis)
@@ -110,7 +126,7 @@ def pose(simulator: Simulator, data: Data, before: Problem | None = None) -> Pro
     covariance = Covariance(rows, scatter, np.where(family < 0, fixed, levels[family]))
     levels = scatter_levels(covariance, residual, family, fixed, levels)
     covariance = covariance.with_spread(np.where(family < 0, fixed, levels[family]))
-    return Problem(data, simulator, simulated, shift, covariance, noise, levels)
+    return Problem(data, simulator, simulated, shift, covariance, noise, levels, factors)
 
 
 def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) -> FloatArray:

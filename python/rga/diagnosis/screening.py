@@ -1,7 +1,7 @@
 """Screening: which hypotheses are worth a fit, from their signatures alone."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -25,11 +25,13 @@ class Prospect:
         hypothesis: with an onset where one promises more.
         z: coordinates to start a fit from.
         score: approximate log evidence.
+        largest: d' of the largest of the trial values, or of two prior deviations.
     """
 
     hypothesis: Hypothesis
     z: tuple[float, ...]
     score: float
+    largest: float
 
 
 def screen(
@@ -67,8 +69,11 @@ def screen(
         for (number, z, onset, column), size in zip(waiting, sizes, strict=True):
             along = float((column * weighted).sum())
             prospect = _prospect(candidates[number].beginning(onset), z, along, float(size))
-            if number not in best or prospect.score > best[number].score:
-                best[number] = prospect
+            if number in best:
+                better = max(best[number], prospect, key=lambda one: one.score)
+                largest = max(best[number].largest, prospect.largest)
+                prospect = replace(better, largest=largest)
+            best[number] = prospect
         waiting.clear()
 
     for number, candidate in enumerate(candidates):
@@ -116,17 +121,19 @@ def _likely_onset(
 def _prospect(hypothesis: Hypothesis, z: tuple[float, ...], along: float, size: float) -> Prospect:
     """Score of a signature with x' C^-1 r = along and x' C^-1 x = size."""
     prior = hypothesis.log_prior
-    if size <= 0:
-        return Prospect(hypothesis, z, -np.inf)
+    size = max(size, 0.0)
+    largest = float(np.sqrt(size))
+    if size == 0:
+        return Prospect(hypothesis, z, -np.inf, 0.0)
     if not z:
-        return Prospect(hypothesis, z, along - size / 2 + prior)
+        return Prospect(hypothesis, z, along - size / 2 + prior, largest)
     if all(isinstance(one, Normal) for one in hypothesis.priors.values()):
         # A straight line in z: the evidence is exact.
         per_z = size / z[0] ** 2
         gain = (along / z[0]) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
         best = along / z[0] / (1 + per_z)
-        return Prospect(hypothesis, tuple([best] * len(z)), gain + prior)
+        return Prospect(hypothesis, tuple([best] * len(z)), gain + prior, 2 * largest / abs(z[0]))
     # A curve: the amplitude may differ a little from that of the trial, not in sign.
     amplitude = float(np.clip(along / size, 0.0, 3.0))
     gain = amplitude * along - amplitude**2 * size / 2
-    return Prospect(hypothesis, z, gain - 0.5 * float(np.dot(z, z)) + prior)
+    return Prospect(hypothesis, z, gain - 0.5 * float(np.dot(z, z)) + prior, largest)

@@ -49,23 +49,32 @@ class Found:
     log_odds: tuple[float, ...]
 
 
-def search(base: Simulator, data: Data, candidates: Sequence[Hypothesis], progress: Progress) -> Found:
+def search(
+    start: Problem,
+    base: Simulator,
+    candidates: Sequence[Hypothesis],
+    prospects: Sequence[Prospect],
+    progress: Progress,
+) -> Found:
     """Find the causes that the record names.
 
     Args:
-        base: the simulation as it was given.
-        data: readings and belief of the contexts.
+        start: the record about the simulation as it was given.
+        base: that simulation.
         candidates: all hypotheses.
+        prospects: of these, from a screening of `start`.
         progress: told what is done and which share of it.
     """
-    problem = settled(base, data)
-    current = fit(problem, base, [], [])
+    problem, current = start, fit(start, base, [], [])
     for number in range(MOST_CAUSES):
-        stage = f"looking for cause {number + 1}"
-        simulator = current.simulator(base)
-        prospects = screen(
-            problem, simulator, _others(candidates, current), progress=lambda x, s=stage: progress(s, x)
-        )
+        if number:
+            stage = f"looking for cause {number + 1}"
+            prospects = screen(
+                problem,
+                current.simulator(base),
+                _others(candidates, current),
+                progress=lambda x, s=stage: progress(s, x),
+            )
         best = _best(problem, base, current, prospects)
         if best is None or best.log_evidence - current.log_evidence < NAMED:
             break
@@ -73,6 +82,15 @@ def search(base: Simulator, data: Data, candidates: Sequence[Hypothesis], progre
         problem, current = _settled_with(base, problem, best)
         problem, current = _swapped(base, problem, current, candidates, progress)
         problem, current = _pruned(base, problem, current)
+    return weighed(problem, base, current, candidates, progress)
+
+
+def weighed(
+    problem: Problem, base: Simulator, current: Fit, candidates: Sequence[Hypothesis], progress: Progress
+) -> Found:
+    """Causes weighed against leaving each out, and against what could stand in its place."""
+    current = fit(problem, base, current.hypotheses, current.z)
+    problem, current = _pruned(base, problem, current)
     alternatives, odds = [], []
     for number in range(len(current.hypotheses)):
         progress("weighing rivals", number / len(current.hypotheses))
@@ -175,7 +193,7 @@ def _swapped(
 
 def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, Fit]:
     """Take out causes that the others have made needless."""
-    while len(current.hypotheses) > 1:
+    while current.hypotheses:
         fits = [_without(problem, base, current, k) for k in range(len(current.hypotheses))]
         best = max(fits, key=lambda one: one.log_evidence)
         if current.log_evidence - best.log_evidence >= NAMED:

@@ -1,9 +1,10 @@
 """The bridge drawn, with what each sensor measures against what was simulated."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -12,58 +13,116 @@ from rga.diagnosis.account import Account
 from rga.diagnosis.findings import Findings
 from rga.model.parameter import FloatArray
 from rga.report.deviation import percent_off
+from rga.report.labels import Label, marker_offset, marker_row, place_labels
 from rga.report.places import Named, Spot, named_parts, spots
 from rga.report.projection import View, views
 from rga.report.quantities import percent
 from rga.report.svg import INK, MARKED, STEEL, inline, label, style
 
 WIDTH = 10.0  # inches; the page shows it about as wide as its text
+TITLE, KEY = 0.4, 0.75
 COLOURS = LinearSegmentedColormap.from_list(
     "off", ["#08519c", "#4a90c9", "#c4c9ce", "#e8853a", "#a63603"]
 )
 MARKERS = {"displacement": "o", "rotation": "D", "strain": "s", "force": "s", "reaction": "^"}
 
 
+@dataclass(frozen=True)
+class Layout:
+    """A view made ready: what stands where, at which scale.
+
+    Attributes:
+        unit: metres in an inch.
+        box: left, bottom, right, top of the drawing with its labels [inch].
+    """
+
+    view: View
+    here: list[Spot]
+    labels: list[Label | None]
+    unit: float
+    box: tuple[float, float, float, float]
+
+
 def draw_bridge(findings: Findings) -> Markup:
     """Every view of the bridge before and after the extension."""
     account = findings.account
-    model = account.model
-    marked = named_parts((c.effect for c in findings.causes), model)
-    drawn = views(model, set(marked.members))
+    marked = named_parts((c.effect for c in findings.causes), account.model)
+    drawn = views(account.model, set(marked.members))
     off = {
         "before": percent_off(account, account.before),
         "after": percent_off(account, account.after),
     }
     norm = Normalize(-_range(off), _range(off))
+    beside = max(_ratio(account, view) for view in drawn) > 0.28
+    columns = 2 if beside else 1
+    room = (WIDTH - 0.5 * columns) / columns
+    layouts = _layouts(account, drawn, room)
+    heights = [one.box[3] - one.box[1] + TITLE for one in layouts for _ in range(3 - columns)]
+    high = sum(heights) + KEY
     with style():
-        shape = max(_ratio(account, view) for view in drawn)
-        beside = shape > 0.4
-        columns = 2 if beside else 1
-        rows = len(drawn) * (1 if beside else 2)
-        room = (WIDTH - 0.4 - 0.3 * (columns - 1)) / columns
-        heights = [room * min(_ratio(account, view), 1.2) + 1.05 for view in drawn]
-        heights = heights if beside else [h for h in heights for _ in range(2)]
-        foot = 0.75
-        figure = Figure(figsize=(WIDTH, sum(heights) + foot))
-        cells = figure.add_gridspec(
-            rows + 1, columns, height_ratios=[*heights, foot], left=0.02, right=0.98, top=0.995,
-            bottom=0.005, hspace=0.0, wspace=0.04,
-        )  # fmt: skip
-        taken: set[int] = set()
-        for number, view in enumerate(drawn):
-            here = {
-                column: name
-                for column, name in enumerate(account.record.sensors)
-                if column not in taken and name in model.sensors and view.holds(model.sensors[name])
-            }
-            taken |= set(here)
-            for turn, when in enumerate(("before", "after")):
-                cell = cells[number, turn] if beside else cells[2 * number + turn, 0]
-                axes = figure.add_subplot(cell)
-                _view(axes, view, account, marked, here, off[when], norm, room)
-                axes.set_title(f"{when.capitalize()} · {view.title}", fontsize=9, pad=2)
-        _key(figure, cells[rows, :], norm, marked, bool(account.rejected.any()))
-        return inline(figure, "bridge", _words(findings, off))
+        figure = Figure(figsize=(WIDTH, high))
+        top, turn = high, 0
+        for one in layouts:
+            for side, when in enumerate(("before", "after")):
+                left = 0.25 + side * beside * (room + 0.5)
+                tall = heights[turn] - TITLE
+                wide = one.box[2] - one.box[0]
+                rest = (room - wide) / 2
+                frame = (
+                    (left + rest) / WIDTH,
+                    (top - TITLE - tall) / high,
+                    wide / WIDTH,
+                    tall / high,
+                )
+                axes = figure.add_axes(frame)
+                _view(axes, one, account, marked, off[when], norm)
+                where = (left / WIDTH, (top - 0.12) / high)
+                said = f"{when.capitalize()} \N{MIDDLE DOT} {one.view.title}"
+                figure.text(*where, said, fontsize=9, va="top", weight="bold")
+                if not beside or side:
+                    top -= heights[turn]
+                    turn += 1
+        _key(figure, KEY / high, norm, marked, bool(account.rejected.any()))
+        return inline(figure, "bridge", _words(off))
+
+
+def _layouts(account: Account, drawn: list[View], room: float) -> list[Layout]:
+    model, record = account.model, account.record
+    taken: set[int] = set()
+    found = []
+    for view in drawn:
+        sensors = {
+            column: name
+            for column, name in enumerate(record.sensors)
+            if column not in taken and name in model.sensors and view.holds(model.sensors[name])
+        }
+        taken |= set(sensors)
+        points = _points(account, view)
+        low, high = points.min(axis=0), points.max(axis=0)
+        unit = max(high[0] - low[0], (high[1] - low[1]) / 1.2, 1e-9) / (room - 0.9)
+        here = spots(model, view, sensors)
+
+        def text(spot: Spot, names: bool) -> list[str]:
+            return _lines(spot, account, None, names)
+
+        right, up = view.axes
+        feet = [model.nodes[s.node] for s in model.supports.values() if s.node in view.nodes]
+        labels = place_labels(here, unit, text, [(foot[right], foot[up]) for foot in feet])
+        boxes = np.array(
+            [label.box for label in labels if label is not None]
+            + [
+                (
+                    low[0] / unit - 0.3,
+                    low[1] / unit - 0.3,
+                    high[0] / unit + 0.3,
+                    high[1] / unit + 0.15,
+                )
+            ]
+        )
+        edges = (*boxes[:, :2].min(axis=0), *boxes[:, 2:].max(axis=0))
+        box = (float(edges[0]), float(edges[1]) - 0.05, float(edges[2]), float(edges[3]) + 0.05)
+        found.append(Layout(view, here, labels, unit, box))
+    return found
 
 
 def _range(off: dict[str, FloatArray]) -> float:
@@ -83,19 +142,13 @@ def _ratio(account: Account, view: View) -> float:
 
 
 def _view(
-    axes: Axes, view: View, account: Account, marked: Named, sensors: dict[int, str],
-    off: FloatArray, norm: Normalize, room: float,
-) -> None:  # fmt: skip
-    model = account.model
-    points = _points(account, view)
-    low, high = points.min(axis=0), points.max(axis=0)
-    unit = max(high[0] - low[0], 0.5 * (high[1] - low[1]), 1e-9) / (room - 0.9)  # metres in an inch
+    axes: Axes, one: Layout, account: Account, marked: Named, off: FloatArray, norm: Normalize
+) -> None:
+    model, view, unit = account.model, one.view, one.unit
     axes.set_axis_off()
-    axes.set_aspect("equal", adjustable="box", anchor="N")
-    axes.set_xlim(low[0] - 0.45 * unit, high[0] + 0.45 * unit)
-    axes.set_ylim(low[1] - 0.62 * unit, high[1] + 0.32 * unit)
-    here = spots(model, view, sensors)
-    values = {spot.member: _mean(off[spot.sensors]) for spot in here if spot.member is not None}
+    axes.set_xlim(one.box[0] * unit, one.box[2] * unit)
+    axes.set_ylim(one.box[1] * unit, one.box[3] * unit)
+    values = {spot.member: _mean(off[spot.sensors]) for spot in one.here if spot.member is not None}
     for name in view.members:
         ends = [model.nodes[node] for node in model.members[name].nodes]
         x, y = ([end[axis] for end in ends] for axis in view.axes)
@@ -106,9 +159,8 @@ def _view(
         look = (COLOURS(norm(value)), 3.4, 3) if gauge else (STEEL, 0.9, 2)
         axes.plot(x, y, color=look[0], linewidth=look[1], zorder=look[2])
     _supports(axes, view, account, marked, unit)
-    say = _saying(here, account, off, unit)
-    for spot in here:
-        _spot(axes, spot, account, off, norm, unit, say)
+    for spot, label_ in zip(one.here, one.labels, strict=True):
+        _spot(axes, one, spot, label_, account, off, norm)
 
 
 def _mean(values: FloatArray) -> float:
@@ -130,83 +182,68 @@ def _supports(axes: Axes, view: View, account: Account, marked: Named, unit: flo
         axes.plot(x, y - 0.075 * unit, shape, markersize=7, mfc="white", mec=INK, mew=0.9, zorder=4)
 
 
-def _saying(here: list[Spot], account: Account, off: FloatArray, unit: float) -> str:
-    """How much a label may say: "all", "percent" or "" where labels would overlap."""
-    for say in ("all", "percent"):
-        wide = [
-            max(len(line) for line in _lines(spot, account, off, say)) * 0.066 * unit
-            for spot in here
-        ]
-        clash = any(
-            abs(a.x - b.x) < (wide[i] + wide[j]) / 2 and abs(a.y - b.y) < 0.3 * unit
-            for i, a in enumerate(here)
-            for j, b in enumerate(here[:i])
-            if (a.side, a.tier) == (b.side, b.tier)
-        )
-        if not clash:
-            return say
-    return ""
-
-
-def _lines(spot: Spot, account: Account, off: FloatArray, say: str) -> list[str]:
+def _lines(spot: Spot, account: Account, off: FloatArray | None, names: bool) -> list[str]:
+    """Text of a label; without values, so much text as it takes at most."""
     lines = []
     for column in spot.sensors:
         name = label(account.record.sensors[column], 14)
-        value = "rejected" if account.rejected[column] else percent(float(off[column]))
-        short = len(spot.sensors) == 1 and spot.side != "right"
-        lines += ([name, value] if short else [f"{name} {value}"]) if say == "all" else [value]
+        value = "+100 %" if off is None else percent(float(off[column]))
+        if account.rejected[column]:
+            value = "rejected"
+        one_line = len(spot.sensors) > 1 or spot.side == "right"
+        lines += ([f"{name} {value}"] if one_line else [name, value]) if names else [value]
     return lines
 
 
 def _spot(
-    axes: Axes,
-    spot: Spot,
-    account: Account,
-    off: FloatArray,
+    axes: Axes, one: Layout, spot: Spot, place: Label | None, account: Account, off: FloatArray,
     norm: Normalize,
-    unit: float,
-    say: str,
-) -> None:
-    down = {"below": -1.0, "above": 1.0, "right": 0.0}[spot.side]
-    y = spot.y + down * (0.0 if spot.tier == 1 else 0.2) * unit
-    step = 0.11 * unit
-    first = spot.x - step * (len(spot.sensors) - 1) / 2
-    for place, column in enumerate(spot.sensors):
-        kind = account.model.sensors[account.record.sensors[column]].kind
-        x = first + step * place
+) -> None:  # fmt: skip
+    unit = one.unit
+    y = spot.y + marker_offset(spot) * unit
+    for number, column in enumerate(spot.sensors):
+        sensor = account.model.sensors[account.record.sensors[column]]
+        x = spot.x + (0.11 * number - marker_row(spot)) * unit
         if account.rejected[column]:
             axes.plot(x, y, "x", color=INK, markersize=6.5, mew=1.6, zorder=6)
             continue
-        value = off[column]
-        face = COLOURS(norm(value)) if np.isfinite(value) else "white"
-        axes.plot(x, y, MARKERS[kind], mfc=face, mec=INK, mew=0.6, markersize=6.2, zorder=5)
-    if say:
-        text = "\n".join(_lines(spot, account, off, say))
-        side = {
-            "below": ("center", "top"),
-            "above": ("center", "bottom"),
-            "right": ("left", "center"),
-        }
-        horizontal, vertical = side[spot.side]
-        last = first + step * (len(spot.sensors) - 1) + 0.08 * unit
-        axes.text(
-            last if spot.side == "right" else spot.x,
-            y + down * 0.08 * unit,
-            text,
-            fontsize=6.6,
-            ha=horizontal,
-            va=vertical,
-            zorder=7,
-            linespacing=1.05,
-            bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.4},
-        )
+        if sensor.direction is not None and sensor.kind != "rotation":
+            towards = np.array(sensor.direction)[list(one.view.axes)] / np.linalg.norm(
+                sensor.direction
+            )
+            dx, dy = 0.11 * unit * towards
+            axes.plot([x - dx, x + dx], [y - dy, y + dy], color=INK, lw=0.9, zorder=4)
+        face = COLOURS(norm(off[column])) if np.isfinite(off[column]) else "white"
+        axes.plot(x, y, MARKERS[sensor.kind], mfc=face, mec=INK, mew=0.6, markersize=6.2, zorder=5)
+    if place is None:
+        return
+    sides = {"below": ("center", "top"), "above": ("center", "bottom"), "right": ("left", "center")}
+    horizontal, vertical = sides[spot.side]
+    to = spot.x + place.x * unit, spot.y + place.y * unit
+    if place.far:
+        axes.plot([spot.x, to[0]], [y, to[1]], color=STEEL, lw=0.5, zorder=3)
+    axes.text(
+        *to,
+        "\n".join(_lines(spot, account, off, place.names)),
+        fontsize=6.6,
+        ha=horizontal,
+        va=vertical,
+        zorder=7,
+        linespacing=1.05,
+        bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.4},
+    )
 
 
-def _key(figure: Figure, cell: object, norm: Normalize, marked: Named, rejected: bool) -> None:
-    holder = figure.add_subplot(cell)  # type: ignore[call-overload]
+def _key(figure: Figure, share: float, norm: Normalize, marked: Named, rejected: bool) -> None:
+    holder = figure.add_axes((0.02, 0.0, 0.96, share))
     holder.set_axis_off()
     bar = holder.inset_axes((0.02, 0.55, 0.34, 0.16))
-    figure.colorbar(ScalarMappable(norm, COLOURS), cax=bar, orientation="horizontal", extend="both")
+    # Painted step by step: matplotlib's own colour bar would be a bitmap.
+    steps = np.linspace(-1, 1, 41) * float(norm.vmax or 1.0)
+    middle = (steps[:-1] + steps[1:]) / 2
+    bar.bar(middle, 1.0, np.diff(steps) * 1.02, color=COLOURS(norm(middle)), linewidth=0)
+    bar.set(xlim=(steps[0], steps[-1]), ylim=(0, 1), yticks=[])
+    bar.spines["left"].set_visible(False)
     bar.set_xlabel("measured over simulated, percent off  (grey: they agree)", fontsize=7.5)
     shapes = [
         Line2D([], [], ls="", marker="o", mfc="white", mec=INK, label="displacement"),
@@ -223,7 +260,7 @@ def _key(figure: Figure, cell: object, norm: Normalize, marked: Named, rejected:
     holder.legend(handles=shapes, loc="center right", ncols=len(shapes), handlelength=1.6)
 
 
-def _words(findings: Findings, off: dict[str, FloatArray]) -> str:
+def _words(off: dict[str, FloatArray]) -> str:
     parts = []
     for when, values in off.items():
         seen = np.abs(values[np.isfinite(values)])

@@ -7,7 +7,7 @@ from rga.diagnosis.findings import Cause
 from rga.model.effect import Effect
 from rga.model.schema import Model
 from rga.report.places import place_names
-from rga.report.quantities import DASH, number, quantity
+from rga.report.quantities import DASH, number, quantity, short
 
 #: keys of an effect that are neither place nor parameter
 OTHER = {"kind", "onset", "end", "profile", "mode"}
@@ -119,13 +119,13 @@ def onset(cause: Cause) -> str:
     said = f"from {moment(cause.onset)}"
     if cause.onset_ci90 is not None:
         first, last = cause.onset_ci90
-        said += f" (90 % interval {moment(first)} to {moment(last)})"
+        said += f" (90\u00a0% interval {moment(first)} to {moment(last)})"
     return said
 
 
 def moment(time: float | str) -> str:
     """A time as the record writes it."""
-    return time.replace("T", " ") if isinstance(time, str) else f"{number(time, 6)}\u00a0s"
+    return time.replace("T", " ") if isinstance(time, str) else f"{short(time, 6)}\u00a0s"
 
 
 def generic(value: Any, unit: str = "-") -> str:

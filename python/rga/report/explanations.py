@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from rga.diagnosis.findings import Explanation, Findings
 from rga.report.gain import dumbbells
 from rga.report.places import place_names
-from rga.report.svg import AFTER, BEFORE, inline, style
+from rga.report.svg import INK, STEEL, inline, style
 
 
 def draw_explanations(findings: Findings) -> Markup | None:
@@ -24,12 +24,10 @@ def draw_explanations(findings: Findings) -> Markup | None:
         figure = Figure(figsize=(10.0, high))
         axes = figure.add_axes((0.07, 0.42 / high, 0.9, (high - 0.75) / high))
         values = np.array([[unseen, one.gap] for _, one, unseen in tried])
-        dumbbells(axes, values, [f"No. {number}" for number, *_ in tried], findings.gap.noise_floor)
-        axes.plot(
-            [], [], "^", color=BEFORE, markersize=4.6, label="on channels left out of the fit"
-        )
-        axes.plot([], [], "o", color=AFTER, markersize=4.6, label="on the channels fitted")
-        axes.set_xlabel("gap [-]   (dashed: noise)")
+        names = [f"No. {number}" for number, *_ in tried]
+        dumbbells(axes, values, names, findings.gap.noise_floor, (INK, STEEL))
+        axes.plot([], [], "^", color=INK, markersize=4.6, label="on channels left out of the fit")
+        axes.plot([], [], "o", color=STEEL, markersize=4.6, label="on the channels fitted")
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=2)
         return inline(figure, "explanations", "Gap of each explanation where fitted and where not.")
 

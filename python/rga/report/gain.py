@@ -7,13 +7,14 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from rga.diagnosis.account import Account
 from rga.diagnosis.findings import Findings
 from rga.model.parameter import FloatArray
 from rga.report.deviation import runs, squares
-from rga.report.quantities import DASH, duration, number
+from rga.report.quantities import DASH, duration, number, short
 from rga.report.svg import AFTER, BEFORE, FAINT, INK, STEEL, grid, inline, label, style
 
 T = TypeVar("T")
@@ -28,19 +29,29 @@ def draw_gain(findings: Findings) -> Markup | None:
     if not split and not gaps:
         return None
     with style():
-        figure = Figure(figsize=(10.0, max(2.9, 0.165 * len(gaps) + 1.1)))
-        high = figure.get_figheight()
+        high = max(0.165 * max(len(gaps), len(split)) + 1.2, 1.9)
+        figure = Figure(figsize=(10.0, high))
         cells = figure.add_gridspec(
-            1, 2, left=0.07, right=0.985, top=1 - 0.35 / high, bottom=0.5 / high, wspace=0.33
+            1, 2, left=0.13, right=0.985, top=1 - 0.62 / high, bottom=0.47 / high, wspace=0.3
         )
         if split:
-            _blocks(figure.add_subplot(cells[0]), account, split, findings.gap.noise_floor)
+            axes = figure.add_subplot(cells[0])
+            _blocks(axes, account, split, findings.gap.noise_floor)
+            axes.set_title("By block of rows that no step saw")
         if gaps:
             axes = figure.add_subplot(cells[1])
             values = np.array([[gap.before, gap.after] for _, gap in gaps])
-            dumbbells(axes, values, [label(name, 18) for name, _ in gaps], findings.gap.noise_floor)
+            names = [label(name, 18) for name, _ in gaps]
+            dumbbells(axes, values, names, findings.gap.noise_floor)
             axes.set_title("By sensor, all rows")
-            axes.set_xlabel("gap [-]")
+        figure.legend(
+            handles=[
+                Line2D([], [], ls="", marker="^", markersize=5, color=BEFORE, label="before"),
+                Line2D([], [], ls="", marker="o", markersize=5, color=AFTER, label="after"),
+            ],
+            loc="upper center",
+            ncols=2,
+        )
         held = findings.gap.held_out
         words = f"Gap on held-out rows: {number(held.before)} before, {number(held.after)} after."
         return inline(figure, "gain", words)
@@ -69,52 +80,37 @@ def _parts(items: list[T], count: int) -> list[list[T]]:
 
 def _blocks(axes: Axes, account: Account, split: list[tuple[int, int]], floor: float) -> None:
     both = [squares(account, simulated) for simulated in (account.before, account.after)]
-    values = np.array(
-        [[_mean(s[a : b + 1][account.held_out[a : b + 1]]) for s in both] for a, b in split]
-    )
+    held = account.held_out
+    values = np.array([[_mean(s[a : b + 1][held[a : b + 1]]) for s in both] for a, b in split])
     time = account.record.time - account.record.time[0]
     length, unit = duration(float(time[-1]))
     factor = length / float(time[-1]) if time[-1] > 0 else 1.0
-    place = np.arange(len(split))
-    bottom = _least(values, floor)
-    axes.set_yscale("log")
-    for turn, (colour, name) in enumerate(((BEFORE, "before"), (AFTER, "after"))):
-        high = np.maximum(values[:, turn], bottom) - bottom
-        axes.bar(place + 0.38 * (turn - 0.5), high, 0.34, bottom=bottom, color=colour, label=name)
-    axes.axhline(floor, color=INK, lw=0.8, dashes=(3, 2))
-    axes.text(len(split) - 0.45, floor, " noise", fontsize=7, va="bottom", ha="right", color=INK)
-    axes.set_xticks(place, [_tick(factor * time[a], factor * time[b]) for a, b in split])
-    if len(split) > 4:
-        for text in axes.get_xticklabels():
-            text.set(rotation=30, ha="right", rotation_mode="anchor")
-    axes.tick_params(axis="x", labelsize=6.8, length=0)
-    _plain(axes, "y", bottom, values)
-    grid(axes, "y")
-    axes.set_title("By block of rows that no step saw")
-    axes.set_ylabel("gap [-]")
-    axes.set_xlabel(f"rows, from {DASH} to [{unit}]")
-    axes.legend(loc="upper right", ncols=2, bbox_to_anchor=(1.0, 1.16), handlelength=1.0)
+    names = [f"{short(factor * time[a])} {DASH} {short(factor * time[b])} {unit}" for a, b in split]
+    dumbbells(axes, values, names, floor)
 
 
-def dumbbells(axes: Axes, values: FloatArray, names: list[str], floor: float) -> None:
-    """Pairs of values [rows, before/after] on a logarithmic axis, the first on top."""
+def dumbbells(
+    axes: Axes,
+    values: FloatArray,
+    names: list[str],
+    floor: float,
+    colours: tuple[str, str] = (BEFORE, AFTER),
+) -> None:
+    """Pairs of values, float[rows, 2], on a logarithmic axis; the first row on top."""
     place = np.arange(len(names))[::-1]
     bottom = _least(values, floor)
     shown = np.maximum(values, bottom)
     axes.set_xscale("log")
     axes.hlines(place, shown[:, 0], shown[:, 1], color=FAINT, lw=2.2)
-    axes.plot(shown[:, 0], place, "^", color=BEFORE, markersize=4.6)
-    axes.plot(shown[:, 1], place, "o", color=AFTER, markersize=4.6)
+    axes.plot(shown[:, 0], place, "^", color=colours[0], markersize=4.6)
+    axes.plot(shown[:, 1], place, "o", color=colours[1], markersize=4.6)
     axes.axvline(floor, color=INK, lw=0.8, dashes=(3, 2), zorder=0)
     axes.set_yticks(place, names, fontsize=7)
     axes.set_ylim(-0.7, len(names) - 0.3)
     axes.tick_params(axis="y", length=0, colors=STEEL, labelcolor=INK)
-    _plain(axes, "x", bottom, values)
+    axes.set_xlabel("gap [-]   (dashed: noise alone)")
+    _logarithmic(axes, bottom, values)
     grid(axes, "x")
-
-
-def _tick(first: float, last: float) -> str:
-    return f"{number(first)}{DASH}{number(last)}"
 
 
 def _mean(values: FloatArray) -> float:
@@ -128,18 +124,16 @@ def _least(values: FloatArray, floor: float) -> float:
     return 0.6 * float(min([floor or 1.0, *np.maximum(seen, 1e-3 * (floor or 1.0))]))
 
 
-def _plain(axes: Axes, which: str, bottom: float, values: FloatArray) -> None:
+def _logarithmic(axes: Axes, bottom: float, values: FloatArray) -> None:
     # The usual labels of a logarithmic axis are mathtext, which is off for the sake of odd names.
-    seen = values[np.isfinite(values)]
-    top = 1.5 * max([4 * bottom, *seen])
-    axis = axes.xaxis if which == "x" else axes.yaxis
-    (axes.set_xlim if which == "x" else axes.set_ylim)(bottom, top)
-    axis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+    top = 1.5 * max([4 * bottom, *values[np.isfinite(values)]])
+    axes.set_xlim(bottom, top)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
     # Less than two decades have too few powers of ten to read from.
     few = top / bottom < 100
-    axis.set_minor_formatter(FuncFormatter(_minor) if few else NullFormatter())
-    axis.set_tick_params(which="minor", labelsize=7)
+    axes.xaxis.set_minor_formatter(FuncFormatter(_minor) if few else NullFormatter())
+    axes.xaxis.set_tick_params(which="minor", labelsize=7)
 
 
 def _minor(value: float, _: object) -> str:
-    return number(value) if f"{value:.0e}"[0] in "25" else ""
+    return short(value) if f"{value:.0e}"[0] in "25" else ""

@@ -1,5 +1,6 @@
 """What stands on the page, made ready for the template."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from rga.report.cards import card, generic, moment, plain
 from rga.report.deviation import percent_off, runs
 from rga.report.explanations import draw_explanations, kept, ranked
 from rga.report.gain import draw_gain
-from rga.report.quantities import DASH, duration, number, percent
+from rga.report.quantities import DASH, duration, number, percent, short
 from rga.report.series import draw_series
 from rga.report.svg import FONTS
 
@@ -34,12 +35,17 @@ def page(findings: Findings) -> dict[str, Any]:
     effects = [cause for cause in findings.causes if cause.effect.get("kind") != "sensor_fault"]
     best = kept(findings)
     series = draw_series(findings)
+    # The first sentence is the headline; what follows is read below it, and the gain only once.
+    headline, *rest = re.split(r"(?<=\.) (?=[A-Z])", findings.sentence())
+    if not any("no step saw" in sentence for sentence in rest):
+        rest.insert(0, gain(findings))
     return {
         "fonts": FONTS,
         "model_name": model.name,
         "verdict": VERDICTS[findings.verdict],
         "verdict_key": findings.verdict,
-        "sentence": findings.sentence(),
+        "headline": headline,
+        "rest": " ".join(rest),
         "period": period(findings),
         "gain": gain(findings),
         "warnings": list(dict.fromkeys([*findings.warnings, *record.warnings])),
@@ -47,8 +53,8 @@ def page(findings: Findings) -> dict[str, Any]:
             card(
                 cause,
                 model,
-                effect_words(cause.effect, model),
-                [effect_words(rival, model) for rival in cause.rivals],
+                effect_words(cause.effect),
+                [effect_words(rival) for rival in cause.rivals],
             )
             for cause in effects
         ],
@@ -110,8 +116,8 @@ def period(findings: Findings) -> str:
     pieces = len(runs(account.held_out))
     held = f"{int(account.held_out.sum())} of them held out in {pieces} block"
     return (
-        f"{first} to {last} ({number(length)} {unit}), {len(record)} rows every "
-        f"{number(step)} {step_unit}, {held}{'s' if pieces != 1 else ''}"
+        f"{first} to {last} ({short(length)} {unit}), {len(record)} rows every "
+        f"{short(step)} {step_unit}, {held}{'s' if pieces != 1 else ''}"
     )
 
 
@@ -119,14 +125,15 @@ def gain(findings: Findings) -> str:
     """The gain on held-out rows in one line."""
     held = findings.gap.held_out
     low, high = held.gain_ci90
+    went = "fell" if held.after <= held.before else "rose"
     said = "On rows that no step saw the gap "
     if not findings.causes:
         return (
-            f"{said}is {number(held.before)}; noise alone gives {number(findings.gap.noise_floor)}."
+            f"{said}is {number(held.before)}; noise alone gives {short(findings.gap.noise_floor)}."
         )
     return (
-        f"{said}fell from {number(held.before)} to {number(held.after)}; noise alone gives "
-        f"{number(findings.gap.noise_floor)}. Gain {number(held.gain)}, 90 % interval "
+        f"{said}{went} from {number(held.before)} to {number(held.after)}; noise alone gives "
+        f"{short(findings.gap.noise_floor)}. Gain {number(held.gain)}, 90\u00a0% interval "
         f"{number(low)} to {number(high)}."
     )
 

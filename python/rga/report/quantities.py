@@ -24,7 +24,7 @@ SCALES: dict[str, list[tuple[float, float, str]]] = {
     "-": [(0, 1, "")],
 }
 PRETTY = {"degC": "°C", "m3": "m³", "m4": "m⁴", "kg/m3": "kg/m³"}
-NARROW, DASH, MINUS = "\u202f", "\u2013", "\u2212"
+NARROW, DASH, MINUS, MIDDLE_DOT = "\u202f", "\u2013", "\u2212", "\u00b7"
 SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -43,6 +43,16 @@ def number(value: float, digits: int = 3) -> str:
         mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".rstrip("0").rstrip(".")
         return f"{mantissa}·10{str(exponent).translate(SUPERSCRIPT)}".replace("-", MINUS)
     return fixed(value, max(digits - 1 - exponent, 0))
+
+
+def short(value: float, digits: int = 3) -> str:
+    """A number without trailing zeros, as on an axis.
+
+    >>> short(10.0), short(0.004), short(12.34567)
+    ('10', '0.004', '12.3')
+    """
+    text = number(value, digits)
+    return text.rstrip("0").rstrip(".") if "." in text and MIDDLE_DOT not in text else text
 
 
 def fixed(value: float, decimals: int, sign: bool = False) -> str:

@@ -16,7 +16,7 @@ from rga.report.svg import AFTER, BEFORE, FAINT, MEASURED, grid, inline, label, 
 
 COLUMNS = 3
 MOST_IMPROVED, WORST_LEFT = 8, 4
-MOST_POINTS = 500
+MOST_POINTS, MOST_DOTS = 500, 240
 
 
 def draw_series(findings: Findings) -> tuple[Markup, bool] | None:
@@ -117,7 +117,7 @@ def _over_time(axes: Axes, account: Account, column: int) -> None:
             axes.axvspan(time[first] - half, time[last] + half, color=FAINT, alpha=0.45, lw=0)
     few = len(time) <= 400
     measured = account.record.readings[:, column] * factor
-    look = {"lw": 0, "marker": ".", "markersize": 2.6} if few else {"lw": 0.8}
+    look = {"lw": 0, "marker": ".", "markersize": 2.6} if few else {"lw": 2.2, "alpha": 0.4}
     axes.plot(*_thin(time, measured), color=MEASURED, **look)
     axes.plot(
         *_thin(time, account.before[:, column] * factor), color=BEFORE, lw=0.9, dashes=(4, 1.6)
@@ -132,7 +132,7 @@ def _over_time(axes: Axes, account: Account, column: int) -> None:
 def _against(axes: Axes, account: Account, column: int) -> None:
     factor, unit = _unit(account, column)
     measured = account.record.readings[:, column] * factor
-    thin = slice(None, None, max(1, len(measured) // MOST_POINTS))
+    thin = np.linspace(0, len(measured) - 1, min(len(measured), MOST_DOTS)).round().astype(int)
     every = [account.before[:, column] * factor, account.after[:, column] * factor, measured]
     finite = np.concatenate([values[np.isfinite(values)] for values in every])
     low, high = float(finite.min()), float(finite.max())
@@ -155,15 +155,9 @@ def _against(axes: Axes, account: Account, column: int) -> None:
 def _key(account: Account, smooth: bool) -> list[Line2D | Patch]:
     if smooth:
         few = len(account.record) <= 400
+        look = {"lw": 0, "marker": "."} if few else {"lw": 2.2, "alpha": 0.4}
         return [
-            Line2D(
-                [],
-                [],
-                color=MEASURED,
-                lw=0 if few else 1,
-                marker="." if few else "",
-                label="measured",
-            ),
+            Line2D([], [], color=MEASURED, label="measured", **look),
             Line2D([], [], color=BEFORE, lw=1, dashes=(4, 1.6), label="simulated before"),
             Line2D([], [], color=AFTER, lw=1.2, label="simulated after"),
             Patch(color=FAINT, alpha=0.6, label="rows that no step saw"),

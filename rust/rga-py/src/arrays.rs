@@ -53,10 +53,9 @@ impl<'py, T: Named> Held<'py, T> {
         let array = array
             .try_readonly()
             .map_err(|_| InvalidInput::new_err(format!("{name} is being written to")))?;
-        let copy = match array.as_slice() {
-            Ok(_) => None,
-            Err(_) => Some(array.as_array().iter().copied().collect()),
-        };
+        // `as_slice` alone takes Fortran order too.
+        let in_order = array.is_c_contiguous();
+        let copy = (!in_order).then(|| array.as_array().iter().copied().collect());
         Ok(Self { array, copy })
     }
 

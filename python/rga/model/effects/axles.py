@@ -63,8 +63,9 @@ class AxleLoad(Effect):
         segment = np.clip(np.searchsorted(stations, stands, side="right") - 1, 0, len(stations) - 2)
         ratio = (stands - stations[segment]) / np.diff(stations)[segment]
         force = np.where(on_path, np.array(self.forces), 0.0)
-        shares = np.zeros((len(position), len(stations)))
-        rows = np.broadcast_to(np.arange(len(position))[:, None], stands.shape)
-        np.add.at(shares, (rows, segment), force * (1 - ratio))
-        np.add.at(shares, (rows, segment + 1), force * ratio)
-        return shares
+        nodes = len(stations)
+        first = segment + nodes * np.arange(len(position))[:, None]
+        cells = np.concatenate([first.ravel(), first.ravel() + 1])
+        weights = np.concatenate([(force * (1 - ratio)).ravel(), (force * ratio).ravel()])
+        shares = np.bincount(cells, weights, minlength=nodes * len(position))
+        return shares.reshape(len(position), nodes)

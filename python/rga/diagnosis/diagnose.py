@@ -1,0 +1,177 @@
+"""The diagnosis: a model and a record in, findings out."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from rga.diagnosis import leftover
+from rga.diagnosis.account import Account
+from rga.diagnosis.channels import Fault
+from rga.diagnosis.data import Data
+from rga.diagnosis.explanations import compare, sensor_groups, variance
+from rga.diagnosis.findings import Findings
+from rga.diagnosis.heldout import gain, held_out_rows
+from rga.diagnosis.hypothesis import hypotheses
+from rga.diagnosis.prepare import Prepared, prepare
+from rga.diagnosis.problem import Problem
+from rga.diagnosis.screening import screen
+from rga.diagnosis.search import Found, search, settled, weighed
+from rga.diagnosis import tell
+from rga.model.effect import Effect
+from rga.model.effects.sensors import SensorFault
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.records import Record
+from rga.simulation import Simulator
+
+#: share of the innovations' variance that makes structure worth a word
+STRUCTURE = 0.02
+Progress = Callable[[str, float], None]
+
+
+def diagnose(
+    model: Model, record: Record, *, seed: int = 0, progress: Progress | None = None
+) -> Findings:
+    """Diagnose what a model gets wrong of a record.
+
+    Args:
+        model: the structure with its effects and sensors.
+        record: measured data.
+        seed: of the bootstrap of the gain.
+        progress: told a stage and the share of it that is done.
+
+    Returns:
+        Findings with verdict, causes, gain, and what stays unexplained.
+
+    Raises:
+        InputError: the record is too short, or the model cannot be simulated.
+    """
+    tell_progress = progress or (lambda stage, done: None)
+    with threadpool_limits(1):
+        return _diagnose(model, record, seed, tell_progress)
+
+
+def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Findings:
+    prepared = prepare(model, record, lambda done: progress("reading the contexts", done))
+    held_out = held_out_rows(len(prepared.data.time))
+    data = prepared.data.rows(~held_out)
+    base = Simulator(model)
+    measured = set(record.contexts)
+    candidates = hypotheses(model, data.sensors, measured)
+    start = settled(base, data)
+    prospects = screen(start, base, candidates, progress=lambda x: progress("screening", x))
+    found = search(start, base, candidates, prospects, progress)
+    found = _confirmed(found, candidates, progress)
+    tried = compare(found, prospects, lambda done: progress("comparing explanations", done))
+
+    effects = tell.effects_of(found, prepared.record)
+    faults = {f"fault of {fault.sensor}": _fault_effect(fault) for fault in prepared.faults}
+    named = {tell.cause_name(model, effect): effect for effect in effects}
+    extended = model.extended({**named, **faults})
+    account = _account(model, extended, prepared, held_out, start, found)
+    share = leftover.share_left(found.problem)
+    structure = found.problem.factors.shape[1] > 0 and share > STRUCTURE
+    findings = Findings(
+        verdict=tell.verdict(found, bool(prepared.faults), structure),
+        gap=tell.gap(account, gain_of(account, seed)),
+        causes=[
+            *(tell.fault_cause(fault) for fault in prepared.faults),
+            *tell.causes(found, effects, prepared.record),
+        ],
+        unidentifiable=tell.unidentifiable(prospects),
+        unexplained={
+            "share": share,
+            "looks_like": leftover.in_words(found.problem, _drivers(found.problem.data, measured)),
+        },
+        explanations=tell.explanations(tried, found, prepared.record),
+        groups=tell.groups(account, sensor_groups(model, data.sensors)),
+        contexts=tell.contexts(found.problem, model),
+        warnings=prepared.warnings + tell.misfits(found, account),
+        seed=seed,
+        model_sha256=model.sha256,
+        record_sha256=record.sha256,
+        versions=tell.versions(),
+    )
+    findings._account = account
+    progress("done", 1.0)
+    return findings
+
+
+def _confirmed(found: Found, candidates: Any, progress: Progress) -> Found:
+    """The causes that stand once the structure that they leave is part of the noise.
+
+    A cause that was named only because it resembles a pattern of unknown origin falls here.
+    """
+    problem = leftover.with_leftovers(found.problem)
+    if problem is found.problem:
+        return found
+    return weighed(problem, found.base, found.fit, candidates, progress)
+
+
+def _account(
+    model: Model, extended: Model, prepared: Prepared, held_out: Any, start: Problem, found: Found
+) -> Account:
+    full = prepared.data
+    before = _everywhere(full, start.data).predict(Simulator(model))
+    whole = _everywhere(full, found.problem.data)
+    after = whole.predict(Simulator(extended))
+    record = prepared.record
+    columns = [record.sensors.index(name) for name in full.sensors]
+    rejected = np.array([name not in full.sensors for name in record.sensors])
+
+    def placed(values: FloatArray, otherwise: float = np.nan) -> FloatArray:
+        out = np.full((len(values), len(record.sensors)), otherwise)
+        out[:, columns] = values
+        return out
+
+    spread = np.sqrt(variance(found.problem))
+    noise = np.empty_like(full.readings)
+    noise[~held_out] = spread
+    noise[held_out] = np.sqrt((spread**2).mean(0))
+    sigma = np.full(len(record.sensors), np.nan)
+    sigma[columns] = found.problem.noise.sigma
+    readings = placed(np.where(full.observed, full.readings, np.nan))
+
+    return Account(
+        model=model,
+        extended=extended,
+        record=replace(record, readings=np.where(rejected, record.readings, readings)),
+        held_out=held_out,
+        rejected=rejected,
+        before=placed(before),
+        after=placed(after),
+        sigma=sigma,
+        noise=placed(noise),
+    )
+
+
+def _everywhere(full: Data, part: Data) -> Data:
+    """All rows with the latent contexts as a part of the rows tells them; lines are prolonged."""
+    changes = {}
+    for name in part.belief.lines:
+        line = np.polyfit(part.time - part.time[0], part.belief.table[name], 1)
+        changes[name] = np.polyval(line, full.time - part.time[0])
+    for name in part.belief.latent:
+        changes[name] = np.interp(full.time, part.time, part.belief.table[name])
+
+    return replace(full, belief=full.belief.with_values(changes))
+
+
+def gain_of(account: Account, seed: int) -> Any:
+    """Gain on the held-out rows."""
+    measured = account.record.readings
+    before = ((measured - account.before) / account.noise) ** 2
+    after = ((measured - account.after) / account.noise) ** 2
+    return gain(before, after, account.held_out, seed)
+
+
+def _fault_effect(fault: Fault) -> Effect:
+    return SensorFault(sensor=fault.sensor, mode=fault.mode)  # type: ignore[arg-type]
+
+
+def _drivers(data: Data, measured: set[str]) -> dict[str, FloatArray]:
+    lines = set(data.belief.lines)
+    return {name: data.belief.table[name] for name in sorted(measured | lines) if name in data.belief.table}

@@ -1,0 +1,156 @@
+"""Explanations compared: alone and together, on the channels fitted and on channels left out.
+
+Free gains on every channel fit better than most causes and explain nothing. What explains must
+also hold for channels that were not fitted: whole groups of them are left out in turn.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rga.diagnosis.covariance import Covariance, RowCovariance
+from rga.diagnosis.evidence import Fit, fit
+from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.problem import Problem
+from rga.diagnosis.screening import Prospect
+from rga.diagnosis.search import Found
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+
+KINDS = 9
+PARTNERS = 4
+STEPS = 5
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An explanation as it came out.
+
+    Attributes:
+        fit: its hypotheses with their parameters; None for a free gain on every channel.
+        gap: mean squared residual over variance on the fitted rows.
+        gap_unseen: the same on groups of channels that were left out in turn.
+    """
+
+    fit: Fit | None
+    gap: float
+    gap_unseen: float
+
+
+def sensor_groups(model: Model, sensors: Sequence[str]) -> dict[str, list[str]]:
+    """Groups of like sensors: by their own group, else by kind and the first group of the member."""
+    groups: dict[str, list[str]] = {}
+    for name in sensors:
+        sensor = model.sensors[name]
+        of = model.members[sensor.member].groups if sensor.member is not None else []
+        word = sensor.groups[0] if sensor.groups else " ".join([sensor.kind, *of[:1]])
+        groups.setdefault(word, []).append(name)
+    return groups
+
+
+def compare(
+    found: Found, prospects: Sequence[Prospect], progress: Callable[[float], None]
+) -> list[Tried]:
+    """The best of every kind alone, the causes found, and the causes with others beside them.
+
+    Args:
+        found: the search's end.
+        prospects: of the first screening, the best first.
+        progress: told the share that is done.
+    """
+    problem, base = found.problem, found.base
+    causes = found.fit
+    chosen: list[tuple[list[Hypothesis], list[float]]] = [([], [])]
+    chosen += [([p.hypothesis], list(p.z)) for p in _best_of_kinds(prospects)]
+    for number, cause in enumerate(causes.hypotheses):
+        z = causes.z[causes.slices()[number]]
+        chosen += [([cause], list(z))]
+        chosen += [
+            ([alternative.hypothesis], list(alternative.fit.z[alternative.fit.slices()[-1]]))
+            for alternative in found.alternatives[number][:PARTNERS]
+        ]
+    if causes.hypotheses:
+        chosen.append((list(causes.hypotheses), list(causes.z)))
+        taken = {one.kind for one in causes.hypotheses}
+        partners = [p for p in _best_of_kinds(prospects) if p.hypothesis.kind not in taken]
+        chosen += [
+            ([*causes.hypotheses, p.hypothesis], [*causes.z, *p.z]) for p in partners[:PARTNERS]
+        ]
+    groups = sensor_groups(base.model, problem.data.sensors)
+    hidden = {word: hiding(problem, names) for word, names in groups.items()} if len(groups) > 1 else {}
+    tried = []
+    for number, (hypotheses, z) in enumerate(_each_once(chosen)):
+        one = fit(problem, base, hypotheses, z)
+        tried.append(Tried(one, _gap(problem, one.simulated), _unseen(problem, hidden, groups, found, one)))
+        progress((number + 1) / len(chosen))
+    gained = _free_gains(problem, tried[0])
+    return [*tried, Tried(None, _gap(problem, gained), tried[0].gap_unseen)]
+
+
+def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
+    """The same problem with some channels unseen."""
+    data = problem.data.without(set(sensors))
+    old = problem.covariance
+    jacobian = np.where(data.observed[:, :, None], old.rows.context_jacobian, 0.0)
+    rows = RowCovariance(problem.noise, data.time, data.observed, jacobian)
+    scatter = np.where(data.observed[:, :, None], old.scatter, 0.0)
+    return replace(problem, data=data, covariance=Covariance(rows, scatter, old.spread))
+
+
+def variance(problem: Problem) -> FloatArray:
+    """Variance of each reading about a faultless simulation, float[rows, sensors]."""
+    known = problem.covariance.rows.context_jacobian.shape[2] - problem.factors.shape[1]
+    jacobian = problem.covariance.rows.context_jacobian[:, :, :known]
+    contexts = (jacobian**2) @ problem.noise.context_sigma[:known] ** 2
+    return np.asarray(problem.noise.sigma**2 + contexts)
+
+
+def _gap(problem: Problem, simulated: FloatArray) -> float:
+    square = problem.residual(simulated) ** 2 / variance(problem)
+    return float(square[problem.data.observed].mean())
+
+
+def _unseen(
+    problem: Problem, hidden: dict[str, Problem], groups: dict[str, list[str]], found: Found, one: Fit
+) -> float:
+    squares = []
+    for word, part in hidden.items():
+        columns = [problem.data.sensors.index(name) for name in groups[word]]
+        blind = fit(part, found.base, one.hypotheses, one.z, STEPS) if one.hypotheses else one
+        square = problem.residual(blind.simulated) ** 2 / variance(problem)
+        squares.append(square[:, columns][problem.data.observed[:, columns]])
+    return float(np.concatenate(squares).mean()) if squares else float("nan")
+
+
+def _free_gains(problem: Problem, nothing: Tried) -> FloatArray:
+    assert nothing.fit is not None  # the explanation by nothing is a fit of no hypotheses
+    simulated = nothing.fit.simulated
+    seen = problem.data.observed
+    target = np.where(seen, problem.data.readings - problem.shift, 0.0)
+    own = np.where(seen, simulated, 0.0)
+    gains = (target * own).sum(0) / np.maximum((own**2).sum(0), 1e-300)
+    return np.asarray(simulated * gains)
+
+
+def _best_of_kinds(prospects: Sequence[Prospect]) -> list[Prospect]:
+    best: dict[str, Prospect] = {}
+    for prospect in prospects:
+        if prospect.hypothesis.onset is None and np.isfinite(prospect.score):
+            best.setdefault(prospect.hypothesis.name, prospect)
+    return list(best.values())[:KINDS]
+
+
+def _each_once(
+    chosen: Sequence[tuple[list[Hypothesis], list[float]]],
+) -> list[tuple[list[Hypothesis], list[float]]]:
+    kept: list[tuple[list[Hypothesis], list[float]]] = []
+    for hypotheses, z in chosen:
+        same = any(
+            len(others) == len(hypotheses)
+            and all(a.same_place(b) and a.onset == b.onset for a, b in zip(hypotheses, others, strict=True))
+            for others, _ in kept
+        )
+        if not same:
+            kept.append((hypotheses, z))
+    return kept

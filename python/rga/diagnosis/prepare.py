@@ -1,0 +1,119 @@
+"""From a record to the data that a diagnosis works on: rows, channels, contexts."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rga.diagnosis.channels import Fault, find_faults, lone_spikes
+from rga.diagnosis.covariance import BoolArray
+from rga.diagnosis.data import Data, first_belief
+from rga.diagnosis.latent import guess_lines
+from rga.diagnosis.problem import load_basis
+from rga.errors import InputError
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.records import Record
+from rga.simulation import Simulator
+
+#: rows that are analysed at most; more are thinned evenly
+MOST_ROWS = 800
+LEAST_ROWS = 12
+ZERO_ROWS = 8
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A record made ready.
+
+    Attributes:
+        data: of all rows that are analysed.
+        record: the same rows of the record, its working and its rejected channels.
+        chosen: bool[rows of the record], the rows that are analysed.
+        faults: channels that do not work; the data leave them out.
+        warnings: in words.
+    """
+
+    data: Data
+    record: Record
+    chosen: BoolArray
+    faults: list[Fault]
+    warnings: list[str]
+
+
+def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> Prepared:
+    """Choose rows, reject channels that do not work, and guess the latent contexts.
+
+    Raises:
+        InputError: too few rows, or no channel that works.
+    """
+    if len(record.time) < LEAST_ROWS:
+        raise InputError(
+            f"the record has {len(record.time)} rows", "record", f"a diagnosis needs {LEAST_ROWS} at least"
+        )
+    simulator = Simulator(model)
+    data = _data(model, record)
+    stuck = find_faults(data.sensors, data.readings, data.observed, np.zeros(len(data.sensors)), None)
+    data = _without(data, stuck)
+    data = guess_lines(simulator, data, progress)
+    chosen = _loaded_rows(simulator, data)
+    data = data.rows(chosen)
+    basis = load_basis(simulator, data)
+    expected = data.predict(simulator).std(0)
+    broken = find_faults(data.sensors, data.readings, data.observed, expected, basis)
+    data = _without(data, broken)
+    if not data.sensors:
+        raise InputError("no channel works", "record", "look at the reasons with a smaller record")
+    spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
+    warnings = list(record.warnings)
+    if spikes.any():
+        warnings.append(f"{int(spikes.sum())} lone spikes were taken as missing readings")
+        data = replace(data, observed=data.observed & ~spikes)
+    return Prepared(data, record.rows(chosen), chosen, [*stuck, *broken], warnings)
+
+
+def _data(model: Model, record: Record) -> Data:
+    order = {name: number for number, name in enumerate(model.sensors)}
+    zero = np.zeros(0)
+    if record.zero is not None:
+        zero = record.origin + np.linspace(*record.zero, ZERO_ROWS)
+    return Data(
+        sensors=tuple(record.sensors),
+        columns=[order[name] for name in record.sensors],
+        readings=np.nan_to_num(record.readings),
+        observed=np.isfinite(record.readings),
+        belief=first_belief(model, record.origin + record.time, record.contexts),
+        zero_time=zero,
+    )
+
+
+def _without(data: Data, faults: list[Fault]) -> Data:
+    broken = {fault.sensor for fault in faults}
+    kept = [number for number, name in enumerate(data.sensors) if name not in broken]
+    return replace(
+        data,
+        sensors=tuple(data.sensors[number] for number in kept),
+        columns=[data.columns[number] for number in kept],
+        readings=data.readings[:, kept],
+        observed=data.observed[:, kept],
+    )
+
+
+def _loaded_rows(simulator: Simulator, data: Data) -> BoolArray:
+    """Rows that are analysed: without long unloaded ends, thinned evenly to a bounded number."""
+    rows = len(data.time)
+    first, last = 0, rows - 1
+    if data.belief.lines:
+        # Rows before and after a crossing say nothing of the structure; a little of them is kept.
+        acting = np.flatnonzero(_acting(simulator.load_coefficients(data.belief.table)))
+        if len(acting):
+            margin = max(2, len(acting) // 25)
+            first, last = max(0, acting[0] - margin), min(rows - 1, acting[-1] + margin)
+    step = -(-(last - first + 1) // MOST_ROWS)
+    chosen = np.zeros(rows, dtype=bool)
+    chosen[first : last + 1 : step] = True
+    return chosen
+
+
+def _acting(coefficients: FloatArray) -> BoolArray:
+    return np.asarray((np.abs(coefficients) > 0).any(1))

@@ -1,0 +1,328 @@
+"""From numbers to findings: causes, gaps, groups and contexts as they are told."""
+
+import platform
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from rga.diagnosis.account import Account
+from rga.diagnosis.advice import separating_sensor
+from rga.diagnosis.channels import Fault
+from rga.diagnosis.evidence import Fit, extended
+from rga.diagnosis.explanations import Tried
+from rga.diagnosis.findings import (
+    Cause,
+    Explanation,
+    Gap,
+    GroupGap,
+    HeldOut,
+    SensorGap,
+    Unidentifiable,
+    Verdict,
+)
+from rga.diagnosis.heldout import Gain
+from rga.diagnosis.problem import Problem
+from rga.diagnosis.screening import Prospect
+from rga.diagnosis.search import RIVAL, Alternative, Found, onset_chances
+from rga.diagnosis.words import effect_words
+from rga.model.effect import Effect
+from rga.model.parameter import Estimated, FloatArray
+from rga.model.schema import Model
+from rga.records import Record
+
+NORMAL_90 = 1.6448536269514722
+SMALLEST_D_PRIME = 3.0
+FAULT_NATS = float(np.log(1000.0))
+MISFIT = 3.0
+
+
+def effects_of(found: Found, record: Record) -> list[Effect]:
+    """The causes as effects with estimated parameters, onsets as in the record."""
+    return [_effect(found.fit, number, record) for number in range(len(found.fit.hypotheses))]
+
+
+def cause_name(model: Model, effect: Effect) -> str:
+    """A name for a cause in the extended model, new to the model."""
+    place = " ".join(str(one) for one in effect.place.values() if isinstance(one, str))
+    name = f"{effect.kind.replace('_', ' ')} {place}".strip()
+    return name if name not in model.effects else f"{name} (found)"
+
+
+def content(effect: Effect) -> dict[str, Any]:
+    """An effect as it stands in a model file."""
+    return {"kind": effect.kind, **effect.model_dump(mode="json", exclude_defaults=True)}
+
+
+def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
+    """The verdict; `partial` goes before `ambiguous` before `named`."""
+    causes = bool(found.fit.hypotheses)
+    if not causes and not faults:
+        return "unknown" if structure else "nothing_wrong"
+    if structure:
+        return "partial" if causes else "unknown"
+    return "ambiguous" if any(_rivals(found, k) for k in range(len(found.log_odds))) else "named"
+
+
+def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Cause]:
+    """The causes with their rivals and with what would tell them apart."""
+    told = []
+    for number, effect in enumerate(effects):
+        rivals = _rivals(found, number)
+        nearest = (found.alternatives[number] or (None,))[0]
+        d_prime, d_perp = _sizes(found, number, nearest)
+        separated = ""
+        if nearest is not None:
+            separated = separating_sensor(
+                found.fit.simulator(found.base), nearest.fit.simulator(found.base), found.problem.data
+            )
+        told.append(
+            Cause(
+                effect=content(effect),
+                onset=effect.onset,
+                onset_ci90=_onset_interval(found, number, record),
+                status="ambiguous" if rivals else "named",
+                log_odds=found.log_odds[number],
+                d_prime=d_prime,
+                d_perp=d_perp,
+                rivals=[_last_effect(one.fit, record) for one in rivals],
+                separated_by=separated,
+                why=_why(found, number),
+            )
+        )
+    return told
+
+
+def fault_cause(fault: Fault) -> Cause:
+    """A rejected channel as a cause: each of its odd readings has odds of one in a thousand."""
+    odds = max(fault.readings, 1) * FAULT_NATS
+    return Cause(
+        effect={"kind": "sensor_fault", "sensor": fault.sensor, "mode": fault.mode},
+        status="named",
+        log_odds=odds,
+        d_prime=float(np.sqrt(2 * odds)),
+        d_perp=float(np.sqrt(2 * odds)),
+        why=fault.why,
+    )
+
+
+def gap(account: Account, gained: Gain) -> Gap:
+    """The gap on the fitted rows and by sensor, and the gain on the held-out rows."""
+    measured = account.record.readings
+    before = ((measured - account.before) / account.noise) ** 2
+    after = ((measured - account.after) / account.noise) ** 2
+    fitted = ~account.held_out
+    by_sensor = {
+        name: SensorGap(
+            before=float(np.nanmean(before[fitted, k])), after=float(np.nanmean(after[fitted, k]))
+        )
+        for k, name in enumerate(account.record.sensors)
+        if not account.rejected[k] and np.isfinite(before[fitted, k]).any()
+    }
+    return Gap(
+        before=float(np.nanmean(before[fitted])),
+        after=float(np.nanmean(after[fitted])),
+        held_out=HeldOut(
+            before=gained.before,
+            after=gained.after,
+            gain=gained.before - gained.after,
+            gain_ci90=gained.interval,
+        ),
+        by_sensor=by_sensor,
+    )
+
+
+def groups(account: Account, grouped: Mapping[str, Sequence[str]]) -> list[GroupGap]:
+    """Measured over simulated of each group of sensors, in percent off."""
+    order = {name: k for k, name in enumerate(account.record.sensors)}
+    return [
+        GroupGap(
+            group=word,
+            sensors=list(names),
+            before_percent=_percent_off(account, account.before, [order[n] for n in names]),
+            after_percent=_percent_off(account, account.after, [order[n] for n in names]),
+        )
+        for word, names in grouped.items()
+    ]
+
+
+def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
+    """Every kind and place whose largest physical value stays too small to be seen."""
+    return [
+        Unidentifiable(
+            kind=p.hypothesis.name,
+            place=", ".join(str(one) for one in p.hypothesis.place.values()),
+            d_prime_at_largest=p.largest,
+        )
+        for p in prospects
+        if p.largest < SMALLEST_D_PRIME
+    ]
+
+
+def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
+    """The explanations that were tried, the likeliest first."""
+    nothing = tried[0]
+    best = found.fit.log_evidence
+    told = []
+    for one in tried:
+        if one.fit is None:
+            words, effects, odds = "a free gain on every channel", [], 0.0
+            remark = "fits, and says nothing of channels that were not fitted"
+        else:
+            effects = [content(_effect(one.fit, k, record)) for k in range(len(one.fit.hypotheses))]
+            words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
+            odds = one.fit.log_evidence
+            remark = _remark(one, nothing, best)
+        told.append(
+            Explanation(
+                words=words,
+                effects=effects,
+                log_odds=max(odds, -1e9),
+                gap=one.gap,
+                gap_unseen_channels=one.gap_unseen if np.isfinite(one.gap_unseen) else None,
+                remark=remark,
+            )
+        )
+    return sorted(told, key=lambda one: -one.log_odds)
+
+
+def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
+    """Latent contexts as they were inferred, and the noise of the measured ones."""
+    told: dict[str, dict[str, Any]] = {}
+    belief = problem.data.belief
+    clock = problem.data.time - problem.data.time[0]
+    for name in belief.lines:
+        slope, level = np.polyfit(clock, belief.table[name], 1)
+        unit = model.context[name].unit
+        told[name] = {f"rate [{unit}/s]": float(slope), f"at the first analysed row [{unit}]": float(level)}
+    for number, name in enumerate(belief.spread):
+        key = "prior spread" if name in belief.latent else "noise of the measurement"
+        unit = model.context[name].unit
+        told[name] = {f"{key} [{unit}]": float(problem.noise.context_sigma[number])}
+    return told
+
+
+def misfits(found: Found, account: Account) -> list[str]:
+    """Channels that work but do not fit the extended model, in words."""
+    order = [k for k in range(len(account.record.sensors)) if not account.rejected[k]]
+    off = np.array([_percent_off(account, account.after, [k]) for k in order])
+    if len(off) < 4:
+        return []
+    centre = np.median(off)
+    usual = 1.4826 * float(np.median(np.abs(off - centre)))
+    return [
+        f"channel {account.record.sensors[k]} does not fit: it reads {one:+.0f} % against the extended "
+        f"model, where others lie within {usual:.0f} % of {centre:+.0f} %"
+        for k, one in zip(order, off, strict=True)
+        if abs(one - centre) > MISFIT * max(usual, 2.0)
+    ]
+
+
+def versions() -> dict[str, str]:
+    """Versions of what took part."""
+    packages = ("rga", "numpy", "scipy", "pydantic", "polars")
+    return {**{name: version(name) for name in packages}, "python": platform.python_version()}
+
+
+def _percent_off(account: Account, simulated: FloatArray, columns: Sequence[int]) -> float:
+    measured, own = account.record.readings[:, columns], simulated[:, columns]
+    seen = np.isfinite(measured) & np.isfinite(own)
+    weight = np.broadcast_to(account.sigma[list(columns)] ** -2, measured.shape)[seen]
+    power = float((weight * own[seen] ** 2).sum())
+    if power == 0:
+        return 0.0
+    return 100 * (float((weight * own[seen] * measured[seen]).sum()) / power - 1)
+
+
+def _effect(one: Fit, number: int, record: Record) -> Effect:
+    hypothesis, where, spreads = one.hypotheses[number], one.slices()[number], one.spreads()
+    values = {}
+    for (name, prior), z, spread in zip(
+        hypothesis.priors.items(), one.z[where], spreads[where], strict=True
+    ):
+        ends = sorted(prior.value(float(z + sign * NORMAL_90 * spread)) for sign in (-1, 1))
+        values[name] = Estimated(value=prior.value(float(z)), ci90=(ends[0], ends[1]))
+    effect = hypothesis.beginning(None).effect(one.z[where]).with_values(values)
+    if hypothesis.onset is None:
+        return effect
+    return effect.model_copy(update={"onset": record.time_label(hypothesis.onset - record.origin)})
+
+
+def _last_effect(one: Fit, record: Record) -> dict[str, Any]:
+    return content(_effect(one, len(one.hypotheses) - 1, record))
+
+
+def _rivals(found: Found, number: int) -> list[Alternative]:
+    best = found.fit.log_evidence
+    return [
+        one for one in found.alternatives[number] if best - one.fit.log_evidence < RIVAL
+    ]
+
+
+def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[float, float]:
+    """d' of a cause, and d' after projecting off its nearest rival."""
+    problem, covariance = found.problem, found.problem.covariance
+    hypotheses = [one for k, one in enumerate(found.fit.hypotheses) if k != number]
+    z = np.delete(found.fit.z, found.fit.slices()[number])
+    without = problem.data.predict(extended(found.base, hypotheses, z))
+    seen = problem.data.observed[:, :, None]
+    signature = np.where(seen, (found.fit.simulated - without)[:, :, None], 0.0)
+    own = covariance.reduce(signature)
+    size = float(covariance.squares(own)[0])
+    if nearest is None:
+        return float(np.sqrt(size)), float(np.sqrt(size))
+    rival = np.where(seen, (nearest.fit.simulated - without)[:, :, None], 0.0)
+    other = covariance.reduce(rival)
+    across = float(covariance.product(own, other)[0, 0])
+    rest = size - across**2 / max(float(covariance.squares(other)[0]), 1e-300)
+    return float(np.sqrt(size)), float(np.sqrt(max(rest, 0.0)))
+
+
+def _onset_interval(
+    found: Found, number: int, record: Record
+) -> tuple[float | str, float | str] | None:
+    if found.fit.hypotheses[number].onset is None:
+        return None
+    moments, chances = onset_chances(found.problem, found.base, found.fit, number)
+    below = np.cumsum(chances)
+    first = moments[np.searchsorted(below, 0.05)]
+    last = moments[min(int(np.searchsorted(below, 0.95)), len(moments) - 1)]
+    early, late = (record.time_label(float(moment) - record.origin) for moment in (first, last))
+    return early, late
+
+
+def _why(found: Found, number: int) -> str:
+    """The sensors in whose readings a cause shows most."""
+    where = found.fit.slices()[number]
+    problem = found.problem
+    hypotheses = [one for k, one in enumerate(found.fit.hypotheses) if k != number]
+    z = np.delete(found.fit.z, where)
+    without = problem.data.predict(extended(found.base, hypotheses, z))
+    change = np.where(problem.data.observed, found.fit.simulated - without, 0.0)
+    shown = np.sqrt((change**2).mean(0)) / problem.noise.sigma
+    strongest = [k for k in np.argsort(-shown)[:5] if shown[k] > 0.3 * shown.max()]
+    names = ", ".join(f"{problem.data.sensors[k]} ({shown[k]:.1f} times its noise)" for k in strongest)
+    return f"it shows most in {names}"
+
+
+def _remark(one: Tried, nothing: Tried, best: float) -> str:
+    assert one.fit is not None  # the caller tells free gains apart
+    if not one.fit.hypotheses:
+        return "what every other explanation is measured against"
+    behind = best - one.fit.log_evidence
+    strange = [
+        f"{hypothesis.name.replace('_', ' ')} would need an unlikely value"
+        for hypothesis, where in zip(one.fit.hypotheses, one.fit.slices(), strict=True)
+        if len(one.fit.z[where]) and np.abs(one.fit.z[where]).max() > 3
+    ]
+    remarks = []
+    if behind <= 0.01:
+        remarks.append("the likeliest")
+    elif behind < RIVAL:
+        remarks.append("as likely as the best: cannot be told apart")
+    else:
+        remarks.append(f"rejected: e^{behind:.0f} times less likely than the best")
+    if np.isfinite(one.gap_unseen) and one.gap_unseen > 0.98 * nothing.gap_unseen:
+        remarks.append("does not help channels that it was not fitted to")
+    return "; ".join([*remarks, *strange])
