@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import rga.benchmark.truth as package
 from rga.benchmark.truth import BRIDGES, KINDS, Case, draw_case
 from rga.benchmark.truth.frame import DOFS

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from rga.benchmark.truth import BRIDGES, draw_case
 from rga.benchmark.truth.frame import Frame, Geometry, Solution, Spring, Stiffness
 from rga.benchmark.truth.friction import slide

@@ -36,8 +36,8 @@ def separating_sensor(cause: Simulator, rival: Simulator, data: Data) -> str:
     largest = float(np.nanmax(np.abs(ours - theirs)[:, best]))
     if resolved[best] < 1.0:
         return (
-            "no single added displacement or strain sensor under these loads: the two differ by less "
-            "than such a sensor resolves; another load case is needed"
+            "no single added displacement or strain sensor under these loads: the two differ by "
+            "less than such a sensor resolves; another load case is needed"
         )
     where = (
         f"the strain of member {sensor.member}"
@@ -54,7 +54,11 @@ def _everywhere(model: Model) -> dict[str, Sensor]:
     }
     used = {node for member in model.members.values() for node in member.nodes}
     for node in sorted(used):
-        for axis, direction in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)), ("z", (0.0, 0.0, 1.0))):
+        for axis, direction in (
+            ("x", (1.0, 0.0, 0.0)),
+            ("y", (0.0, 1.0, 0.0)),
+            ("z", (0.0, 0.0, 1.0)),
+        ):
             sensors[f"{axis} of {node}"] = Sensor(
                 kind="displacement", node=node, direction=direction, unit="mm"
             )

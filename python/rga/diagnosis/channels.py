@@ -60,7 +60,12 @@ def find_faults(
         repeats = float((np.diff(column) == 0).mean())
         if repeats > REPEATS:
             faults.append(
-                Fault(sensor, "stuck", f"{repeats:.0%} of its readings repeat the one before exactly", int(repeats * len(column)))
+                Fault(
+                    sensor,
+                    "stuck",
+                    f"{repeats:.0%} of its readings repeat the one before exactly",
+                    int(repeats * len(column)),
+                )
             )
             continue
         if basis is None:
@@ -72,7 +77,12 @@ def find_faults(
         spikes = float((np.abs(rest) > SPIKE * scale).mean())
         if spikes > SPIKES:
             faults.append(
-                Fault(sensor, "spiking", f"{spikes:.1%} of its readings jump away by over {SPIKE:.0f} deviations", int(spikes * len(column)))
+                Fault(
+                    sensor,
+                    "spiking",
+                    f"{spikes:.1%} of its readings jump away by over {SPIKE:.0f} deviations",
+                    int(spikes * len(column)),
+                )
             )
         elif expected[number] > 0 and spread < DEAD * expected[number]:
             faults.append(

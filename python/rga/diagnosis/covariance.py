@@ -106,7 +106,10 @@ class RowCovariance:
             passed = self.memory[1:, :, None] * weighted[1:]
             back[:-1] -= np.matmul(self.context_jacobian[:-1].transpose(0, 2, 1), passed)
             context = solve_banded(
-                (self._band, 0), self._factor, back.reshape(rows * contexts, count), check_finite=False
+                (self._band, 0),
+                self._factor,
+                back.reshape(rows * contexts, count),
+                check_finite=False,
             )
         return Reduced(white.reshape(rows * sensors, count), context)
 
@@ -121,7 +124,6 @@ class RowCovariance:
             upper[self._band - k, k:] = self._factor[k, : self._factor.shape[1] - k]
         solved = solve_banded((0, self._band), upper, half, check_finite=False)
         return np.asarray(solved).reshape(rows, contexts)
-
 
     def unwhiten(self, residual: FloatArray) -> FloatArray:
         """W' W of a residual, float[rows, sensors]."""
@@ -169,7 +171,7 @@ class Covariance:
 
     def squares(self, a: tuple[Reduced, FloatArray]) -> FloatArray:
         """x' C^-1 x of every column."""
-        own = (a[0].white**2).sum(0) - (a[0].context**2).sum(0)
+        own = (a[0].white ** 2).sum(0) - (a[0].context ** 2).sum(0)
         return np.asarray(own - (a[1] * cho_solve(self._solve, a[1])).sum(0))
 
     def scatter_estimate(self, residual: FloatArray) -> FloatArray:

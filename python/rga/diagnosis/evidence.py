@@ -11,6 +11,7 @@ one of them likely.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,8 +22,9 @@ from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3
-FARTHEST = 8.0
 STEPS = 12
+#: bounds of z, of a step in z, of how often a step is shortened, and of the loss worth a step
+FARTHEST, LONGEST, SHORTENED, ENOUGH = 8.0, 2.0, 6, 1e-3
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Fit:
     def slices(self) -> list[slice]:
         """The parameters of each hypothesis in z."""
         ends = np.cumsum([0, *(len(one.priors) for one in self.hypotheses)])
-        return [slice(int(a), int(b)) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
     def simulator(self, base: Simulator) -> Simulator:
         """The base with the effects as fitted."""
@@ -56,7 +58,9 @@ class Fit:
 
     def spreads(self) -> FloatArray:
         """Posterior standard deviation of each coordinate z."""
-        return np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information)))) if len(self.z) else self.z
+        return (
+            np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information)))) if len(self.z) else self.z
+        )
 
 
 def extended(base: Simulator, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Simulator:
@@ -114,34 +118,35 @@ def fit(
         information = covariance.product(reduced, reduced) + np.eye(len(z))
         if step == steps or not len(z):
             break
-        gradient = covariance.product(
-            reduced, covariance.reduce(problem.residual(simulated)[:, :, None])
-        )[:, 0]
-        move = np.linalg.solve(information, gradient - z)
-        longest = np.abs(move).max()
-        move *= min(1.0, 2.0 / max(longest, 1e-12))
-        better = False
-        for _ in range(6):
+        residual = covariance.reduce(problem.residual(simulated)[:, :, None])
+        move = np.linalg.solve(information, covariance.product(reduced, residual)[:, 0] - z)
+        move *= min(1.0, LONGEST / max(np.abs(move).max(), 1e-12))
+        lower = None
+        for _ in range(SHORTENED):
             trial = np.clip(z + move, -FARTHEST, FARTHEST)
             there = simulate(trial)
-            if there is not None and (lower := misfit(there, trial)) < loss:
-                better = True
+            if there is not None and (found := misfit(there, trial)) < loss:
+                lower = found
                 break
             move = move / 3
-        if not better or there is None:
+        if lower is None or there is None:
             break
         gained, z, simulated, loss = loss - lower, trial, there, lower
-        if gained < 1e-3:
+        if gained < ENOUGH:
             break
     nothing = problem.data.predict(base)
     at_nothing = misfit(nothing, np.zeros(0))
+    assert signatures is not None  # every way out of the loop has them
     log_evidence = 0.5 * (at_nothing - loss - float(np.linalg.slogdet(information)[1]))
     log_evidence += sum(one.log_prior for one in hypotheses)
     return Fit(tuple(hypotheses), z, simulated, information, log_evidence, signatures)
 
 
 def _signatures(
-    simulate: Callable[[FloatArray], FloatArray | None], problem: Problem, simulated: FloatArray, z: FloatArray
+    simulate: Callable[[FloatArray], FloatArray | None],
+    problem: Problem,
+    simulated: FloatArray,
+    z: FloatArray,
 ) -> FloatArray | None:
     columns = []
     for number in range(len(z)):

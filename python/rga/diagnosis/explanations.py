@@ -39,7 +39,7 @@ class Tried:
 
 
 def sensor_groups(model: Model, sensors: Sequence[str]) -> dict[str, list[str]]:
-    """Groups of like sensors: by their own group, else by kind and the first group of the member."""
+    """Groups of like sensors: their own group, else kind and first group of the member."""
     groups: dict[str, list[str]] = {}
     for name in sensors:
         sensor = model.sensors[name]
@@ -65,7 +65,7 @@ def compare(
     chosen += [([p.hypothesis], list(p.z)) for p in _best_of_kinds(prospects)]
     for number, cause in enumerate(causes.hypotheses):
         z = causes.z[causes.slices()[number]]
-        chosen += [([cause], list(z))]
+        chosen.append(([cause], list(z)))
         chosen += [
             ([alternative.hypothesis], list(alternative.fit.z[alternative.fit.slices()[-1]]))
             for alternative in found.alternatives[number][:PARTNERS]
@@ -78,11 +78,15 @@ def compare(
             ([*causes.hypotheses, p.hypothesis], [*causes.z, *p.z]) for p in partners[:PARTNERS]
         ]
     groups = sensor_groups(base.model, problem.data.sensors)
-    hidden = {word: hiding(problem, names) for word, names in groups.items()} if len(groups) > 1 else {}
+    hidden = (
+        {word: hiding(problem, names) for word, names in groups.items()} if len(groups) > 1 else {}
+    )
     tried = []
-    for number, (hypotheses, z) in enumerate(_each_once(chosen)):
-        one = fit(problem, base, hypotheses, z)
-        tried.append(Tried(one, _gap(problem, one.simulated), _unseen(problem, hidden, groups, found, one)))
+    for number, (hypotheses, start) in enumerate(_each_once(chosen)):
+        one = fit(problem, base, hypotheses, start)
+        tried.append(
+            Tried(one, _gap(problem, one.simulated), _unseen(problem, hidden, groups, found, one))
+        )
         progress((number + 1) / len(chosen))
     gained = _free_gains(problem, tried[0])
     return [*tried, Tried(None, _gap(problem, gained), tried[0].gap_unseen)]
@@ -112,7 +116,11 @@ def _gap(problem: Problem, simulated: FloatArray) -> float:
 
 
 def _unseen(
-    problem: Problem, hidden: dict[str, Problem], groups: dict[str, list[str]], found: Found, one: Fit
+    problem: Problem,
+    hidden: dict[str, Problem],
+    groups: dict[str, list[str]],
+    found: Found,
+    one: Fit,
 ) -> float:
     squares = []
     for word, part in hidden.items():
@@ -148,7 +156,10 @@ def _each_once(
     for hypotheses, z in chosen:
         same = any(
             len(others) == len(hypotheses)
-            and all(a.same_place(b) and a.onset == b.onset for a, b in zip(hypotheses, others, strict=True))
+            and all(
+                a.same_place(b) and a.onset == b.onset
+                for a, b in zip(hypotheses, others, strict=True)
+            )
             for others, _ in kept
         )
         if not same:

@@ -52,7 +52,11 @@ def gain(before: FloatArray, after: FloatArray, held_out: BoolArray, seed: int) 
     interval = (float(gains.min()), float(gains.max()))
     if len(gains) > 2 and np.ptp(gains) > 0:
         found = bootstrap(
-            (gains,), np.mean, confidence_level=0.9, method="percentile", rng=np.random.default_rng(seed)
+            (gains,),
+            np.mean,
+            confidence_level=0.9,
+            method="percentile",
+            rng=np.random.default_rng(seed),
         ).confidence_interval
         interval = (float(found.low), float(found.high))
     return Gain(float(np.nanmean(before[rows])), float(np.nanmean(after[rows])), interval)

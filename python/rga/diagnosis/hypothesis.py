@@ -62,9 +62,7 @@ class Hypothesis:
         return self.kind is other.kind and self.place == other.place
 
 
-def hypotheses(
-    model: Model, sensors: Sequence[str], measured: Collection[str]
-) -> list[Hypothesis]:
+def hypotheses(model: Model, sensors: Sequence[str], measured: Collection[str]) -> list[Hypothesis]:
     """All hypotheses that the vocabulary allows on a model.
 
     Args:
@@ -72,16 +70,16 @@ def hypotheses(
         sensors: channels that work; a hypothesis on another sensor is left out.
         measured: contexts that were measured; one on another context is left out.
     """
-    found: list[Hypothesis] = []
     by_kind = {
         kind: [place for place in kind.places(model) if _seen(kind, place, sensors, measured)]
         for kind in Effect.vocabulary.values()
     }
     kinds = sum(bool(places) for places in by_kind.values())
-    for kind, places in by_kind.items():
-        for place in places:
-            found.append(Hypothesis(kind, place, kind.priors(model, place), len(places), kinds))
-    return found
+    return [
+        Hypothesis(kind, place, kind.priors(model, place), len(places), kinds)
+        for kind, places in by_kind.items()
+        for place in places
+    ]
 
 
 def _seen(

@@ -39,7 +39,9 @@ def guess_lines(simulator: Simulator, data: Data, progress: Callable[[float], No
             rates = np.linspace(*variable.rate, RATES)
         clock = few.time - middle
 
-        def left(line: FloatArray, name: str = name, few: Data = few, clock: FloatArray = clock) -> float:
+        def left(
+            line: FloatArray, name: str = name, few: Data = few, clock: FloatArray = clock
+        ) -> float:
             return _variance_left(few, few.predict(simulator, {name: line[0] + line[1] * clock}))
 
         best = (np.inf, 0.0, 0.0)

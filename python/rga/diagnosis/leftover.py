@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import spearmanr
 
+from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.noise import unexplainable
 from rga.diagnosis.problem import Problem, load_basis, pose
 from rga.model.effect import Values
@@ -62,7 +63,7 @@ def shared_pattern(problem: Problem) -> Pattern | None:
     return Pattern(direction, float((values[-1] - 1) / sensors))
 
 
-def innovations(problem: Problem) -> tuple[FloatArray, FloatArray]:
+def innovations(problem: Problem) -> tuple[FloatArray, BoolArray]:
     """What is new in every row, whitened, beyond what any linear structure could explain.
 
     Returns:
@@ -80,7 +81,9 @@ def innovations(problem: Problem) -> tuple[FloatArray, FloatArray]:
 def share_left(problem: Problem) -> float:
     """Share of the innovations' variance that unexplained patterns take [-]."""
     variance = problem.noise.sigma**2
-    spread = problem.noise.context_sigma[len(problem.noise.context_sigma) - problem.factors.shape[1] :]
+    spread = problem.noise.context_sigma[
+        len(problem.noise.context_sigma) - problem.factors.shape[1] :
+    ]
     patterns = ((problem.factors * spread) ** 2).sum(1)
     return float(np.mean(patterns / (patterns + variance)))
 
@@ -96,8 +99,12 @@ def in_words(problem: Problem, contexts: Values) -> str:
     told = []
     for number, direction in enumerate(problem.factors.T):
         strongest = np.argsort(-np.abs(direction) / problem.noise.sigma)[:4]
-        signs = [f"{problem.data.sensors[k]} ({'+' if direction[k] > 0 else '-'})" for k in strongest]
-        told.append(f"a pattern of {', '.join(signs)} that {_follows(error[:, first + number], contexts)}")
+        signs = [
+            f"{problem.data.sensors[k]} ({'+' if direction[k] > 0 else '-'})" for k in strongest
+        ]
+        told.append(
+            f"a pattern of {', '.join(signs)} that {_follows(error[:, first + number], contexts)}"
+        )
     return "; ".join(told)
 
 
@@ -116,12 +123,16 @@ def _follows(amplitude: FloatArray, contexts: Values) -> str:
         for power in (1, 2)
         if np.ptp(column) > 0
     }
-    found = {words: abs(float(spearmanr(column, amplitude)[0])) for words, column in drivers.items()}
+    found = {
+        words: abs(float(spearmanr(column, amplitude)[0])) for words, column in drivers.items()
+    }
     best = max(found, key=lambda words: found[words], default="")
     if best and found[best] > 0.4:
         return f"{best} (rank correlation {found[best]:.2f})"
     centred = amplitude - amplitude.mean()
     memory = float((centred[1:] * centred[:-1]).sum() / max((centred**2).sum(), 1e-300))
     if memory > 0.5:
-        return f"moves slowly with time (correlation {memory:.2f} from row to row) and with no context"
+        return (
+            f"moves slowly with time (correlation {memory:.2f} from row to row) and with no context"
+        )
     return "follows no context and changes from row to row"

@@ -49,11 +49,15 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     """
     if len(record.time) < LEAST_ROWS:
         raise InputError(
-            f"the record has {len(record.time)} rows", "record", f"a diagnosis needs {LEAST_ROWS} at least"
+            f"the record has {len(record.time)} rows",
+            "record",
+            f"a diagnosis needs {LEAST_ROWS} at least",
         )
     simulator = Simulator(model)
     data = _data(model, record)
-    stuck = find_faults(data.sensors, data.readings, data.observed, np.zeros(len(data.sensors)), None)
+    stuck = find_faults(
+        data.sensors, data.readings, data.observed, np.zeros(len(data.sensors)), None
+    )
     data = _without(data, stuck)
     data = guess_lines(simulator, data, progress)
     chosen = _loaded_rows(simulator, data)

@@ -94,9 +94,11 @@ def pose(
     belief = data.belief
     simulated = data.predict(simulator)
     jacobian = context_jacobian(simulator, data, simulated)
-    offsets = np.stack([belief.centre[n] - belief.table[n] for n in belief.spread], axis=-1) if (
-        belief.spread
-    ) else np.zeros((len(data.time), 0))
+    offsets = (
+        np.stack([belief.centre[n] - belief.table[n] for n in belief.spread], axis=-1)
+        if (belief.spread)
+        else np.zeros((len(data.time), 0))
+    )
     shift = np.einsum("tsi,ti->ts", jacobian, offsets)
     if factors is None:
         factors = before.factors if before is not None else np.zeros((len(data.sensors), 0))
@@ -232,7 +234,9 @@ def scatter_levels(
     for _ in range(3):
         options = {"xatol": 0.03, "fatol": 0.1}
         inside = np.clip(np.log(levels), *np.transpose(bounds))
-        levels = np.exp(minimize(loss, inside, method="Nelder-Mead", bounds=bounds, options=options).x)
+        levels = np.exp(
+            minimize(loss, inside, method="Nelder-Mead", bounds=bounds, options=options).x
+        )
         trial = covariance.with_spread(spread_at(levels))
         stands_out = np.abs(trial.scatter_estimate(residual)) / levels[family] > OUTSTANDING
         stands_out &= family >= 0

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -68,13 +69,9 @@ def search(
     problem, current = start, fit(start, base, [], [])
     for number in range(MOST_CAUSES):
         if number:
-            stage = f"looking for cause {number + 1}"
-            prospects = screen(
-                problem,
-                current.simulator(base),
-                _others(candidates, current),
-                progress=lambda x, s=stage: progress(s, x),
-            )
+            stage = partial(progress, f"looking for cause {number + 1}")
+            others = _others(candidates, current)
+            prospects = screen(problem, current.simulator(base), others, progress=stage)
         best = _best(problem, base, current, prospects)
         if best is None or best.log_evidence - current.log_evidence < NAMED:
             break
@@ -86,7 +83,11 @@ def search(
 
 
 def weighed(
-    problem: Problem, base: Simulator, current: Fit, candidates: Sequence[Hypothesis], progress: Progress
+    problem: Problem,
+    base: Simulator,
+    current: Fit,
+    candidates: Sequence[Hypothesis],
+    progress: Progress,
 ) -> Found:
     """Causes weighed against leaving each out, and against what could stand in its place."""
     current = fit(problem, base, current.hypotheses, current.z)
@@ -96,7 +97,9 @@ def weighed(
         progress("weighing rivals", number / len(current.hypotheses))
         without = _without(problem, base, current, number)
         odds.append(current.log_evidence - without.log_evidence)
-        alternatives.append(tuple(_alternatives(problem, base, current, without, number, candidates)))
+        alternatives.append(
+            tuple(_alternatives(problem, base, current, without, number, candidates))
+        )
     return Found(problem, current, base, tuple(alternatives), tuple(odds))
 
 
@@ -125,7 +128,7 @@ def with_moment(problem: Problem, base: Simulator, current: Fit, number: int) ->
 def onset_chances(
     problem: Problem, base: Simulator, current: Fit, number: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Possible onsets of a hypothesis [s] and their posterior probabilities, float[moments] each."""
+    """Possible onsets of a hypothesis [s] and their probabilities, float[moments] each."""
     always = [
         one.beginning(None) if k == number else one for k, one in enumerate(current.hypotheses)
     ]
@@ -145,7 +148,9 @@ def onset_chances(
     return time[rows], chances / chances.sum()
 
 
-def _best(problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]) -> Fit | None:
+def _best(
+    problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]
+) -> Fit | None:
     fits = [
         fit(problem, base, [*current.hypotheses, p.hypothesis], [*current.z, *p.z])
         for p in worth_fitting(prospects)
@@ -177,7 +182,11 @@ def _relaxed_about(problem: Problem, simulator: Simulator) -> Problem:
 
 
 def _swapped(
-    base: Simulator, problem: Problem, current: Fit, candidates: Sequence[Hypothesis], progress: Progress
+    base: Simulator,
+    problem: Problem,
+    current: Fit,
+    candidates: Sequence[Hypothesis],
+    progress: Progress,
 ) -> tuple[Problem, Fit]:
     """Exchange an earlier cause for a better one, now that others stand beside it."""
     if len(current.hypotheses) < 2:

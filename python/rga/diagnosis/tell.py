@@ -75,7 +75,9 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
         separated = ""
         if nearest is not None:
             separated = separating_sensor(
-                found.fit.simulator(found.base), nearest.fit.simulator(found.base), found.problem.data
+                found.fit.simulator(found.base),
+                nearest.fit.simulator(found.base),
+                found.problem.data,
             )
         told.append(
             Cause(
@@ -195,7 +197,10 @@ def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
     for name in belief.lines:
         slope, level = np.polyfit(clock, belief.table[name], 1)
         unit = model.context[name].unit
-        told[name] = {f"rate [{unit}/s]": float(slope), f"at the first analysed row [{unit}]": float(level)}
+        told[name] = {
+            f"rate [{unit}/s]": float(slope),
+            f"at the first analysed row [{unit}]": float(level),
+        }
     for number, name in enumerate(belief.spread):
         key = "prior spread" if name in belief.latent else "noise of the measurement"
         unit = model.context[name].unit
@@ -212,8 +217,8 @@ def misfits(found: Found, account: Account) -> list[str]:
     centre = np.median(off)
     usual = 1.4826 * float(np.median(np.abs(off - centre)))
     return [
-        f"channel {account.record.sensors[k]} does not fit: it reads {one:+.0f} % against the extended "
-        f"model, where others lie within {usual:.0f} % of {centre:+.0f} %"
+        f"channel {account.record.sensors[k]} does not fit: it reads {one:+.0f} % against the "
+        f"extended model, where others lie within {usual:.0f} % of {centre:+.0f} %"
         for k, one in zip(order, off, strict=True)
         if abs(one - centre) > MISFIT * max(usual, 2.0)
     ]
@@ -255,9 +260,7 @@ def _last_effect(one: Fit, record: Record) -> dict[str, Any]:
 
 def _rivals(found: Found, number: int) -> list[Alternative]:
     best = found.fit.log_evidence
-    return [
-        one for one in found.alternatives[number] if best - one.fit.log_evidence < RIVAL
-    ]
+    return [one for one in found.alternatives[number] if best - one.fit.log_evidence < RIVAL]
 
 
 def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[float, float]:
@@ -302,7 +305,9 @@ def _why(found: Found, number: int) -> str:
     change = np.where(problem.data.observed, found.fit.simulated - without, 0.0)
     shown = np.sqrt((change**2).mean(0)) / problem.noise.sigma
     strongest = [k for k in np.argsort(-shown)[:5] if shown[k] > 0.3 * shown.max()]
-    names = ", ".join(f"{problem.data.sensors[k]} ({shown[k]:.1f} times its noise)" for k in strongest)
+    names = ", ".join(
+        f"{problem.data.sensors[k]} ({shown[k]:.1f} times its noise)" for k in strongest
+    )
     return f"it shows most in {names}"
 
 

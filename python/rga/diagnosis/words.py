@@ -16,7 +16,8 @@ SCALED = ("N/m", "N m/rad", "N")
 def effect_words(effect: Mapping[str, Any]) -> str:
     """An effect in words, with values and intervals.
 
-    >>> effect_words({"kind": "sensor_gain", "sensor": "S1", "factor": {"value": 1.25, "ci90": [1.2, 1.3]}})
+    >>> factor = {"value": 1.25, "ci90": [1.2, 1.3]}
+    >>> effect_words({"kind": "sensor_gain", "sensor": "S1", "factor": factor})
     'sensor gain of S1: factor 1.25 [1.2, 1.3]'
     """
     kind = Effect.vocabulary.get(effect["kind"])
@@ -31,7 +32,9 @@ def effect_words(effect: Mapping[str, Any]) -> str:
     mode = f" ({effect['mode']})" if "mode" in effect else ""
     onset = f", from {effect['onset']} on" if effect.get("onset") is not None else ""
     of = f" of {place}" if place else ""
-    return f"{effect['kind'].replace('_', ' ')}{of}{mode}" + (f": {values}" if values else "") + onset
+    return (
+        f"{effect['kind'].replace('_', ' ')}{of}{mode}" + (f": {values}" if values else "") + onset
+    )
 
 
 def quantity(value: Any, unit: str) -> str:
@@ -55,8 +58,9 @@ def verdict_sentence(findings: "Findings") -> str:
     named = " and ".join(effect_words(cause.effect) for cause in causes)
     held = findings.gap.held_out
     gained = (
-        f" On rows that no step saw the gap falls from {held.before:.3g} to {held.after:.3g} times the "
-        f"noise (gain {held.gain:.3g}, 90 % interval {held.gain_ci90[0]:.3g} to {held.gain_ci90[1]:.3g})."
+        f" On rows that no step saw the gap falls from {held.before:.3g} to {held.after:.3g} times "
+        f"the noise (gain {held.gain:.3g}, 90 % interval {held.gain_ci90[0]:.3g} to "
+        f"{held.gain_ci90[1]:.3g})."
     )
     rejected = (
         f" Channels that do not work: {', '.join(str(f.effect['sensor']) for f in faults)}."
@@ -67,7 +71,9 @@ def verdict_sentence(findings: "Findings") -> str:
     if findings.verdict == "nothing_wrong":
         return "Nothing is wrong with the model that these data could show." + rejected
     if findings.verdict == "unknown":
-        return "The model is wrong, and no kind of effect that is known explains it." + left + rejected
+        return (
+            "The model is wrong, and no kind of effect that is known explains it." + left + rejected
+        )
     if findings.verdict == "unidentifiable":
         return "What was asked cannot show in these data." + rejected
     if not causes:
@@ -81,9 +87,9 @@ def verdict_sentence(findings: "Findings") -> str:
         )
     unsure = [cause for cause in causes if cause.status == "ambiguous"]
     also = (
-        " These sensors cannot tell it from " + ", ".join(
-            effect_words(rival) for cause in unsure for rival in cause.rivals[:2]
-        ) + "."
+        " These sensors cannot tell it from "
+        + ", ".join(effect_words(rival) for cause in unsure for rival in cause.rivals[:2])
+        + "."
         if unsure
         else ""
     )

@@ -1,12 +1,22 @@
 """The base of every effect: a physical influence on a structure, on its loads or on its sensors."""
 
 from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from rga.model.parameter import Driven, Estimated, FloatArray, Parameter, Place, Prior, marks, resolve
+from rga.model.parameter import (
+    Driven,
+    Estimated,
+    FloatArray,
+    Parameter,
+    Place,
+    Prior,
+    marks,
+    resolve,
+)
 
 if TYPE_CHECKING:
     from rga.model.readings import Readings
@@ -110,17 +120,23 @@ class Effect(BaseModel):
     def change_contexts(self, contexts: Values, values: Values) -> None:
         """Turn measured contexts into true ones, in place."""
 
-    def change_values(self, all_values: dict[str, Values], values: Values, time: FloatArray) -> None:
+    def change_values(
+        self, all_values: dict[str, Values], values: Values, time: FloatArray
+    ) -> None:
         """Change parameter values of other effects, by effect name, in place."""
 
     def change_structure(self, structure: "Structure", value: Mapping[str, float]) -> None:
         """Change the structure, in place."""
 
-    def loads(self, structure: "Structure", values: Values, others: dict[str, Values]) -> list["Load"]:
+    def loads(
+        self, structure: "Structure", values: Values, others: dict[str, Values]
+    ) -> list["Load"]:
         """Loads of this effect: patterns with a coefficient a row."""
         return []
 
-    def change_loads(self, loads: dict[str, list["Load"]], structure: "Structure", values: Values) -> None:
+    def change_loads(
+        self, loads: dict[str, list["Load"]], structure: "Structure", values: Values
+    ) -> None:
         """Change loads of other effects, by effect name, in place."""
 
     def change_readings(self, readings: "Readings", values: Values) -> None:
@@ -136,7 +152,8 @@ def blend(value: FloatArray, neutral: float, weight: FloatArray) -> FloatArray:
 
 
 def seconds(moment: float | str) -> float:
-    """A time of a record [s]: a number as it is, an ISO 8601 text since 1970 (UTC if it says none)."""
+    """A time of a record [s]: a number as it is, an ISO 8601 text since 1970 (UTC by default)."""
     if isinstance(moment, str):
-        return float(np.datetime64(moment.removesuffix("Z"), "us").astype(np.int64)) / 1e6
+        read = datetime.fromisoformat(moment)
+        return (read if read.tzinfo else read.replace(tzinfo=UTC)).timestamp()
     return float(moment)

@@ -29,12 +29,16 @@ def load_model(path: str | Path) -> Model:
     try:
         raw = path.read_bytes()
     except OSError as error:
-        raise InputError("the model file cannot be read", str(path), error.strerror or "check it") from None
+        raise InputError(
+            "the model file cannot be read", str(path), error.strerror or "check it"
+        ) from None
     try:
         content = _parse(raw, path.suffix.lower())
     except (ValueError, yaml.YAMLError, RecursionError) as error:
         problem = " ".join(str(error).split())
-        raise InputError(f"this is no {path.suffix[1:].upper()} text: {problem}", str(path), "mend the syntax") from None
+        raise InputError(
+            f"this is no {path.suffix[1:].upper()} text: {problem}", str(path), "mend the syntax"
+        ) from None
     model = read_model(content, str(path))
     model._sha256 = hashlib.sha256(raw).hexdigest()
     model._path = path

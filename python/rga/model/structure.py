@@ -110,7 +110,9 @@ class Structure:
         members = [member] if isinstance(member, str) else member or []
         groups = [group] if isinstance(group, str) else group or []
         numbers = [self.members[name] for name in members]
-        return np.unique(np.concatenate([numbers, *(self.groups[name] for name in groups)]).astype(np.int64))
+        return np.unique(
+            np.concatenate([numbers, *(self.groups[name] for name in groups)]).astype(np.int64)
+        )
 
     def add_nodes(self, coordinates: FloatArray) -> IntArray:
         """Add nodes at coordinates float[k, 3] [m]; their numbers."""
@@ -121,9 +123,21 @@ class Structure:
         return np.arange(first, first + len(coordinates))
 
     def add_bars(self, ends: IntArray, area: float, hosts: IntArray) -> None:
-        """Add truss members int[k, 2] of an area [m2] with modulus and temperature of their hosts."""
+        """Add bars int[k, 2] of an area [m2] with modulus and temperature of their hosts."""
         arrays = self.arrays
-        for name in ("E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end"):
+        for name in (
+            "E",
+            "G",
+            "A",
+            "Iy",
+            "Iz",
+            "J",
+            "Asy",
+            "Asz",
+            "local_y",
+            "connection",
+            "rigid_end",
+        ):
             arrays[name] = np.concatenate([arrays[name], arrays[name][hosts]])
         arrays["A"][-len(hosts) :] = area
         arrays["ends"] = np.vstack([arrays["ends"], ends])
@@ -192,7 +206,9 @@ def _member_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any
     nowhere = (np.nan, np.nan, np.nan)
     return {
         "coordinates": np.array(list(model.nodes.values()), dtype=float).reshape(-1, 3),
-        "ends": np.array([[nodes[n] for n in member.nodes] for member in chosen], dtype=np.int64).reshape(-1, 2),
+        "ends": np.array(
+            [[nodes[n] for n in member.nodes] for member in chosen], dtype=np.int64
+        ).reshape(-1, 2),
         "frame": np.array([member.kind == "frame" for member in chosen], dtype=bool),
         "E": np.array([material.E for material in materials]),
         "G": np.array([material.E / (2 * (1 + material.nu)) for material in materials]),
@@ -202,7 +218,9 @@ def _member_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any
         "J": np.array([section.J for section in sections]),
         "Asy": np.array([section.Asy or np.inf for section in sections]),
         "Asz": np.array([section.Asz or np.inf for section in sections]),
-        "local_y": np.array([member.local_y or nowhere for member in chosen], dtype=float).reshape(-1, 3),
+        "local_y": np.array([member.local_y or nowhere for member in chosen], dtype=float).reshape(
+            -1, 3
+        ),
         "connection": connection,
         "rigid_end": np.zeros((len(chosen), 2)),
     }
@@ -219,13 +237,18 @@ def _restraint_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[
     return {
         "fixed": fixed,
         "inclined_node": np.array([nodes[support.node] for support in inclined], dtype=np.int64),
-        "inclined_direction": np.array([support.along for support in inclined], dtype=float).reshape(-1, 3),
+        "inclined_direction": np.array(
+            [support.along for support in inclined], dtype=float
+        ).reshape(-1, 3),
         "spring_node": np.array(
-            [[nodes[s.node], -1 if s.to is None else nodes[s.to]] for s in model.springs], dtype=np.int64
+            [[nodes[s.node], -1 if s.to is None else nodes[s.to]] for s in model.springs],
+            dtype=np.int64,
         ).reshape(-1, 2),
         "spring_dof": np.array([DOFS.index(s.dof) for s in model.springs], dtype=np.int64),
         "spring_stiffness": np.array([s.stiffness for s in model.springs], dtype=float),
-        "tie_node": np.array([[nodes[n] for n in pair] for pair, _ in ties], dtype=np.int64).reshape(-1, 2),
+        "tie_node": np.array(
+            [[nodes[n] for n in pair] for pair, _ in ties], dtype=np.int64
+        ).reshape(-1, 2),
         "tie_dof": np.array([DOFS.index(dof) for _, dof in ties], dtype=np.int64),
     }
 
@@ -236,7 +259,8 @@ def _output(
     kind = OUTPUT_KIND[sensor.kind]
     if sensor.member is not None and sensor.kind in ("strain", "force"):
         return kind, members[sensor.member], -1, (sensor.at, sensor.y, sensor.z), sensor.total
-    assert sensor.node is not None and sensor.direction is not None  # by the schema
+    assert sensor.node is not None  # by the schema
+    assert sensor.direction is not None
     x, y, z = np.array(sensor.direction) / np.linalg.norm(sensor.direction)
     other = -1 if sensor.relative_to is None else nodes[sensor.relative_to]
     return kind, nodes[sensor.node], other, (float(x), float(y), float(z)), False

@@ -12,7 +12,9 @@ from rga.model.schema import DOFS
 from rga.model.structure import Load, Structure
 
 
-def respond(structure: Structure, loads: list[Load], outputs: dict[str, NDArray[Any]]) -> FloatArray:
+def respond(
+    structure: Structure, loads: list[Load], outputs: dict[str, NDArray[Any]]
+) -> FloatArray:
     """Outputs under each load pattern with coefficient one, float[loads, outputs] in SI units.
 
     Raises:
@@ -30,7 +32,9 @@ def respond(structure: Structure, loads: list[Load], outputs: dict[str, NDArray[
             "add a member, a support or a stiffness there, or hold the plane",
         ) from None
     except _core.InvalidInput as error:
-        raise InputError(str(error), "the structure as it reaches the solver", "mend that value") from None
+        raise InputError(
+            str(error), "the structure as it reaches the solver", "mend that value"
+        ) from None
 
 
 def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]:

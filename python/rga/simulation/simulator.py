@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rga.errors import InputError
-from rga.model.effect import Effect, Values
+from rga.model.effect import Effect, Values, seconds
 from rga.model.parameter import FloatArray
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure, build_structure
-from rga.model.effect import seconds
 from rga.simulation.friction import respond_with_friction
 from rga.simulation.response import respond
 
@@ -105,7 +104,9 @@ class Simulator:
         return np.stack(columns, axis=2)
 
     def _table(self, contexts: Mapping[str, ArrayLike]) -> Values:
-        given = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in contexts.items()}
+        given = {
+            name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in contexts.items()
+        }
         rows = max((len(column) for column in given.values()), default=1)
         table = {}
         for name in ("time", *self.model.context):
@@ -114,17 +115,23 @@ class Simulator:
                 continue
             if name not in given:
                 if name in self.needed:
-                    raise InputError(f"the context {name!r} is missing", "contexts", "give a value a row")
+                    raise InputError(
+                        f"the context {name!r} is missing", "contexts", "give a value a row"
+                    )
                 continue
             column = given[name]
             if column.ndim != 1 or len(column) not in (1, rows):
                 raise InputError(
-                    f"the context {name!r} has shape {column.shape}", "contexts", f"give {rows} values"
+                    f"the context {name!r} has shape {column.shape}",
+                    "contexts",
+                    f"give {rows} values",
                 )
             if not np.isfinite(column).all():
                 row = int(np.flatnonzero(~np.isfinite(column))[0])
                 raise InputError(
-                    f"the context {name!r} is not a number", f"contexts, row {row + 1}", "give a finite value"
+                    f"the context {name!r} is not a number",
+                    f"contexts, row {row + 1}",
+                    "give a finite value",
                 )
             table[name] = np.broadcast_to(column, rows)
         return table
@@ -144,7 +151,11 @@ class Simulator:
         effects = self.model.effects
         structural = [name for name, effect in effects.items() if effect.structural]
         parameters = [(name, key) for name in structural for key in values[name]]
-        table = np.column_stack([values[n][k] for n, k in parameters]) if parameters else np.zeros((rows, 0))
+        table = (
+            np.column_stack([values[n][k] for n, k in parameters])
+            if parameters
+            else np.zeros((rows, 0))
+        )
         states, state_of_row = np.unique(table, axis=0, return_inverse=True)
         if not parameters:
             states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
@@ -166,7 +177,9 @@ class Simulator:
 
     def _loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
         effects = self.model.effects
-        loads = {name: effect.loads(structure, values[name], values) for name, effect in effects.items()}
+        loads = {
+            name: effect.loads(structure, values[name], values) for name, effect in effects.items()
+        }
         for name, effect in effects.items():
             effect.change_loads(loads, structure, values[name])
         return [load for of_effect in loads.values() for load in of_effect]

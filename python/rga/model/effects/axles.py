@@ -50,9 +50,7 @@ class AxleLoad(Effect):
         stations = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
         shares = self._shares(values["position"], stations) * values["factor"][:, None]
         force = np.array([*self.direction, 0.0, 0.0, 0.0])
-        return [
-            Load(shares[:, k], forces={number: force}) for k, number in enumerate(numbers)
-        ]
+        return [Load(shares[:, k], forces={number: force}) for k, number in enumerate(numbers)]
 
     def _shares(self, position: FloatArray, stations: FloatArray) -> FloatArray:
         """Force that each node of the path takes, float[rows, nodes] [N]."""
@@ -68,4 +66,4 @@ class AxleLoad(Effect):
         cells = np.concatenate([first.ravel(), first.ravel() + 1])
         weights = np.concatenate([(force * (1 - ratio)).ravel(), (force * ratio).ravel()])
         shares = np.bincount(cells, weights, minlength=nodes * len(position))
-        return shares.reshape(len(position), nodes)
+        return np.asarray(shares, dtype=float).reshape(len(position), nodes)

@@ -15,7 +15,7 @@ Direction = Annotated[Dof, Place("")]
 
 
 class SupportSpring(Effect):
-    """A spring [N/m] on a direction that the support leaves free: a restrained or frozen bearing."""
+    """A spring [N/m] on a direction that the support leaves free: a frozen bearing."""
 
     kind: Literal["support_spring"] = "support_spring"
     structural = True
@@ -107,7 +107,9 @@ def directions(
 
 def supported(structure: Structure, support: str | list[str]) -> list[int]:
     """Nodes of the supports of a place."""
-    return [structure.supports[name] for name in ([support] if isinstance(support, str) else support)]
+    return [
+        structure.supports[name] for name in ([support] if isinstance(support, str) else support)
+    ]
 
 
 def member_scale(model: Model) -> float:

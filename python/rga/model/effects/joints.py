@@ -10,8 +10,8 @@ from rga.model.parameter import Parameter, Place, Positive, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
-BENDING = (4, 5, 10, 11)
-TORSION = (3,)
+BENDING = np.array([4, 5, 10, 11])
+TORSION = 3
 
 
 class JointRigidity(Effect):
@@ -43,10 +43,12 @@ class JointRigidity(Effect):
             return
         chosen = structure.named(None, self.group)
         arrays = structure.arrays
-        chosen = chosen[~arrays["frame"][chosen] & (arrays["Iy"][chosen] > 0) & (arrays["Iz"][chosen] > 0)]
+        chosen = chosen[
+            ~arrays["frame"][chosen] & (arrays["Iy"][chosen] > 0) & (arrays["Iz"][chosen] > 0)
+        ]
         arrays["frame"][chosen] = True
         arrays["connection"][np.ix_(chosen, BENDING)] = value["stiffness"]
-        arrays["connection"][np.ix_(chosen, TORSION)] = 0.0
+        arrays["connection"][chosen, TORSION] = 0.0
 
 
 class RigidEndZone(Effect):
@@ -81,5 +83,7 @@ def _flexural_stiffness(model: Model, groups: list[str]) -> float:
         ends = [np.array(model.nodes[node]) for node in member.nodes]
         if member.kind == "truss":
             moment = min(section.Iy, section.Iz)
-            found.append(model.materials[member.material].E * moment / np.linalg.norm(ends[1] - ends[0]))
+            found.append(
+                model.materials[member.material].E * moment / np.linalg.norm(ends[1] - ends[0])
+            )
     return float(np.mean(found)) if found and min(found) > 0 else 0.0

@@ -6,7 +6,17 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from rga.model.effect import Effect, Values
-from rga.model.parameter import Driven, Factor, FloatArray, Normal, Number, Parameter, Place, Prior, Value
+from rga.model.parameter import (
+    Driven,
+    Factor,
+    FloatArray,
+    Normal,
+    Number,
+    Parameter,
+    Place,
+    Prior,
+    Value,
+)
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure
 
@@ -29,7 +39,9 @@ class LoadScale(Effect):
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         return {"factor": Factor(0.15)}
 
-    def change_values(self, all_values: dict[str, Values], values: Values, time: FloatArray) -> None:
+    def change_values(
+        self, all_values: dict[str, Values], values: Values, time: FloatArray
+    ) -> None:
         for name in [self.effect] if isinstance(self.effect, str) else self.effect:
             other = all_values[name]
             other["factor"] = other["factor"] * values["factor"]
@@ -49,8 +61,10 @@ class LoadPosition(Effect):
             name
             for name, effect in model.effects.items()
             if effect.kind == "axle_load"
-            and (not isinstance(position := getattr(effect, "position"), Driven)  # noqa: B009
-                 or model.context[position.context].law == "independent")
+            and (
+                not isinstance(position := getattr(effect, "position"), Driven)  # noqa: B009
+                or model.context[position.context].law == "independent"
+            )
         ]
         yield from together(model, names)
 
@@ -58,14 +72,16 @@ class LoadPosition(Effect):
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         return {"offset": Normal(0.0, 1.0)}
 
-    def change_values(self, all_values: dict[str, Values], values: Values, time: FloatArray) -> None:
+    def change_values(
+        self, all_values: dict[str, Values], values: Values, time: FloatArray
+    ) -> None:
         for name in [self.effect] if isinstance(self.effect, str) else self.effect:
             other = all_values[name]
             other["position"] = other["position"] + values["offset"]
 
 
 class LoadEccentricity(Effect):
-    """Loads shifted sideways: those at +y nodes times (1 + 2 share), at -y nodes times (1 - 2 share)."""
+    """Loads shifted sideways: at +y nodes times (1 + 2 share), at -y nodes (1 - 2 share)."""
 
     kind: Literal["load_eccentricity"] = "load_eccentricity"
     effect: Effects
@@ -80,7 +96,9 @@ class LoadEccentricity(Effect):
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         return {"share": Normal(0.0, 0.1)}
 
-    def change_loads(self, loads: dict[str, list[Load]], structure: Structure, values: Values) -> None:
+    def change_loads(
+        self, loads: dict[str, list[Load]], structure: Structure, values: Values
+    ) -> None:
         y = structure.arrays["coordinates"][:, 1]
         side = np.sign(np.round(y - (y.min() + y.max()) / 2, 9))
         for name in [self.effect] if isinstance(self.effect, str) else self.effect:

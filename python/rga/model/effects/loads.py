@@ -75,5 +75,7 @@ class MemberLoad(Effect):
                 x1, x2, w1, w2 = self.trapezoid
                 spread.append((member, LOCAL.index(self.axis), x1, x2, w1, w2))
             elif self.point is not None:
-                spread += [(member, a, self.x, self.x, p, 0.0) for a, p in enumerate(self.point) if p]
+                spread += [
+                    (member, a, self.x, self.x, p, 0.0) for a, p in enumerate(self.point) if p
+                ]
         return [Load(values["factor"], spread=spread)]

@@ -105,9 +105,9 @@ class SensorSwap(Effect):
 
     def change_readings(self, readings: Readings, values: Values) -> None:
         swapped = self.weight(readings.time) > 0
-        first, second = (readings.columns[name] for name in self.sensors)
-        rows = np.flatnonzero(swapped)
-        readings.values[np.ix_(rows, [first, second])] = readings.values[np.ix_(rows, [second, first])]
+        first, second = (readings.values[:, readings.columns[name]].copy() for name in self.sensors)
+        for name, shown in zip(self.sensors, (second, first), strict=True):
+            readings.values[swapped, readings.columns[name]] = shown[swapped]
 
 
 class SensorTemperature(Effect):
@@ -150,9 +150,10 @@ class GaugePosition(Effect):
             for name in model.groups[one]
         }
         for name, sensor in model.sensors.items():
-            if sensor.kind == "strain" and sensor.member is not None:
-                if sensor.member in joints or model.members[sensor.member].kind == "frame":
-                    yield {"sensor": name}
+            if sensor.kind != "strain" or sensor.member is None:
+                continue
+            if sensor.member in joints or model.members[sensor.member].kind == "frame":
+                yield {"sensor": name}
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:

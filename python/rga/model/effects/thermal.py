@@ -7,7 +7,7 @@ import numpy as np
 
 from rga.model.effect import Effect, Values
 from rga.model.effects.temperature import Temperature
-from rga.model.parameter import FloatArray, Factor, Normal, Parameter, Place, Positive, Prior, Value
+from rga.model.parameter import Factor, FloatArray, Normal, Parameter, Place, Positive, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure
 
@@ -87,21 +87,25 @@ class ThermalLag(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        if any(effect.drivers() for effect in model.effects.values() if isinstance(effect, Temperature)):
+        if any(
+            effect.drivers() for effect in model.effects.values() if isinstance(effect, Temperature)
+        ):
             yield {}
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         return {"time_constant": Positive(2.0, 1.0)}
 
-    def change_values(self, all_values: dict[str, Values], values: Values, time: FloatArray) -> None:
+    def change_values(
+        self, all_values: dict[str, Values], values: Values, time: FloatArray
+    ) -> None:
         for other in all_values.values():
             if "delta" in other:
                 other["delta"] = lagged(other["delta"], time, values["time_constant"] * 3600)
 
 
 def lagged(driver: FloatArray, time: FloatArray, time_constant: FloatArray) -> FloatArray:
-    """First-order lag of a driver, exact for a driver linear between rows; starts in equilibrium."""
+    """First-order lag of a driver that is linear between rows; it starts in equilibrium."""
     state = driver.copy()
     for row in range(1, len(driver)):
         step = time[row] - time[row - 1]

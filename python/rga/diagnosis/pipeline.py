@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis import leftover
+from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
 from rga.diagnosis.channels import Fault
 from rga.diagnosis.data import Data
@@ -19,7 +19,6 @@ from rga.diagnosis.prepare import Prepared, prepare
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.screening import screen
 from rga.diagnosis.search import Found, search, settled, weighed
-from rga.diagnosis import tell
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault
 from rga.model.parameter import FloatArray
@@ -169,9 +168,13 @@ def gain_of(account: Account, seed: int) -> Any:
 
 
 def _fault_effect(fault: Fault) -> Effect:
-    return SensorFault(sensor=fault.sensor, mode=fault.mode)  # type: ignore[arg-type]
+    return SensorFault(sensor=fault.sensor, mode=fault.mode)
 
 
 def _drivers(data: Data, measured: set[str]) -> dict[str, FloatArray]:
     lines = set(data.belief.lines)
-    return {name: data.belief.table[name] for name in sorted(measured | lines) if name in data.belief.table}
+    return {
+        name: data.belief.table[name]
+        for name in sorted(measured | lines)
+        if name in data.belief.table
+    }

@@ -1,0 +1,33 @@
+"""Draw a bridge with an effect hidden by a seed, diagnose its record, and say what was hidden.
+
+    python examples/generated_bridge.py [SEED]
+
+The record comes from physics of its own (rga.benchmark.truth); the diagnosis sees only the files.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+from rga.benchmark.truth import draw_case
+from rga.cli import main
+from rga.diagnosis.words import effect_words
+
+
+def run(seed: int, folder: Path) -> None:
+    """Write the case into a folder and diagnose it there."""
+    case = draw_case(seed)
+    case.write(folder)
+    print(f"A {case.truth['bridge']} bridge, an effect hidden by seed {seed}; files in {folder}.")
+    record = folder / "record.csv"
+    main(["run", str(folder / "model.json"), str(record), "-o", str(folder / "findings")])
+    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    hidden = {"kind": truth["kind"], **truth["place"]}
+    if truth["parameter"] is not None:
+        hidden[truth["parameter"]] = truth["value"]
+    print(f"What was hidden: {effect_words(hidden)}.")
+
+
+if __name__ == "__main__":
+    chosen = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    run(chosen, Path("runs") / f"seed-{chosen}")
