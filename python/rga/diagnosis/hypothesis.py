@@ -61,6 +61,18 @@ class Hypothesis:
         """True for the same kind at the same place."""
         return self.kind is other.kind and self.place == other.place
 
+    def contains(self, other: "Hypothesis") -> bool:
+        """True where this is the same kind at several places, one of which is the other's."""
+        if self.kind is not other.kind or self.place == other.place:
+            return False
+        if self.onset != other.onset or self.place.keys() != other.place.keys():
+            return False
+        return all(
+            set(_listed(other.place[field])) <= set(_listed(named))
+            for field, named in self.place.items()
+            if isinstance(named, str | list)
+        )
+
 
 def hypotheses(model: Model, sensors: Sequence[str], measured: Collection[str]) -> list[Hypothesis]:
     """All hypotheses that the vocabulary allows on a model.

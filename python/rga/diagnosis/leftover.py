@@ -8,6 +8,7 @@ independent noise give (Marchenko and Pastur 1967 for its edge, a margin for its
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.signal import lombscargle
 from scipy.stats import spearmanr
 
 from rga.diagnosis.covariance import BoolArray
@@ -18,6 +19,7 @@ from rga.model.parameter import FloatArray
 
 MOST = 3
 MARGIN = 1.25
+CORRELATED, SWINGING = 0.4, 0.2
 
 
 @dataclass(frozen=True)
@@ -89,50 +91,56 @@ def share_left(problem: Problem) -> float:
 
 
 def in_words(problem: Problem, contexts: Values) -> str:
-    """What the unexplained patterns follow: sensors, a context, time."""
+    """What is left: patterns with what they follow, and the scatter that had to be assumed."""
+    members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
+    scatter = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
     if problem.factors.shape[1] == 0:
-        return "noise: nothing that sensors share is left"
+        return f"nothing that sensors share; {scatter}"
     rows = problem.covariance.rows
     residual = problem.residual(problem.simulated)
-    error = rows.context_error(residual - _scatter(problem, residual))
+    estimate = problem.covariance.scatter_estimate(residual)
+    error = rows.context_error(residual - problem.covariance.scatter @ estimate)
     first = error.shape[1] - problem.factors.shape[1]
     told = []
     for number, direction in enumerate(problem.factors.T):
         strongest = np.argsort(-np.abs(direction) / problem.noise.sigma)[:4]
-        signs = [
+        signs = (
             f"{problem.data.sensors[k]} ({'+' if direction[k] > 0 else '-'})" for k in strongest
-        ]
-        told.append(
-            f"a pattern of {', '.join(signs)} that {_follows(error[:, first + number], contexts)}"
         )
-    return "; ".join(told)
+        follows = _follows(error[:, first + number], problem.data.time, contexts)
+        told.append(f"a pattern of {', '.join(signs)} that {follows}")
+    return f"{'; '.join(told)}; {scatter}"
 
 
-def _scatter(problem: Problem, residual: FloatArray) -> FloatArray:
-    covariance = problem.covariance
-    return np.asarray(covariance.scatter @ covariance.scatter_estimate(residual))
-
-
-def _follows(amplitude: FloatArray, contexts: Values) -> str:
-    """What an amplitude goes with, by rank correlation."""
-    drivers = {
-        (f"grows with {name}" if power == 1 else f"grows with {name} either way from its middle"): (
-            column if power == 1 else np.abs(column - np.median(column))
-        )
-        for name, column in contexts.items()
-        for power in (1, 2)
-        if np.ptp(column) > 0
-    }
+def _follows(amplitude: FloatArray, time: FloatArray, contexts: Values) -> str:
+    """What an amplitude goes with: a context by rank correlation, else a frequency, else time."""
+    drivers = {}
+    for name, column in contexts.items():
+        if np.ptp(column) > 0:
+            drivers[f"goes with {name}"] = column
+            drivers[f"goes with the distance of {name} from its middle"] = np.abs(
+                column - np.median(column)
+            )
     found = {
         words: abs(float(spearmanr(column, amplitude)[0])) for words, column in drivers.items()
     }
     best = max(found, key=lambda words: found[words], default="")
-    if best and found[best] > 0.4:
+    if best and found[best] > CORRELATED:
         return f"{best} (rank correlation {found[best]:.2f})"
     centred = amplitude - amplitude.mean()
+    period, power = _period(centred, time)
+    if power > SWINGING:
+        return f"swings with a period of {period:.3g} s, as a static model cannot"
     memory = float((centred[1:] * centred[:-1]).sum() / max((centred**2).sum(), 1e-300))
-    if memory > 0.5:
-        return (
-            f"moves slowly with time (correlation {memory:.2f} from row to row) and with no context"
-        )
+    if memory > CORRELATED:
+        return f"moves with memory ({memory:.2f} from row to row) and with no context"
     return "follows no context and changes from row to row"
+
+
+def _period(amplitude: FloatArray, time: FloatArray) -> tuple[float, float]:
+    """Period of the strongest oscillation [s], and its share of the variance."""
+    span, step = float(np.ptp(time)), float(np.median(np.diff(time)))
+    frequencies = np.arange(3, max(4, int(span / step / 3))) / span
+    power = lombscargle(time, amplitude, 2 * np.pi * frequencies, normalize=True)
+    strongest = int(np.argmax(power))
+    return float(1 / frequencies[strongest]), float(power[strongest])

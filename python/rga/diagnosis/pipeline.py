@@ -72,7 +72,8 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     extended = model.extended({**named, **faults})
     account = _account(model, extended, prepared, held_out, start, found)
     share = leftover.share_left(found.problem)
-    structure = found.problem.factors.shape[1] > 0 and share > STRUCTURE
+    structure = share > STRUCTURE
+    grouped = sensor_groups(model, data.sensors)
     findings = Findings(
         verdict=tell.verdict(found, bool(prepared.faults), structure),
         gap=tell.gap(account, gain_of(account, seed)),
@@ -86,9 +87,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
             "looks_like": leftover.in_words(found.problem, _drivers(found.problem.data, measured)),
         },
         explanations=tell.explanations(tried, found, prepared.record),
-        groups=tell.groups(account, sensor_groups(model, data.sensors)),
+        groups=tell.groups(account, grouped),
         contexts=tell.contexts(found.problem, model),
-        warnings=prepared.warnings + tell.misfits(found, account),
+        warnings=prepared.warnings + tell.misfits(account, grouped),
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,

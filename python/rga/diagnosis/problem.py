@@ -3,41 +3,16 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from rga.diagnosis.covariance import Covariance, Noise, RowCovariance
 from rga.diagnosis.data import Data
 from rga.diagnosis.noise import estimate_noise, unexplainable
-from rga.model.effects.stiffness import MemberStiffness
+from rga.diagnosis.scatter import MEDIANS, Scatter, lines, scatter_effects, scatter_levels
+from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3
-
-
-@dataclass(frozen=True)
-class ScatterLevel:
-    """A family of random effects with a level that the record has to tell.
-
-    Attributes:
-        median, spread: log-normal prior of the level [-].
-        largest: level beyond which it is no scatter any more [-].
-    """
-
-    median: float
-    spread: float
-    largest: float
-
-
-#: as-built scatter of EA; gains of the channels; what a linear structure may do otherwise
-LEVELS = (
-    ScatterLevel(0.025, 0.4, 0.08),
-    ScatterLevel(0.01, 0.5, 0.04),
-    ScatterLevel(0.003, 1.0, 0.03),
-)
-PATTERNS = 8
-OUTSTANDING = 3.0
-APART = 10.0
 
 
 @dataclass(frozen=True)
@@ -51,7 +26,8 @@ class Problem:
         shift: what the contexts' prior adds to the simulation, float[rows, sensors].
         covariance: of the residual.
         noise: of sensors and contexts.
-        levels: of the scatter: members, gains, patterns.
+        scatter: random effects.
+        levels: of the families of the scatter: members, gains, patterns [-].
         factors: patterns over the sensors that vary from row to row for reasons unknown,
             float[sensors, factors].
     """
@@ -62,6 +38,7 @@ class Problem:
     shift: FloatArray
     covariance: Covariance
     noise: Noise
+    scatter: Scatter
     levels: FloatArray
     factors: FloatArray
 
@@ -122,13 +99,12 @@ def pose(
     known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
     noise = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
-    scatter, family, fixed = scatter_effects(simulator, data, simulated, basis)
-    scatter = np.where(data.observed[:, :, None], scatter, 0.0)
-    levels = before.levels if before is not None else np.array([level.median for level in LEVELS])
-    covariance = Covariance(rows, scatter, np.where(family < 0, fixed, levels[family]))
-    levels = scatter_levels(covariance, residual, family, fixed, levels)
-    covariance = covariance.with_spread(np.where(family < 0, fixed, levels[family]))
-    return Problem(data, simulator, simulated, shift, covariance, noise, levels, factors)
+    scatter = scatter_effects(simulator, data, simulated, basis)
+    levels = before.levels if before is not None else MEDIANS
+    covariance = Covariance(rows, scatter.columns, scatter.spread(levels))
+    levels = scatter_levels(covariance, scatter, residual, levels)
+    covariance = covariance.with_spread(scatter.spread(levels))
+    return Problem(data, simulator, simulated, shift, covariance, noise, scatter, levels, factors)
 
 
 def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) -> FloatArray:
@@ -158,94 +134,6 @@ def load_basis(simulator: Simulator, data: Data) -> FloatArray:
     return np.asarray(u[:, kept] * np.sqrt(len(u)))
 
 
-def scatter_effects(
-    simulator: Simulator, data: Data, simulated: FloatArray, basis: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Derivatives by all random effects, the family of each, and the spread of those without.
-
-    Families: 0 members, 1 gains of channels, 2 patterns of channels; -1 lines of latent contexts.
-    """
-    rows, sensors = simulated.shape
-    columns: list[FloatArray] = []
-    family: list[int] = []
-    fixed: list[float] = []
-    for member in simulator.model.members:
-        scatter = MemberStiffness(member=member, factor=float(np.exp(STEP)))
-        changed = data.predict(simulator.extended({"scatter": scatter}))
-        columns.append((changed - simulated) / STEP)
-        family.append(0)
-    size = np.sqrt((simulated**2).mean(0))
-    patterns = basis[:, :PATTERNS]
-    for sensor in range(sensors):
-        gain = np.zeros((rows, sensors))
-        gain[:, sensor] = simulated[:, sensor]
-        columns.append(gain)
-        family.append(1)
-        for pattern in patterns.T:
-            other = np.zeros((rows, sensors))
-            other[:, sensor] = size[sensor] * pattern
-            columns.append(other)
-            family.append(2)
-    fixed = [0.0] * len(columns)
-    clock = data.time - data.belief.middle
-    for name, (level, slope) in data.belief.lines.items():
-        low, high = simulator.model.context[name].range
-        for direction, spread in ((np.ones(rows), level), (clock, slope)):
-            if spread > 0:
-                step = STEP * (high - low) * 0.1 / np.abs(direction).max()
-                value = data.belief.table[name]
-                ahead = data.predict(simulator, {name: value + step * direction})
-                behind = data.predict(simulator, {name: value - step * direction})
-                columns.append((ahead - behind) / (2 * step))
-                family.append(-1)
-                fixed.append(spread)
-    return np.stack(columns, axis=2), np.array(family), np.array(fixed)
-
-
-def scatter_levels(
-    covariance: Covariance,
-    residual: FloatArray,
-    family: FloatArray,
-    fixed: FloatArray,
-    start: FloatArray,
-) -> FloatArray:
-    """Levels of the families of random effects, at the maximum of their posterior.
-
-    A random effect that stands out of its family is left out of the estimate: it may be the effect
-    that is looked for, and must not raise the level that it has to stand out of.
-    """
-    score = covariance.reduce(residual[:, :, None])[1][:, 0]
-    medians = np.array([level.median for level in LEVELS])
-    spreads = np.array([level.spread for level in LEVELS])
-    bounds = [(np.log(level.median / 20), np.log(level.largest)) for level in LEVELS]
-    apart = np.zeros(len(family), dtype=bool)
-    levels = start
-
-    def spread_at(levels: FloatArray) -> FloatArray:
-        spread = np.where(family < 0, fixed, levels[family])
-        return np.where(apart, APART * spread, spread)
-
-    def loss(logs: FloatArray) -> float:
-        prior = (((logs - np.log(medians)) / spreads) ** 2).sum()
-        return float(
-            0.5 * prior - covariance.with_spread(spread_at(np.exp(logs))).log_likelihood(score)
-        )
-
-    for _ in range(3):
-        options = {"xatol": 0.03, "fatol": 0.1}
-        inside = np.clip(np.log(levels), *np.transpose(bounds))
-        levels = np.exp(
-            minimize(loss, inside, method="Nelder-Mead", bounds=bounds, options=options).x
-        )
-        trial = covariance.with_spread(spread_at(levels))
-        stands_out = np.abs(trial.scatter_estimate(residual)) / levels[family] > OUTSTANDING
-        stands_out &= family >= 0
-        if not (stands_out & ~apart).any():
-            break
-        apart |= stands_out
-    return np.asarray(levels)
-
-
 def relaxed(problem: Problem) -> Data:
     """The data with the latent contexts moved to where the residual puts them."""
     data, belief = problem.data, problem.data.belief
@@ -254,16 +142,12 @@ def relaxed(problem: Problem) -> Data:
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
     scatter = problem.covariance.scatter @ estimate
-    changes = {}
-    number = len(estimate) - sum((s > 0) for pair in belief.lines.values() for s in pair)
-    clock = data.time - belief.middle
-    for name, (level, slope) in belief.lines.items():
-        moved = np.zeros(len(clock))
-        for direction, spread in ((np.ones(len(clock)), level), (clock, slope)):
-            if spread > 0:
-                moved += estimate[number] * direction
-                number += 1
-        changes[name] = belief.table[name] + moved
+    changes: Values = {}
+    moves = lines(data)
+    for (name, direction, _), move in zip(
+        moves, estimate[len(estimate) - len(moves) :], strict=True
+    ):
+        changes[name] = changes.get(name, belief.table[name]) + move * direction
     error = problem.covariance.rows.context_error(residual - scatter)
     for column, name in enumerate(belief.spread):
         if name in belief.latent:

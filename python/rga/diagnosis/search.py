@@ -10,6 +10,7 @@ from rga.diagnosis.data import Data
 from rga.diagnosis.evidence import Fit, extended, fit
 from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.problem import Problem, pose, relaxed
+from rga.diagnosis.scatter import level_evidence
 from rga.diagnosis.screening import Prospect, screen
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
@@ -19,6 +20,7 @@ NAMED = 6.9
 #: log-odds within which two causes cannot be told apart, a hundred to one
 RIVAL = 4.6
 FITTED = 10
+JUDGED = 3
 MOST_CAUSES = 5
 Progress = Callable[[str, float], None]
 
@@ -73,11 +75,12 @@ def search(
             others = _others(candidates, current)
             prospects = screen(problem, current.simulator(base), others, progress=stage)
         best = _best(problem, base, current, prospects)
-        if best is None or best.log_evidence - current.log_evidence < NAMED:
+        if best is None:
             break
         best = with_moment(problem, base, best, len(best.hypotheses) - 1)
         problem, current = _settled_with(base, problem, best)
         problem, current = _swapped(base, problem, current, candidates, progress)
+        problem, current = _merged(base, problem, current, candidates)
         problem, current = _pruned(base, problem, current)
     return weighed(problem, base, current, candidates, progress)
 
@@ -151,12 +154,29 @@ def onset_chances(
 def _best(
     problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]
 ) -> Fit | None:
+    """The likeliest of the prospects beside the causes so far, if it is to be named."""
     fits = [
         fit(problem, base, [*current.hypotheses, p.hypothesis], [*current.z, *p.z])
         for p in worth_fitting(prospects)
         if p.score > 0
     ]
-    return max(fits, key=lambda one: one.log_evidence, default=None)
+    fits.sort(key=lambda one: -one.log_evidence)
+    for one in fits[:JUDGED]:
+        gained = one.log_evidence - current.log_evidence
+        if gained >= NAMED or gained + _lower_scatter(problem, current, one) >= NAMED:
+            return one
+    return None
+
+
+def _lower_scatter(problem: Problem, current: Fit, one: Fit) -> float:
+    """What a fit gains beyond fixed levels, once the scatter may be as low as it makes it."""
+    gains = []
+    for simulated in (one.simulated, current.simulated):
+        residual = problem.residual(simulated)
+        free = level_evidence(problem.covariance, problem.scatter, residual, problem.levels)
+        reduced = problem.covariance.reduce(residual[:, :, None])
+        gains.append(free + 0.5 * float(problem.covariance.squares(reduced)[0]))
+    return gains[0] - gains[1]
 
 
 def worth_fitting(prospects: Sequence[Prospect]) -> list[Prospect]:
@@ -197,6 +217,24 @@ def _swapped(
         found = _alternatives(problem, base, current, without, number, candidates)
         if found and found[0].fit.log_evidence > current.log_evidence + 1.0:
             return _settled_with(base, problem, found[0].fit)
+    return problem, current
+
+
+def _merged(
+    base: Simulator, problem: Problem, current: Fit, candidates: Sequence[Hypothesis]
+) -> tuple[Problem, Fit]:
+    """Put one hypothesis for many places in the stead of several for one place each."""
+    for candidate in candidates:
+        parts = [k for k, one in enumerate(current.hypotheses) if candidate.contains(one)]
+        if len(parts) < 2:
+            continue
+        slices = current.slices()
+        kept = [k for k in range(len(current.hypotheses)) if k not in parts]
+        hypotheses = [*(current.hypotheses[k] for k in kept), candidate]
+        start = np.concatenate([*(current.z[slices[k]] for k in kept), current.z[slices[parts[0]]]])
+        merged = fit(problem, base, hypotheses, start)
+        if merged.log_evidence > current.log_evidence:
+            return _settled_with(base, problem, merged)
     return problem, current
 
 

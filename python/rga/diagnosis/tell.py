@@ -28,6 +28,7 @@ from rga.diagnosis.screening import Prospect
 from rga.diagnosis.search import RIVAL, Alternative, Found, onset_chances
 from rga.diagnosis.words import effect_words
 from rga.model.effect import Effect
+from rga.model.effects.sensors import SensorFault, SensorGain
 from rga.model.parameter import Estimated, FloatArray
 from rga.model.schema import Model
 from rga.records import Record
@@ -35,12 +36,15 @@ from rga.records import Record
 NORMAL_90 = 1.6448536269514722
 SMALLEST_D_PRIME = 3.0
 FAULT_NATS = float(np.log(1000.0))
-MISFIT = 3.0
+MISFIT, LEAST_MISFIT = 3.0, 3.0
+#: gain below which a channel is dead [-]
+DEAD = 0.05
 
 
 def effects_of(found: Found, record: Record) -> list[Effect]:
     """The causes as effects with estimated parameters, onsets as in the record."""
-    return [_effect(found.fit, number, record) for number in range(len(found.fit.hypotheses))]
+    effects = (_effect(found.fit, number, record) for number in range(len(found.fit.hypotheses)))
+    return [_dead(effect) for effect in effects]
 
 
 def cause_name(model: Model, effect: Effect) -> str:
@@ -208,19 +212,25 @@ def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
     return told
 
 
-def misfits(found: Found, account: Account) -> list[str]:
-    """Channels that work but do not fit the extended model, in words."""
-    order = [k for k in range(len(account.record.sensors)) if not account.rejected[k]]
-    off = np.array([_percent_off(account, account.after, [k]) for k in order])
-    if len(off) < 4:
-        return []
-    centre = np.median(off)
-    usual = 1.4826 * float(np.median(np.abs(off - centre)))
+def misfits(account: Account, grouped: Mapping[str, Sequence[str]]) -> list[str]:
+    """Channels that work but do not fit the extended model as their like do, in words."""
+    columns = {name: k for k, name in enumerate(account.record.sensors)}
+    off = {
+        name: _percent_off(account, account.after, [columns[name]])
+        for names in grouped.values()
+        for name in names
+    }
+    middle = {
+        n: float(np.median([off[o] for o in names])) for names in grouped.values() for n in names
+    }
+    apart = {name: abs(one - middle[name]) for name, one in off.items()}
+    usual = max(1.4826 * float(np.median(list(apart.values()))), LEAST_MISFIT)
+    like = {n: [o for o in names if o != n] for names in grouped.values() for n in names}
     return [
-        f"channel {account.record.sensors[k]} does not fit: it reads {one:+.0f} % against the "
-        f"extended model, where others lie within {usual:.0f} % of {centre:+.0f} %"
-        for k, one in zip(order, off, strict=True)
-        if abs(one - centre) > MISFIT * max(usual, 2.0)
+        f"channel {name} does not fit: it reads {off[name]:+.0f} % against the extended model, "
+        f"its like ({', '.join(like[name])}) {middle[name]:+.0f} % in the middle"
+        for name in off
+        if apart[name] > MISFIT * usual and like[name]
     ]
 
 
@@ -252,6 +262,15 @@ def _effect(one: Fit, number: int, record: Record) -> Effect:
     if hypothesis.onset is None:
         return effect
     return effect.model_copy(update={"onset": record.time_label(hypothesis.onset - record.origin)})
+
+
+def _dead(effect: Effect) -> Effect:
+    """A gain of nearly nothing told as what it is: a channel that is dead."""
+    if isinstance(effect, SensorGain) and isinstance(effect.factor, Estimated):
+        low, high = effect.factor.ci90
+        if low < DEAD < high or abs(effect.factor.value) < DEAD:
+            return SensorFault(sensor=effect.sensor, mode="dead", onset=effect.onset)
+    return effect
 
 
 def _last_effect(one: Fit, record: Record) -> dict[str, Any]:

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, field_validator
 
 from rga.model.parameter import (
     Driven,
@@ -56,13 +57,22 @@ class Effect(BaseModel):
         if isinstance(kind, str):
             Effect.vocabulary[kind] = cls
 
+    @field_validator("onset", "end")
     @classmethod
+    def _a_time(cls, moment: float | str | None) -> float | str | None:
+        if moment is not None and not np.isfinite(seconds(moment)):
+            raise ValueError(f"{moment!r} is no time: give seconds or ISO 8601")
+        return moment
+
+    @classmethod
+    @cache
     def parameters(cls) -> dict[str, Parameter]:
         """The marked parameters by field name."""
         found = ((name, marks(field, Parameter)) for name, field in cls.model_fields.items())
         return {name: mark for name, mark in found if mark is not None}
 
     @classmethod
+    @cache
     def place_fields(cls) -> dict[str, Place]:
         """The marked place fields by name."""
         found = ((name, marks(field, Place)) for name, field in cls.model_fields.items())

@@ -1,5 +1,6 @@
 """The model file: the structure as data, its contexts, its effects and its sensors."""
 
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -262,7 +263,7 @@ class Model(Part):
             if context not in self.context:
                 raise ValueError(f"{where}: there is no context {context!r} in the model")
 
-    @property
+    @cached_property
     def groups(self) -> dict[str, list[str]]:
         """Members of each group, in the order of the file."""
         found: dict[str, list[str]] = {}

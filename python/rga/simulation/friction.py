@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
+from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import Load, Structure
 from rga.simulation.response import respond
@@ -18,7 +19,8 @@ def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray
     """Sensors under loads that follow each other in time, float[rows, sensors] in SI units.
 
     The friction force of each bearing is bounded by mu times the vertical reaction plus the
-    permanent force; both follow from the response to unit forces at the bearings.
+    permanent force; both follow from the response to unit forces at the bearings. The first row
+    is without friction: what is locked in before it is not known.
     """
     bearings = structure.bearings
     unit = [
@@ -32,13 +34,18 @@ def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray
     influence = response[len(loads) :]
     slide, normal = count, count + len(bearings)
     permanent = np.array([bearing.permanent_force for bearing in bearings])
-    force = _core.slide(
-        np.ascontiguousarray(free[:, slide:normal]),
-        np.ascontiguousarray(influence[:, slide:normal].T),
-        np.ascontiguousarray(free[:, normal:] + permanent),
-        np.ascontiguousarray(influence[:, normal:].T),
-        np.array([bearing.mu for bearing in bearings]),
-    )
+    try:
+        force = _core.slide(
+            np.ascontiguousarray(free[:, slide:normal] - free[0, slide:normal]),
+            np.ascontiguousarray(influence[:, slide:normal].T),
+            np.ascontiguousarray(free[:, normal:] + permanent),
+            np.ascontiguousarray(influence[:, normal:].T),
+            np.array([bearing.mu for bearing in bearings]),
+        )
+    except (_core.NotConverged, _core.InvalidInput) as error:
+        raise InputError(
+            str(error), "bearings with friction", "check mu and the supports"
+        ) from None
     return np.asarray(free[:, :count] + force @ influence[:, :count])
 
 

@@ -18,7 +18,7 @@ from rga.model.parameter import (
     Value,
 )
 from rga.model.schema import Model
-from rga.model.structure import Load, Structure
+from rga.model.structure import HELD_BY_PLANE, Load, Structure
 
 Effects = Annotated[str | list[str], Place("effect")]
 LOAD_KINDS = ("nodal_load", "member_load", "axle_load")
@@ -129,7 +129,16 @@ class UnmodelledLoad(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        return iter(())
+        for group in model.groups:
+            for held, direction in ((1, (0.0, 1.0, 0.0)), (2, (0.0, 0.0, 1.0))):
+                if held not in HELD_BY_PLANE.get(model.plane or "", ()):
+                    for context in model.context:
+                        yield {"group": group, "direction": direction, "context": context}
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        low, high = model.context[place["context"]].range
+        return {"rate": Normal(0.0, 1000.0 / (high - low))}
 
     def drivers(self) -> set[str]:
         return super().drivers() | {self.context}
