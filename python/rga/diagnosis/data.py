@@ -9,6 +9,7 @@ from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.simulation import Simulator
+from rga.simulation.simulator import Response
 
 #: share of its range that a measured context may be off before anything is known of its noise
 FIRST_GUESS = 0.01
@@ -63,8 +64,8 @@ class Data:
         readings: float[rows, sensors], zero where missing.
         observed: bool[rows, sensors].
         belief: what is believed of the contexts.
-        zero_time: clock of rows whose mean the logger took off every channel [s], float[rows];
-            empty where it took off nothing.
+        zero: contexts of rows whose mean was taken off every channel, `time` [s] included,
+            float[rows] each; of no length where nothing was taken off.
     """
 
     sensors: tuple[str, ...]
@@ -72,7 +73,7 @@ class Data:
     readings: FloatArray
     observed: BoolArray
     belief: Belief
-    zero_time: FloatArray
+    zero: Values
 
     @property
     def time(self) -> FloatArray:
@@ -86,23 +87,30 @@ class Data:
             simulator: of a model with these sensors.
             changes: other values for some of the contexts.
         """
+        return self.read(simulator, self.respond(simulator, changes))
+
+    def respond(self, simulator: Simulator, changes: Values | None = None) -> Response:
+        """The response at the believed contexts, the zero rows in front."""
         table = {**self.belief.table, **(changes or {})}
-        leading = len(self.zero_time)
-        if leading:
-            table = {name: self._with_zero_rows(name, column) for name, column in table.items()}
-        simulated = np.nan_to_num(simulator.predict(table)[:, self.columns])
+        if len(self.zero["time"]):
+            table = {name: self._with_zero(name, column) for name, column in table.items()}
+        return simulator.respond(table)
+
+    def read(self, simulator: Simulator, response: Response) -> FloatArray:
+        """The channels of a response, less their mean over the zero rows."""
+        simulated = np.nan_to_num(simulator.read(response)[:, self.columns])
+        leading = len(self.zero["time"])
         if leading:
             simulated = simulated[leading:] - simulated[:leading].mean(0)
         return simulated
 
-    def _with_zero_rows(self, name: str, column: FloatArray) -> FloatArray:
+    def _with_zero(self, name: str, column: FloatArray) -> FloatArray:
         """A context with its values at the zero rows in front; a line is prolonged to them."""
-        if name == "time":
-            return np.concatenate([self.zero_time, column])
+        leading = self.zero[name]
         if name in self.belief.lines and len(column) > 1:
             rate = (column[-1] - column[0]) / (self.time[-1] - self.time[0])
-            return np.concatenate([column[0] + rate * (self.zero_time - self.time[0]), column])
-        return np.concatenate([np.full(len(self.zero_time), column[0]), column])
+            leading = column[0] + rate * (self.zero["time"] - self.time[0])
+        return np.concatenate([leading, column])
 
     def rows(self, chosen: BoolArray) -> "Data":
         """Some of the rows."""

@@ -78,16 +78,18 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
 
 def _data(model: Model, record: Record) -> Data:
     order = {name: number for number, name in enumerate(model.sensors)}
-    zero = np.zeros(0)
+    belief = first_belief(model, record.origin + record.time, record.contexts)
+    leading = np.zeros(0, dtype=np.int64)
     if record.zero is not None:
-        zero = record.origin + np.linspace(*record.zero, ZERO_ROWS)
+        first, last = np.searchsorted(record.time, record.zero)
+        leading = np.unique(np.linspace(first, max(first, last - 1), ZERO_ROWS).astype(int))
     return Data(
         sensors=tuple(record.sensors),
         columns=[order[name] for name in record.sensors],
         readings=np.nan_to_num(record.readings),
         observed=np.isfinite(record.readings),
-        belief=first_belief(model, record.origin + record.time, record.contexts),
-        zero_time=zero,
+        belief=belief,
+        zero={name: column[leading] for name, column in belief.table.items()},
     )
 
 

@@ -99,7 +99,7 @@ def pose(
     known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
     noise = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
-    scatter = scatter_effects(simulator, data, simulated, basis)
+    scatter = scatter_effects(simulator, data, simulated, basis, factors)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.columns, scatter.spread(levels))
     levels = scatter_levels(covariance, scatter, residual, levels)

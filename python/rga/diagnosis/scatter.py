@@ -17,6 +17,8 @@ PATTERNS = 8
 OUTSTANDING = 3.0
 APART = 10.0
 ROUNDS = 3
+#: prior spread of the mean and of the trend of a pattern of unknown origin [its own deviation]
+FACTOR_MEAN = 3.0
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Scatter:
 
     Attributes:
         columns: derivatives by each of them, float[rows, sensors, effects].
-        family: of each: 0 members, 1 gains, 2 patterns; -1 the line of a latent context.
+        family: of each: 0 members, 1 gains, 2 patterns; -1 those with a spread of their own.
         fixed: prior standard deviation of those of family -1.
     """
 
@@ -60,9 +62,21 @@ class Scatter:
 
 
 def scatter_effects(
-    simulator: Simulator, data: Data, simulated: FloatArray, basis: FloatArray
+    simulator: Simulator,
+    data: Data,
+    simulated: FloatArray,
+    basis: FloatArray,
+    factors: FloatArray,
 ) -> Scatter:
-    """Derivatives by all random effects about a simulation."""
+    """Derivatives by all random effects about a simulation.
+
+    Args:
+        simulator: the simulation.
+        data: the readings.
+        simulated: float[rows, sensors].
+        basis: load coefficients, float[rows, patterns].
+        factors: patterns of unknown origin; their mean and their trend are random effects too.
+    """
     rows, sensors = simulated.shape
     columns: list[FloatArray] = []
     family: list[int] = []
@@ -80,6 +94,12 @@ def scatter_effects(
             columns.append(alone)
             family.append(min(number, 1) + 1)
     fixed = [0.0] * len(columns)
+    clock = data.time - data.time.mean()
+    for factor in factors.T:
+        for course in (np.ones(rows), clock / max(float(clock.std()), 1e-12)):
+            columns.append(course[:, None] * factor)
+            family.append(-1)
+            fixed.append(FACTOR_MEAN)
     for name, direction, spread in lines(data):
         low, high = simulator.model.context[name].range
         step = 0.1 * STEP * (high - low) / np.abs(direction).max()

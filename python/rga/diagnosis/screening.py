@@ -55,7 +55,9 @@ def screen(
         onsets: whether to try onsets too, at moments spread over the record.
         progress: told the share that is done.
     """
-    base = problem.data.predict(simulator)
+    data = problem.data
+    response = data.respond(simulator)
+    base = data.read(simulator, response)
     residual = problem.residual(base)
     weighted = problem.covariance.inverse_times(residual)
     best: dict[int, Prospect] = {}
@@ -79,15 +81,17 @@ def screen(
     for number, candidate in enumerate(candidates):
         for z in product(*(prior.trials for prior in candidate.priors.values())):
             try:
-                changed = problem.data.predict(simulator.extended({"trial": candidate.effect(z)}))
+                trial = simulator.extended({"trial": candidate.effect(z)})
+                alone = candidate.kind.on_sensors
+                changed = data.read(trial, response) if alone else data.predict(trial)
             except InputError:
                 continue
-            signature = np.where(problem.data.observed, changed - base, 0.0)
+            signature = np.where(data.observed, changed - base, 0.0)
             waiting.append((number, z, candidate.onset, signature))
             if onsets and (row := _likely_onset(problem, signature, weighted, candidate)):
                 later = signature.copy()
                 later[:row] = 0.0
-                waiting.append((number, z, float(problem.data.time[row]), later))
+                waiting.append((number, z, float(data.time[row]), later))
         if len(waiting) >= CHUNK:
             judge()
             progress((number + 1) / len(candidates))

@@ -21,6 +21,8 @@ NAMED = 6.9
 RIVAL = 4.6
 FITTED = 10
 JUDGED = 3
+EXCHANGES = 3
+WORTH_EXCHANGE = 1.0
 MOST_CAUSES = 5
 Progress = Callable[[str, float], None]
 
@@ -79,7 +81,6 @@ def search(
             break
         best = with_moment(problem, base, best, len(best.hypotheses) - 1)
         problem, current = _settled_with(base, problem, best)
-        problem, current = _swapped(base, problem, current, candidates, progress)
         problem, current = _merged(base, problem, current, candidates)
         problem, current = _pruned(base, problem, current)
     return weighed(problem, base, current, candidates, progress)
@@ -92,18 +93,31 @@ def weighed(
     candidates: Sequence[Hypothesis],
     progress: Progress,
 ) -> Found:
-    """Causes weighed against leaving each out, and against what could stand in its place."""
+    """Causes weighed against leaving each out, and against what could stand in its place.
+
+    A cause for which something likelier is found, now that others stand beside it, is exchanged.
+    """
     current = fit(problem, base, current.hypotheses, current.z)
-    problem, current = _pruned(base, problem, current)
-    alternatives, odds = [], []
-    for number in range(len(current.hypotheses)):
-        progress("weighing rivals", number / len(current.hypotheses))
-        without = _without(problem, base, current, number)
-        odds.append(current.log_evidence - without.log_evidence)
-        alternatives.append(
-            tuple(_alternatives(problem, base, current, without, number, candidates))
-        )
-    return Found(problem, current, base, tuple(alternatives), tuple(odds))
+    for _ in range(EXCHANGES):
+        problem, current = _pruned(base, problem, current)
+        alternatives, odds = [], []
+        for number in range(len(current.hypotheses)):
+            progress("weighing rivals", number / len(current.hypotheses))
+            without = _without(problem, base, current, number)
+            odds.append(current.log_evidence - without.log_evidence)
+            alternatives.append(
+                tuple(_alternatives(problem, base, current, without, number, candidates))
+            )
+        found = Found(problem, current, base, tuple(alternatives), tuple(odds))
+        better = max((one[0].fit for one in alternatives if one), key=_evidence, default=current)
+        if better.log_evidence <= current.log_evidence + WORTH_EXCHANGE:
+            break
+        problem, current = _settled_with(base, problem, better)
+    return found
+
+
+def _evidence(one: Fit) -> float:
+    return one.log_evidence
 
 
 def settled(simulator: Simulator, data: Data) -> Problem:
@@ -199,25 +213,6 @@ def _relaxed_about(problem: Problem, simulator: Simulator) -> Problem:
     """The problem with latent contexts moved, if there are any."""
     moved = relaxed(problem)
     return problem if moved is problem.data else pose(simulator, moved, problem)
-
-
-def _swapped(
-    base: Simulator,
-    problem: Problem,
-    current: Fit,
-    candidates: Sequence[Hypothesis],
-    progress: Progress,
-) -> tuple[Problem, Fit]:
-    """Exchange an earlier cause for a better one, now that others stand beside it."""
-    if len(current.hypotheses) < 2:
-        return problem, current
-    for number in range(len(current.hypotheses) - 1):
-        progress("reconsidering earlier causes", number / len(current.hypotheses))
-        without = _without(problem, base, current, number)
-        found = _alternatives(problem, base, current, without, number, candidates)
-        if found and found[0].fit.log_evidence > current.log_evidence + 1.0:
-            return _settled_with(base, problem, found[0].fit)
-    return problem, current
 
 
 def _merged(

@@ -50,6 +50,8 @@ class Effect(BaseModel):
 
     #: True where the parameters change the structure itself.
     structural: ClassVar[bool] = False
+    #: True where the effect changes nothing but what sensors show.
+    on_sensors: ClassVar[bool] = False
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:

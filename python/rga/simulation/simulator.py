@@ -1,6 +1,7 @@
 """Contexts in, sensor values out."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,21 @@ from rga.model.schema import Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.simulation.friction import respond_with_friction
 from rga.simulation.response import respond
+
+
+@dataclass(frozen=True)
+class Response:
+    """The response of a structure, before any sensor reads it.
+
+    Attributes:
+        contexts: the contexts, float[rows] each.
+        values: parameters of every effect, by name, float[rows] each.
+        quantities: what each sensor is to read, float[rows, sensors] in the sensors' units.
+    """
+
+    contexts: Values
+    values: dict[str, Values]
+    quantities: FloatArray
 
 
 class Simulator:
@@ -54,18 +70,36 @@ class Simulator:
             InputError: a context is missing, not finite, or of another length.
             UnstableStructureError: the structure can move; names node and direction.
         """
+        return self.read(self.respond(contexts))
+
+    def respond(self, contexts: Mapping[str, ArrayLike]) -> Response:
+        """The response of the structure, before any sensor reads it.
+
+        Args:
+            contexts: as for `predict`, with the same errors.
+        """
         table = self._table(contexts)
-        time, rows = table["time"], len(table["time"])
-        effects = self.model.effects
         values = self._values(table)
+        quantities = self._respond(values, len(table["time"])) * self._structure.per_si
+        return Response(table, values, quantities)
+
+    def read(self, response: Response) -> FloatArray:
+        """What the sensors show of a response, float[rows, sensors] in their units.
+
+        Args:
+            response: of this model, or of the same model with other effects on its sensors.
+        """
+        time, values = response.contexts["time"], response.values
+        rows = len(time)
         readings = Readings(
-            values=self._respond(values, rows) * self._structure.per_si,
+            values=response.quantities.copy(),
             columns={name: number for number, name in enumerate(self.model.sensors)},
             time=time,
             warmth=sum((v["delta"] for v in values.values() if "delta" in v), np.zeros(rows)),
         )
-        for name, effect in effects.items():
-            effect.change_readings(readings, values[name])
+        for name, effect in self.model.effects.items():
+            own = values[name] if name in values else effect.values(response.contexts, rows)
+            effect.change_readings(readings, own)
         return self._zeroed(readings)
 
     def load_coefficients(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:

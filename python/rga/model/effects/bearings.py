@@ -92,7 +92,7 @@ class BearingFriction(Effect):
 def directions(
     model: Model, *, held: bool, axes: tuple[str, ...] = ("ux", "uy", "uz")
 ) -> Iterator[dict[str, Any]]:
-    """Support directions that are held, or free: one by one, and all of a direction together."""
+    """Support directions that are held, or free: one by one, by lines across the bridge, all."""
     in_plane = [DOFS[k] for k in range(3) if k not in HELD_BY_PLANE.get(model.plane or "", ())]
     for dof in (axis for axis in in_plane if axis in axes):
         names = [
@@ -101,8 +101,11 @@ def directions(
             if (dof in support.fixed) == held and support.along is None
         ]
         yield from ({"support": name, "dof": dof} for name in names)
-        if len(names) > 1:
-            yield {"support": names, "dof": dof}
+        lines: dict[float, list[str]] = {}
+        for name in names:
+            lines.setdefault(round(model.nodes[model.supports[name].node][0], 3), []).append(name)
+        together = [*lines.values(), names] if len(lines) > 1 else [names]
+        yield from ({"support": line, "dof": dof} for line in together if len(line) > 1)
 
 
 def supported(structure: Structure, support: str | list[str]) -> list[int]:

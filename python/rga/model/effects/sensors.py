@@ -21,6 +21,7 @@ class SensorBias(Effect):
     """A constant offset of a sensor [its unit]."""
 
     kind: Literal["sensor_bias"] = "sensor_bias"
+    on_sensors = True
     sensor: OneSensor
     offset: Annotated[Value, Parameter("unit", 0.0)] = 0.0
 
@@ -40,6 +41,7 @@ class SensorGain(Effect):
     """A factor on a sensor; -1 is a wrong sign."""
 
     kind: Literal["sensor_gain"] = "sensor_gain"
+    on_sensors = True
     sensor: OneSensor
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
 
@@ -59,6 +61,7 @@ class SensorDrift(Effect):
     """An offset that grows from the first row, or from the onset [unit/day]."""
 
     kind: Literal["sensor_drift"] = "sensor_drift"
+    on_sensors = True
     sensor: OneSensor
     rate: Annotated[Value, Parameter("unit/day", 0.0)] = 0.0
 
@@ -81,6 +84,7 @@ class SensorFault(Effect):
     """A sensor that does not work: its channel says nothing."""
 
     kind: Literal["sensor_fault"] = "sensor_fault"
+    on_sensors = True
     sensor: OneSensor
     mode: Literal["dead", "stuck", "spiking"]
 
@@ -93,6 +97,7 @@ class SensorSwap(Effect):
     """Two sensors whose cables are exchanged."""
 
     kind: Literal["sensor_swap"] = "sensor_swap"
+    on_sensors = True
     sensors: Annotated[tuple[str, str], Place("sensor")]
 
     @classmethod
@@ -114,6 +119,7 @@ class SensorTemperature(Effect):
     """A sensor that follows the temperature [unit/K]."""
 
     kind: Literal["sensor_temperature"] = "sensor_temperature"
+    on_sensors = True
     sensor: OneSensor
     rate: Annotated[Value, Parameter("unit/K", 0.0)] = 0.0
 
