@@ -5,7 +5,7 @@ truss or a frame with scatter in every member, gains in every channel and noise 
 """
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
@@ -47,20 +47,19 @@ class Outcome:
 
 
 def challenge(
-    draws: int, seed: int, workers: int, progress: Callable[[int], None] = lambda done: None
+    seeds: Sequence[int], workers: int, progress: Callable[[int], None] = lambda done: None
 ) -> list[Outcome]:
     """Draw cases and their null twins, diagnose all of them, and score.
 
     Args:
-        draws: number of hidden effects; as many null twins are diagnosed.
-        seed: of the first draw; the others follow it.
+        seeds: one a hidden effect; as many null twins are diagnosed.
         workers: processes at work; the outcome does not depend on their number.
         progress: told how many diagnoses are done.
 
     Returns:
         Two outcomes a draw: the hidden effect, then its null twin.
     """
-    tasks = [(seed + number, null) for number in range(draws) for null in (False, True)]
+    tasks = [(seed, null) for seed in seeds for null in (False, True)]
     if workers == 1:
         return list(_told(map(_one, tasks), progress))
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:

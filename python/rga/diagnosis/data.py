@@ -49,6 +49,11 @@ class Belief:
         )
 
     @property
+    def inferred(self) -> bool:
+        """True where a context was not measured: then a model's change moves it far."""
+        return bool(self.lines or self.latent)
+
+    @property
     def middle(self) -> float:
         """Time about which lines are written [s]."""
         return float(self.table["time"].mean())

@@ -135,10 +135,11 @@ def load_basis(simulator: Simulator, data: Data) -> FloatArray:
 
 
 def relaxed(problem: Problem) -> Data:
-    """The data with the latent contexts moved to where the residual puts them."""
+    """The data with the contexts moved to where the residual puts them.
+
+    Measured contexts too: what smooths the noise of their measurement is no physics.
+    """
     data, belief = problem.data, problem.data.belief
-    if not belief.lines and not belief.latent:
-        return data
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
     scatter = problem.covariance.scatter @ estimate
@@ -150,6 +151,5 @@ def relaxed(problem: Problem) -> Data:
         changes[name] = changes.get(name, belief.table[name]) + move * direction
     error = problem.covariance.rows.context_error(residual - scatter)
     for column, name in enumerate(belief.spread):
-        if name in belief.latent:
-            changes[name] = belief.centre[name] + error[:, column]
+        changes[name] = belief.centre[name] + error[:, column]
     return replace(data, belief=belief.with_values(changes))

@@ -23,6 +23,7 @@ FITTED = 10
 JUDGED = 3
 EXCHANGES = 3
 WORTH_EXCHANGE = 1.0
+ROUNDS = 4
 MOST_CAUSES = 5
 Progress = Callable[[str, float], None]
 
@@ -121,13 +122,10 @@ def _evidence(one: Fit) -> float:
 
 
 def settled(simulator: Simulator, data: Data) -> Problem:
-    """The problem of a simulation, its latent contexts moved to where the record puts them."""
+    """The problem of a simulation, its contexts moved to where the record puts them."""
     problem = pose(simulator, data)
-    for _ in range(4):
-        moved = relaxed(problem)
-        if moved is problem.data:
-            break
-        problem = pose(simulator, moved, problem)
+    for _ in range(ROUNDS if data.belief.inferred else 1):
+        problem = pose(simulator, relaxed(problem), problem)
     return problem
 
 
@@ -203,16 +201,12 @@ def _settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem
     """The problem posed anew about the extended simulation, and the causes fitted again."""
     current = best
     for _ in range(2):
-        problem = pose(current.simulator(base), problem.data, problem)
-        problem = _relaxed_about(problem, current.simulator(base))
+        simulator = current.simulator(base)
+        problem = pose(simulator, problem.data, problem)
+        if problem.data.belief.inferred:
+            problem = pose(simulator, relaxed(problem), problem)
         current = fit(problem, base, current.hypotheses, current.z)
     return problem, current
-
-
-def _relaxed_about(problem: Problem, simulator: Simulator) -> Problem:
-    """The problem with latent contexts moved, if there are any."""
-    moved = relaxed(problem)
-    return problem if moved is problem.data else pose(simulator, moved, problem)
 
 
 def _merged(
