@@ -90,7 +90,9 @@ def test_names_and_order_do_not_matter(findings: rga.Findings, tmp_path: Path) -
     (tmp_path / "model.json").write_text(json.dumps(content), encoding="utf-8")
     lines = (EXAMPLE / "import.toml").read_text(encoding="utf-8").splitlines()
     for old in mapping["channels"]:
-        new = f'"{names[old]}" = {{ column = "{old}", sign = -1 }}'
+        unit = "mm" if old.startswith("d") else "m/m"
+        column = f'column = "{old} ({unit})", unit = "{unit}"'
+        new = f'"{names[old]}" = {{ {column}, sign = -1 }}'
         lines = [new if line.startswith(f"{old} =") else line for line in lines]
     (tmp_path / "import.toml").write_text("\n".join(lines), encoding="utf-8")
     model = rga.load_model(tmp_path / "model.json")

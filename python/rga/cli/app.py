@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from rga import __version__
+from rga.cli.benchmark import benchmark
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.doctor import doctor
@@ -25,6 +26,7 @@ app = typer.Typer(
 )
 for command in (run, diagnose, simulate, dataset, whatif, verify, schema, doctor):
     app.command()(command)
+app.add_typer(benchmark, name="benchmark")
 
 
 def _show_version(wanted: bool) -> None:

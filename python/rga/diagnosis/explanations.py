@@ -11,14 +11,15 @@ import numpy as np
 
 from rga.diagnosis.covariance import Covariance, RowCovariance
 from rga.diagnosis.evidence import Fit, fit
-from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.problem import Problem
-from rga.diagnosis.screening import Prospect
+from rga.diagnosis.screening import Prospect, screen
 from rga.diagnosis.search import Found
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
+from rga.simulation import Simulator
 
-KINDS = 9
+KINDS = {True: 14, False: 5}
 PARTNERS = 4
 STEPS = 5
 
@@ -62,7 +63,8 @@ def compare(
     problem, base = found.problem, found.base
     causes = found.fit
     chosen: list[tuple[list[Hypothesis], list[float]]] = [([], [])]
-    chosen += [([p.hypothesis], list(p.z)) for p in _best_of_kinds(prospects)]
+    best = _best_of_kinds(prospects)[: KINDS[bool(causes.hypotheses)]]
+    chosen += [([p.hypothesis], list(p.z)) for p in best]
     for number, cause in enumerate(causes.hypotheses):
         z = causes.z[causes.slices()[number]]
         chosen.append(([cause], list(z)))
@@ -73,17 +75,18 @@ def compare(
     if causes.hypotheses:
         chosen.append((list(causes.hypotheses), list(causes.z)))
         taken = {one.kind for one in causes.hypotheses}
-        partners = [p for p in _best_of_kinds(prospects) if p.hypothesis.kind not in taken]
+        partners = [p for p in best if p.hypothesis.kind not in taken]
         chosen += [
             ([*causes.hypotheses, p.hypothesis], [*causes.z, *p.z]) for p in partners[:PARTNERS]
         ]
+        chosen += _off_axis(problem, base, best)
     groups = sensor_groups(base.model, problem.data.sensors)
     hidden = (
         {word: hiding(problem, names) for word, names in groups.items()} if len(groups) > 1 else {}
     )
     tried = []
-    for number, (hypotheses, start) in enumerate(_each_once(chosen)):
-        one = fit(problem, base, hypotheses, start)
+    for number, (together, start) in enumerate(_each_once(chosen)):
+        one = fit(problem, base, together, start)
         tried.append(
             Tried(one, _gap(problem, one.simulated), _unseen(problem, hidden, groups, found, one))
         )
@@ -108,6 +111,24 @@ def variance(problem: Problem) -> FloatArray:
     jacobian = problem.covariance.rows.context_jacobian[:, :, :known]
     contexts = (jacobian**2) @ problem.noise.context_sigma[:known] ** 2
     return np.asarray(problem.noise.sigma**2 + contexts)
+
+
+def _off_axis(
+    problem: Problem, base: Simulator, best: Sequence[Prospect]
+) -> list[tuple[list[Hypothesis], list[float]]]:
+    """Stiff joints, with the gauge off the axis of its member that then explains most."""
+    stiff = [p for p in best if p.hypothesis.name == "joint_rigidity"]
+    found = []
+    for prospect in stiff:
+        bent = base.extended({"stiff joints": prospect.hypothesis.effect(prospect.z)})
+        gauges = [
+            one
+            for one in hypotheses(bent.model, problem.data.sensors, ())
+            if one.name == "gauge_position"
+        ]
+        gauge = screen(problem, bent, gauges, onsets=False)[:1]
+        found += [([prospect.hypothesis, one.hypothesis], [*prospect.z, *one.z]) for one in gauge]
+    return found
 
 
 def _gap(problem: Problem, simulated: FloatArray) -> float:
@@ -146,22 +167,22 @@ def _best_of_kinds(prospects: Sequence[Prospect]) -> list[Prospect]:
     for prospect in prospects:
         if prospect.hypothesis.onset is None and np.isfinite(prospect.score):
             best.setdefault(prospect.hypothesis.name, prospect)
-    return list(best.values())[:KINDS]
+    return list(best.values())
 
 
 def _each_once(
     chosen: Sequence[tuple[list[Hypothesis], list[float]]],
 ) -> list[tuple[list[Hypothesis], list[float]]]:
     kept: list[tuple[list[Hypothesis], list[float]]] = []
-    for hypotheses, z in chosen:
+    for together, z in chosen:
         same = any(
-            len(others) == len(hypotheses)
+            len(others) == len(together)
             and all(
                 a.same_place(b) and a.onset == b.onset
-                for a, b in zip(hypotheses, others, strict=True)
+                for a, b in zip(together, others, strict=True)
             )
             for others, _ in kept
         )
         if not same:
-            kept.append((hypotheses, z))
+            kept.append((together, z))
     return kept

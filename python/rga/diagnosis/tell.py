@@ -39,6 +39,8 @@ FAULT_NATS = float(np.log(1000.0))
 MISFIT, LEAST_MISFIT = 3.0, 3.0
 #: gain below which a channel is dead [-]
 DEAD = 0.05
+#: share of the gap on unseen channels that an explanation must take off; unlikely z
+UNHELPFUL, UNLIKELY = 0.98, 3.0
 
 
 def effects_of(found: Found, record: Record) -> list[Effect]:
@@ -169,7 +171,6 @@ def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
 def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
     """The explanations that were tried, the likeliest first."""
     nothing = tried[0]
-    best = found.fit.log_evidence
     told = []
     for one in tried:
         if one.fit is None:
@@ -179,7 +180,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             effects = [content(_effect(one.fit, k, record)) for k in range(len(one.fit.hypotheses))]
             words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
             odds = one.fit.log_evidence
-            remark = _remark(one, nothing, best)
+            remark = _remark(one, nothing, found.fit)
         told.append(
             Explanation(
                 words=words,
@@ -330,23 +331,28 @@ def _why(found: Found, number: int) -> str:
     return f"it shows most in {names}"
 
 
-def _remark(one: Tried, nothing: Tried, best: float) -> str:
+def _remark(one: Tried, nothing: Tried, causes: Fit) -> str:
+    """Why an explanation was kept or rejected."""
     assert one.fit is not None  # the caller tells free gains apart
     if not one.fit.hypotheses:
         return "what every other explanation is measured against"
-    behind = best - one.fit.log_evidence
-    strange = [
+    ahead = one.fit.log_evidence - causes.log_evidence
+    held = [any(h.same_place(cause) for h in one.fit.hypotheses) for cause in causes.hypotheses]
+    remarks = []
+    if causes.hypotheses and all(held):
+        added = len(one.fit.hypotheses) > len(causes.hypotheses)
+        earned = f"what is added earns {ahead:+.1f} log-odds, too little to be named"
+        remarks.append(earned if added else "what is named")
+    elif causes.hypotheses:
+        close = f"cannot be told from what is named ({ahead:+.1f} log-odds)"
+        remarks.append(close if ahead > -RIVAL else f"rejected ({ahead:+.0f} log-odds)")
+    else:
+        remarks.append("rejected: not likelier than no effect at all")
+    if np.isfinite(one.gap_unseen) and one.gap_unseen > UNHELPFUL * nothing.gap_unseen:
+        remarks.append("does not help channels that it was not fitted to")
+    remarks += [
         f"{hypothesis.name.replace('_', ' ')} would need an unlikely value"
         for hypothesis, where in zip(one.fit.hypotheses, one.fit.slices(), strict=True)
-        if len(one.fit.z[where]) and np.abs(one.fit.z[where]).max() > 3
+        if np.abs(one.fit.z[where]).max(initial=0.0) > UNLIKELY
     ]
-    remarks = []
-    if behind <= 0.01:
-        remarks.append("the likeliest")
-    elif behind < RIVAL:
-        remarks.append("as likely as the best: cannot be told apart")
-    else:
-        remarks.append(f"rejected: e^{behind:.0f} times less likely than the best")
-    if np.isfinite(one.gap_unseen) and one.gap_unseen > 0.98 * nothing.gap_unseen:
-        remarks.append("does not help channels that it was not fitted to")
-    return "; ".join([*remarks, *strange])
+    return "; ".join(remarks)

@@ -42,10 +42,11 @@ def views(model: Model, also: set[str]) -> list[View]:
     """
     points = np.array(list(model.nodes.values()))
     extent = np.ptp(points, axis=0)
-    if model.plane is not None:
-        right, up = (LETTERS.index(letter) for letter in model.plane)
-        return [_whole(model, "plan" if model.plane == "xy" else "elevation", (right, up))]
+    if model.plane == "xy":
+        return [_whole(model, "plan", (0, 1))]
     right = int(np.argmax(extent[:2]))
+    if model.plane is not None:
+        right = LETTERS.index(model.plane[0])
     depth = 1 - right
     if extent[2] < 0.02 * extent[right]:
         return [_whole(model, "plan", (right, depth))]
