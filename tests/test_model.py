@@ -1,0 +1,87 @@
+"""Model files: what is refused, with the key, the value and what would be right."""
+
+import copy
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rga.errors import InputError, UnstableStructureError
+from rga.model import load_model, model_content, read_model, write_model
+from rga.simulation import Simulator
+
+Change = Callable[[dict[str, Any]], object]
+
+REFUSED: dict[str, tuple[Change, list[str]]] = {
+    "unknown key": (lambda m: m.update(colour="red"), ["colour", "unknown"]),
+    "unknown key of a member": (lambda m: m["members"]["west"].update(size=1), ["west.size"]),
+    "missing node": (lambda m: m["members"]["west"].update(nodes=["W", "X"]), ["west", "'X'"]),
+    "no length": (lambda m: m["nodes"].update(T=[0, 0, 0]), ["west", "no length"]),
+    "missing section": (lambda m: m["members"]["west"].update(section="x"), ["section", "'x'"]),
+    "missing support node": (lambda m: m["supports"]["W"].update(node="Q"), ["'Q'"]),
+    "a unit of another kind": (
+        lambda m: next(iter(m["sensors"].values())).update(unit="kg"),
+        ["'kg'", "mm"],
+    ),
+    "a negative area": (lambda m: m["sections"]["bar"].update(A=-1), ["A", "greater than 0"]),
+    "an infinite node": (lambda m: m["nodes"].update(T=[0, 0, float("inf")]), ["nodes.T"]),
+    "a range that falls": (
+        lambda m: m["context"]["load"].update(range=[1, 0]),
+        ["context.load", "must grow"],
+    ),
+    "an unknown kind": (lambda m: m["effects"].update(x={"kind": "ghost"}), ["'ghost'", "known"]),
+    "an unknown context": (
+        lambda m: m["effects"]["warmth"].update(delta={"context": "sun"}),
+        ["'sun'"],
+    ),
+    "an unknown group": (lambda m: m["effects"]["warmth"].update(groups={"deck": 1}), ["'deck'"]),
+    "an onset that is no time": (
+        lambda m: m["effects"]["warmth"].update(onset="soon"),
+        ["soon"],
+    ),
+    "another version": (lambda m: m.update(rga_model=2), ["rga_model"]),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refused(case: str, two_bars: dict[str, Any]) -> None:
+    change, expected = REFUSED[case]
+    change(two_bars)
+    with pytest.raises(InputError) as refused:
+        read_model(two_bars, "model.json")
+    for part in (*expected, "model.json"):
+        assert part in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_member_in_two_warm_groups_is_refused(two_bars: dict[str, Any]) -> None:
+    two_bars["members"]["west"]["groups"].append("west side")
+    two_bars["effects"]["warmth"]["groups"]["west side"] = 1.0
+    with pytest.raises(InputError, match="in both"):
+        read_model(two_bars, "model.json")
+
+
+def test_a_mechanism_names_node_and_direction(two_bars: dict[str, Any]) -> None:
+    two_bars["supports"]["E"]["fixed"] = ["uy", "uz"]
+    del two_bars["members"]["east"]
+    model = read_model(two_bars, "model.json")
+    with pytest.raises(UnstableStructureError, match=r"node '\w' in u[xz]"):
+        Simulator(model).predict({"temperature": 0.0, "load": 0.0})
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path, two_bars: dict[str, Any]) -> None:
+    text = json.dumps(two_bars).replace('"nodes": {', '"nodes": {"W": [0, 0, 0], ', 1)
+    (tmp_path / "model.json").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="'W' stands twice"):
+        load_model(tmp_path / "model.json")
+
+
+def test_what_is_written_is_read_back(tmp_path: Path, two_bars: dict[str, Any]) -> None:
+    model = read_model(copy.deepcopy(two_bars), "test")
+    write_model(model, tmp_path / "model.json")
+    again = load_model(tmp_path / "model.json")
+    assert model_content(again) == model_content(model)
+    assert len(again.sha256) == 64
+    assert [path.name for path in tmp_path.iterdir()] == ["model.json"]
