@@ -29,5 +29,5 @@ def run(seed: int, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    chosen = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    chosen = int(sys.argv[1]) if len(sys.argv) > 1 else 1029
     run(chosen, Path("runs") / f"seed-{chosen}")

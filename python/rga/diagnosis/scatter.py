@@ -13,7 +13,8 @@ from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3
-PATTERNS = 8
+#: most patterns of a channel, and of all channels together
+PATTERNS, ALL_PATTERNS = 8, 320
 OUTSTANDING = 3.0
 APART = 10.0
 ROUNDS = 3
@@ -86,8 +87,9 @@ def scatter_effects(
         columns.append((changed - simulated) / STEP)
         family.append(0)
     size = np.sqrt((simulated**2).mean(0))
+    patterns = basis[:, : min(PATTERNS, max(2, ALL_PATTERNS // sensors))]
     for sensor in range(sensors):
-        shapes = [simulated[:, sensor], *(size[sensor] * basis[:, :PATTERNS].T)]
+        shapes = [simulated[:, sensor], *(size[sensor] * patterns.T)]
         for number, shape in enumerate(shapes):
             alone = np.zeros((rows, sensors))
             alone[:, sensor] = shape

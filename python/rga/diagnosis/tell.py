@@ -67,7 +67,7 @@ def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
     if not causes and not faults:
         return "unknown" if structure else "nothing_wrong"
     if structure:
-        return "partial" if causes else "unknown"
+        return "partial" if causes or faults else "unknown"
     return "ambiguous" if any(_rivals(found, k) for k in range(len(found.log_odds))) else "named"
 
 

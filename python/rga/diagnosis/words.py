@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 #: units whose large values read better with a prefix
 SCALED = ("N/m", "N m/rad", "N")
+RIVALS = 3
 
 
 def effect_words(effect: Mapping[str, Any]) -> str:
@@ -52,49 +53,33 @@ def quantity(value: Any, unit: str) -> str:
 
 
 def verdict_sentence(findings: "Findings") -> str:
-    """The verdict in one or two sentences."""
-    causes = [cause for cause in findings.causes if cause.effect["kind"] != "sensor_fault"]
-    faults = [cause for cause in findings.causes if cause.effect["kind"] == "sensor_fault"]
-    named = " and ".join(effect_words(cause.effect) for cause in causes)
-    held = findings.gap.held_out
-    gained = (
-        f" On rows that no step saw the gap falls from {held.before:.3g} to {held.after:.3g} times "
-        f"the noise (gain {held.gain:.3g}, 90 % interval {held.gain_ci90[0]:.3g} to "
-        f"{held.gain_ci90[1]:.3g})."
-    )
-    rejected = (
-        f" Channels that do not work: {', '.join(str(f.effect['sensor']) for f in faults)}."
-        if faults
-        else ""
-    )
-    left = f" What stays unexplained: {findings.unexplained.looks_like}."
-    if findings.verdict == "nothing_wrong":
-        return "Nothing is wrong with the model that these data could show." + rejected
-    if findings.verdict == "unknown":
-        return (
-            "The model is wrong, and no kind of effect that is known explains it." + left + rejected
+    """The verdict in a few sentences."""
+    faults = [c.effect["sensor"] for c in findings.causes if c.effect["kind"] == "sensor_fault"]
+    causes = [c for c in findings.causes if c.effect["kind"] != "sensor_fault"]
+    told = []
+    if causes:
+        named = " and ".join(effect_words(cause.effect) for cause in causes)
+        told.append(f"What the model leaves out: {named}.")
+        rivals = [effect_words(rival) for cause in causes for rival in cause.rivals[:RIVALS]]
+        if rivals:
+            told.append(f"These data cannot tell it from: {'; '.join(rivals)}.")
+        held = findings.gap.held_out
+        low, high = held.gain_ci90
+        told.append(
+            f"On rows that no step saw the gap falls from {held.before:.3g} to {held.after:.3g} "
+            f"times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to {high:.3g})."
         )
-    if findings.verdict == "unidentifiable":
-        return "What was asked cannot show in these data." + rejected
-    if not causes:
-        return rejected.strip() + (left if findings.verdict == "partial" else "")
-    if findings.verdict == "ambiguous":
-        rivals = [effect_words(rival) for cause in causes for rival in cause.rivals[:3]]
-        return (
-            f"The model is wrong: {named}; {', '.join(rivals)} would explain it as well."
-            + gained
-            + rejected
-        )
-    unsure = [cause for cause in causes if cause.status == "ambiguous"]
-    also = (
-        " These sensors cannot tell it from "
-        + ", ".join(effect_words(rival) for cause in unsure for rival in cause.rivals[:2])
-        + "."
-        if unsure
-        else ""
-    )
-    sentence = f"The model lacks {named}.{also}" + gained + rejected
-    return sentence + (left if findings.verdict == "partial" else "")
+    elif findings.verdict == "nothing_wrong":
+        told.append("Nothing is wrong with the model that these data could show.")
+    elif findings.verdict == "unknown":
+        told.append("The model is wrong, and no kind of effect that is known explains it.")
+    elif findings.verdict == "unidentifiable":
+        told.append("What was asked cannot show in these data.")
+    if faults:
+        told.append(f"Channels that do not work: {', '.join(map(str, faults))}.")
+    if findings.verdict in ("partial", "unknown"):
+        told.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
+    return " ".join(told)
 
 
 def _place(place: Any) -> str:

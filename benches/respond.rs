@@ -1,6 +1,6 @@
 //! Box bridges: a truss of 32 nodes, and a frame of 404.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../rust/rga-core/tests/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;
