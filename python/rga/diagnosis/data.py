@@ -156,7 +156,8 @@ def first_belief(model: Model, time: FloatArray, measured: Values) -> Belief:
         if name not in needed:
             continue
         if name not in measured and variable.law in ("constant", "linear"):
-            slope = 0.0 if variable.rate is None else max(abs(bound) for bound in variable.rate)
+            moving = variable.law == "linear" and variable.rate is not None
+            slope = max(map(abs, variable.rate)) if moving and variable.rate else 0.0
             lines[name] = ((high - low) / 2, slope)
             continue
         centre[name] = table[name].copy()

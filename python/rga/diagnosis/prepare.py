@@ -70,6 +70,9 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         raise InputError("no channel works", "record", "look at the reasons with a smaller record")
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
     warnings = list(record.warnings)
+    silent = int((~data.observed.any(1)).sum())
+    if silent:
+        warnings.append(f"{silent} rows without a context or without any reading were left aside")
     if spikes.any():
         warnings.append(f"{int(spikes.sum())} lone spikes were taken as missing readings")
         data = replace(data, observed=data.observed & ~spikes)
@@ -79,6 +82,9 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
 def _data(model: Model, record: Record) -> Data:
     order = {name: number for number, name in enumerate(model.sensors)}
     belief = first_belief(model, record.origin + record.time, record.contexts)
+    # A row whose context is missing cannot be simulated: its readings are left aside.
+    told = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
+    complete = np.all(told, axis=0) if told else np.ones(len(record.time), dtype=bool)
     leading = np.zeros(0, dtype=np.int64)
     if record.zero is not None:
         first, last = np.searchsorted(record.time, record.zero)
@@ -87,7 +93,7 @@ def _data(model: Model, record: Record) -> Data:
         sensors=tuple(record.sensors),
         columns=[order[name] for name in record.sensors],
         readings=np.nan_to_num(record.readings),
-        observed=np.isfinite(record.readings),
+        observed=np.isfinite(record.readings) & complete[:, None],
         belief=belief,
         zero={name: column[leading] for name, column in belief.table.items()},
     )

@@ -207,9 +207,18 @@ def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
             f"at the first analysed row [{unit}]": float(level),
         }
     for number, name in enumerate(belief.spread):
-        key = "prior spread" if name in belief.latent else "noise of the measurement"
         unit = model.context[name].unit
-        told[name] = {f"{key} [{unit}]": float(problem.noise.context_sigma[number])}
+        if name in belief.latent:
+            column = belief.table[name]
+            told[name] = {
+                f"inferred mean [{unit}]": float(column.mean()),
+                f"inferred smallest [{unit}]": float(column.min()),
+                f"inferred largest [{unit}]": float(column.max()),
+            }
+        else:
+            told[name] = {
+                f"noise of its measurement [{unit}]": float(problem.noise.context_sigma[number])
+            }
     return told
 
 
