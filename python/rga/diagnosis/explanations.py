@@ -106,10 +106,14 @@ def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
 
 
 def variance(problem: Problem) -> FloatArray:
-    """Variance of each reading about a faultless simulation, float[rows, sensors]."""
-    known = problem.covariance.rows.context_jacobian.shape[2] - problem.factors.shape[1]
-    jacobian = problem.covariance.rows.context_jacobian[:, :, :known]
-    contexts = (jacobian**2) @ problem.noise.context_sigma[:known] ** 2
+    """Variance of each reading about a faultless simulation, float[rows, sensors].
+
+    Noise, and the errors of the contexts that were measured.
+    """
+    belief = problem.data.belief
+    measured = [k for k, name in enumerate(belief.spread) if name not in belief.latent]
+    jacobian = problem.covariance.rows.context_jacobian[:, :, measured]
+    contexts = (jacobian**2) @ problem.noise.context_sigma[measured] ** 2
     return np.asarray(problem.noise.sigma**2 + contexts)
 
 

@@ -16,9 +16,9 @@ from rga.diagnosis.findings import Findings
 from rga.diagnosis.heldout import gain, held_out_rows
 from rga.diagnosis.hypothesis import hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
-from rga.diagnosis.problem import Problem
+from rga.diagnosis.problem import Problem, pose, relaxed
 from rga.diagnosis.screening import screen
-from rga.diagnosis.search import Found, search, settled, weighed
+from rga.diagnosis.search import ROUNDS, Found, search, settled, weighed
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault
 from rga.model.parameter import FloatArray
@@ -115,9 +115,8 @@ def _account(
     model: Model, extended: Model, prepared: Prepared, held_out: Any, start: Problem, found: Found
 ) -> Account:
     full = prepared.data
-    before = _everywhere(full, start.data).predict(Simulator(model))
-    whole = _everywhere(full, found.problem.data)
-    after = whole.predict(Simulator(extended))
+    before = _everywhere(full, start).predict(Simulator(model))
+    after = _everywhere(full, found.problem).predict(Simulator(extended))
     record = prepared.record
     columns = [record.sensors.index(name) for name in full.sensors]
     rejected = np.array([name not in full.sensors for name in record.sensors])
@@ -148,16 +147,24 @@ def _account(
     )
 
 
-def _everywhere(full: Data, part: Data) -> Data:
-    """All rows with the latent contexts as a part of the rows tells them; lines are prolonged."""
-    changes = {}
-    for name in part.belief.lines:
-        line = np.polyfit(part.time - part.time[0], part.belief.table[name], 1)
-        changes[name] = np.polyval(line, full.time - part.time[0])
-    for name in part.belief.latent:
-        changes[name] = np.interp(full.time, part.time, part.belief.table[name])
+def _everywhere(full: Data, part: Problem) -> Data:
+    """All rows with their latent contexts.
 
-    return replace(full, belief=full.belief.with_values(changes))
+    Lines are prolonged. What is latent row by row can only come from the readings of the row: on
+    held-out rows the model infers it as it would in use.
+    """
+    changes = {}
+    belief = part.data.belief
+    clock = part.data.time - part.data.time[0]
+    for name in belief.lines:
+        line = np.polyfit(clock, belief.table[name], 1)
+        changes[name] = np.polyval(line, full.time - part.data.time[0])
+    whole = replace(full, belief=full.belief.with_values(changes))
+    for _ in range(ROUNDS if belief.latent else 0):
+        inferred = relaxed(pose(part.simulator, whole, factors=part.factors)).belief.table
+        latent = {name: inferred[name] for name in belief.latent}
+        whole = replace(whole, belief=whole.belief.with_values(latent))
+    return whole
 
 
 def gain_of(account: Account, seed: int) -> Any:
