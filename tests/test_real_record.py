@@ -51,6 +51,9 @@ def test_the_floor_and_not_a_bearing(findings: rga.Findings) -> None:
     assert named & FLOOR
     assert not (named | rivals) & {"support_spring", "bearing_friction", "elastic_modulus"}
     assert findings.verdict == "partial"
+    # Tied or through its connections: the lead of one over the other hangs on single channels.
+    assert named | rivals >= FLOOR
+    assert all(c.separated_by for c in structural)
 
 
 def test_explanations_are_judged_on_unseen_channels(findings: rga.Findings) -> None:

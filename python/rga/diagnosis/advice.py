@@ -48,9 +48,11 @@ def separating_sensor(cause: Simulator, rival: Simulator, data: Data) -> str:
 
 
 def _everywhere(model: Model) -> dict[str, Sensor]:
+    gauged = {sensor.member for sensor in model.sensors.values()}
     sensors = {
         f"strain of {name}": Sensor(kind="strain", member=name, unit="microstrain")
         for name in model.members
+        if name not in gauged
     }
     used = {node for member in model.members.values() for node in member.nodes}
     for node in sorted(used):

@@ -88,7 +88,11 @@ def compare(
     for number, (together, start) in enumerate(_each_once(chosen)):
         one = fit(problem, base, together, start)
         tried.append(
-            Tried(one, _gap(problem, one.simulated), _unseen(problem, hidden, groups, found, one))
+            Tried(
+                one,
+                _gap(problem, one.simulated),
+                unseen_gap(problem, hidden, groups, base, one),
+            )
         )
         progress((number + 1) / len(chosen))
     gained = _free_gains(problem, tried[0])
@@ -140,17 +144,26 @@ def _gap(problem: Problem, simulated: FloatArray) -> float:
     return float(square[problem.data.observed].mean())
 
 
-def _unseen(
+def unseen_gap(
     problem: Problem,
     hidden: dict[str, Problem],
     groups: dict[str, list[str]],
-    found: Found,
+    base: Simulator,
     one: Fit,
 ) -> float:
+    """Gap on groups of channels, each left out of the fit in turn; nan where there is one group.
+
+    Args:
+        problem: with all channels.
+        hidden: the same with each group unseen.
+        groups: channels of each group.
+        base: the simulator without causes.
+        one: the explanation, as fitted to all channels.
+    """
     squares = []
     for word, part in hidden.items():
         columns = [problem.data.sensors.index(name) for name in groups[word]]
-        blind = fit(part, found.base, one.hypotheses, one.z, STEPS) if one.hypotheses else one
+        blind = fit(part, base, one.hypotheses, one.z, STEPS) if one.hypotheses else one
         square = problem.residual(blind.simulated) ** 2 / variance(problem)
         squares.append(square[:, columns][problem.data.observed[:, columns]])
     return float(np.concatenate(squares).mean()) if squares else float("nan")

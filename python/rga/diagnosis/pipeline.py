@@ -1,6 +1,6 @@
 """The diagnosis: a model and a record in, findings out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,9 +14,10 @@ from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
 from rga.diagnosis.heldout import gain, held_out_rows
-from rga.diagnosis.hypothesis import hypotheses
+from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
 from rga.diagnosis.problem import Problem, pose, relaxed
+from rga.diagnosis.robustness import with_hanging_leads, without_unhelpful
 from rga.diagnosis.screening import screen
 from rga.diagnosis.search import ROUNDS, Found, search, settled, weighed
 from rga.model.effect import Effect
@@ -100,15 +101,20 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     return findings
 
 
-def _confirmed(found: Found, candidates: Any, progress: Progress) -> Found:
+def _confirmed(found: Found, candidates: Sequence[Hypothesis], progress: Progress) -> Found:
     """The causes that stand once the structure that they leave is part of the noise.
 
-    A cause that was named only because it resembles a pattern of unknown origin falls here.
+    A cause that was named only because it resembles a pattern of unknown origin falls here, and
+    one that does not help channels which were not fitted.
     """
     problem = leftover.with_leftovers(found.problem)
     if problem is found.problem:
         return found
-    return weighed(problem, found.base, found.fit, candidates, progress)
+    found = weighed(problem, found.base, found.fit, candidates, progress)
+    helpful = without_unhelpful(found.problem, found.base, found.fit)
+    if len(helpful.hypotheses) < len(found.fit.hypotheses):
+        found = weighed(found.problem, found.base, helpful, candidates, progress)
+    return with_hanging_leads(found, lambda done: progress("leaving out channels", done))
 
 
 def _account(

@@ -30,10 +30,17 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Alternative:
-    """A hypothesis that could stand in the place of a cause, fitted beside the other causes."""
+    """A hypothesis that could stand in the place of a cause, fitted beside the other causes.
+
+    Attributes:
+        hypothesis: itself.
+        fit: the other causes and the hypothesis.
+        behind: log-odds of the causes against it.
+    """
 
     hypothesis: Hypothesis
     fit: Fit
+    behind: float
 
 
 @dataclass(frozen=True)
@@ -104,7 +111,7 @@ def weighed(
         alternatives, odds = [], []
         for number in range(len(current.hypotheses)):
             progress("weighing rivals", number / len(current.hypotheses))
-            without = _without(problem, base, current, number)
+            without = without_cause(problem, base, current, number)
             odds.append(current.log_evidence - without.log_evidence)
             alternatives.append(
                 tuple(_alternatives(problem, base, current, without, number, candidates))
@@ -230,7 +237,7 @@ def _merged(
 def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, Fit]:
     """Take out causes that the others have made needless."""
     while current.hypotheses:
-        fits = [_without(problem, base, current, k) for k in range(len(current.hypotheses))]
+        fits = [without_cause(problem, base, current, k) for k in range(len(current.hypotheses))]
         best = max(fits, key=lambda one: one.log_evidence)
         if current.log_evidence - best.log_evidence >= NAMED:
             break
@@ -238,7 +245,7 @@ def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, F
     return problem, current
 
 
-def _without(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:
+def without_cause(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:
     others = [one for k, one in enumerate(current.hypotheses) if k != number]
     return fit(problem, base, others, np.delete(current.z, current.slices()[number]))
 
@@ -263,7 +270,8 @@ def _alternatives(
         one = fit(
             problem, base, [*without.hypotheses, prospect.hypothesis], [*without.z, *prospect.z]
         )
-        found.append(Alternative(prospect.hypothesis, one))
+        behind = current.log_evidence - one.log_evidence
+        found.append(Alternative(prospect.hypothesis, one, behind))
     return sorted(found, key=lambda one: -one.fit.log_evidence)
 
 

@@ -288,8 +288,7 @@ def _last_effect(one: Fit, record: Record) -> dict[str, Any]:
 
 
 def _rivals(found: Found, number: int) -> list[Alternative]:
-    best = found.fit.log_evidence
-    return [one for one in found.alternatives[number] if best - one.fit.log_evidence < RIVAL]
+    return [one for one in found.alternatives[number] if one.behind < RIVAL]
 
 
 def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[float, float]:

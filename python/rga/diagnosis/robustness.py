@@ -1,0 +1,76 @@
+"""Causes under doubt: where structure is left, the noise is not all that it is taken for.
+
+Evidence is exact only for the noise that it assumes. Where sensors share a pattern that no cause
+explains, two things are asked of a cause beyond its evidence: that it helps channels which were not
+fitted, and that its lead over a rival does not hang on a single channel.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rga.diagnosis.evidence import Fit, fit
+from rga.diagnosis.explanations import hiding, sensor_groups, unseen_gap
+from rga.diagnosis.problem import Problem
+from rga.diagnosis.search import Alternative, Found, without_cause
+from rga.simulation import Simulator
+
+#: log-odds up to which a lead may hang on one channel
+DOUBTFUL = 30.0
+STEPS = 5
+
+
+def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
+    """The causes, less those that make channels worse which were not fitted.
+
+    Causes on a sensor of its own say nothing of other channels, and are kept.
+    """
+    groups = sensor_groups(base.model, problem.data.sensors)
+    if len(groups) < 2 or len(current.hypotheses) < 2:
+        return current
+    hidden = {word: hiding(problem, names) for word, names in groups.items()}
+    while len(current.hypotheses) > 1:
+        whole = unseen_gap(problem, hidden, groups, base, current)
+        fewer = [
+            without_cause(problem, base, current, number)
+            for number, one in enumerate(current.hypotheses)
+            if not one.kind.on_sensors
+        ]
+        gaps = [unseen_gap(problem, hidden, groups, base, one) for one in fewer]
+        if not gaps or min(gaps) >= whole:
+            break
+        current = fewer[int(np.argmin(gaps))]
+    return current
+
+
+def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found:
+    """The alternatives with their distance where one channel that favours the cause is left out."""
+    problem = found.problem
+    close = {
+        (number, place): one
+        for number, ranked in enumerate(found.alternatives)
+        for place, one in enumerate(ranked)
+        if one.behind < DOUBTFUL
+    }
+    if not close:
+        return found
+    nearest = {key: one.behind for key, one in close.items()}
+    for step, sensor in enumerate(problem.data.sensors):
+        part = hiding(problem, [sensor])
+        causes = fit(part, found.base, found.fit.hypotheses, found.fit.z, STEPS)
+        for key, one in close.items():
+            other = fit(part, found.base, one.fit.hypotheses, one.fit.z, STEPS)
+            nearest[key] = min(nearest[key], causes.log_evidence - other.log_evidence)
+        progress((step + 1) / len(problem.data.sensors))
+    return replace(
+        found,
+        alternatives=tuple(
+            tuple(_nearer(one, nearest.get((number, place))) for place, one in enumerate(ranked))
+            for number, ranked in enumerate(found.alternatives)
+        ),
+    )
+
+
+def _nearer(one: Alternative, behind: float | None) -> Alternative:
+    return one if behind is None else replace(one, behind=behind)
