@@ -41,6 +41,10 @@ REFUSED: dict[str, tuple[Change, list[str]]] = {
         lambda m: m["effects"]["warmth"].update(onset="soon"),
         ["soon"],
     ),
+    "a sensor named like a context": (
+        lambda m: m["sensors"].update(load=m["sensors"]["D1"]),
+        ["sensors.load", "same name"],
+    ),
     "another version": (lambda m: m.update(rga_model=2), ["rga_model"]),
 }
 

@@ -67,7 +67,12 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     broken = find_faults(data.sensors, data.readings, data.observed, expected, basis)
     data = _without(data, broken)
     if not data.sensors:
-        raise InputError("no channel works", "record", "look at the reasons with a smaller record")
+        fault = [*stuck, *broken][0]
+        raise InputError(
+            "none of the channels works",
+            f"record; of {fault.sensor!r}, {fault.why}",
+            "check the record and the mapping",
+        )
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
     warnings = list(record.warnings)
     silent = int((~data.observed.any(1)).sum())

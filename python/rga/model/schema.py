@@ -223,6 +223,8 @@ class Model(Part):
         for number, tie in enumerate(self.ties):
             for node in tie.nodes:
                 self._known("nodes", node, f"ties[{number}]")
+        if both := sorted(self.sensors.keys() & self.context.keys()):
+            raise ValueError(f"sensors.{both[0]}: a context variable has the same name")
         for name, sensor in self.sensors.items():
             if sensor.member is not None:
                 self._known("members", sensor.member, f"sensors.{name}.member")

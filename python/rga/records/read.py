@@ -11,6 +11,9 @@ import polars as pl
 from rga.errors import InputError
 from rga.records.record import FloatArray
 
+#: what no unit of any sensor reaches
+LARGEST = 1e30
+
 
 @dataclass(frozen=True)
 class Table:
@@ -38,7 +41,7 @@ class Table:
         """A column as float[n], NaN where a cell is empty or says NaN.
 
         Raises:
-            InputError: a cell holds no number, or an infinite one.
+            InputError: a cell holds no number, or one that nothing measures.
         """
         series = self.frame[column]
         values = series.cast(pl.Float64, strict=False) if _castable(series.dtype) else None
@@ -57,11 +60,13 @@ class Table:
                 "write a number with a decimal point, or leave the cell empty where it is missing",
             )
         numbers = np.array(values.fill_null(float("nan")).to_numpy(), dtype=float)
-        infinite = np.isinf(numbers)
-        if infinite.any():
+        impossible = np.abs(numbers) > LARGEST
+        if impossible.any():
+            row = int(np.argmax(impossible))
+            infinite = np.isinf(numbers[row])
             raise InputError(
-                "the value is infinite",
-                self.where(int(np.argmax(infinite)), column),
+                "the value is infinite" if infinite else f"nothing measures {numbers[row]:g}",
+                self.where(row, column),
                 "leave the cell empty where the value is missing",
             )
         return numbers
