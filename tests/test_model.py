@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 
 from rga.errors import InputError, UnstableStructureError
-from rga.model import load_model, model_content, read_model, write_model
+from rga.model import load_model, model_content, model_schema, read_model, write_model
 from rga.simulation import Simulator
 
 Change = Callable[[dict[str, Any]], object]
@@ -89,3 +90,27 @@ def test_what_is_written_is_read_back(tmp_path: Path, two_bars: dict[str, Any]) 
     assert model_content(again) == model_content(model)
     assert len(again.sha256) == 64
     assert [path.name for path in tmp_path.iterdir()] == ["model.json"]
+
+
+def test_the_schema_takes_what_is_a_model(two_bars: dict[str, Any]) -> None:
+    example = Path(__file__).parents[1] / "examples" / "rdso45m" / "model.json"
+    validator = jsonschema.Draft202012Validator(model_schema())
+    validator.validate(json.loads(example.read_text(encoding="utf-8")))
+    validator.validate(two_bars)
+    two_bars["effects"]["warmth"]["colour"] = "red"
+    assert not validator.is_valid(two_bars)
+
+
+@pytest.mark.parametrize(
+    ("effect", "expected"),
+    [
+        ({"kind": "elastic_modulus", "material": "steel"}, "factor"),
+        ({"kind": "support_spring", "support": "W", "dof": "ux", "stiffness": 1e6}, "holds ux"),
+    ],
+)
+def test_effects_that_do_nothing_are_refused(
+    effect: dict[str, Any], expected: str, two_bars: dict[str, Any]
+) -> None:
+    two_bars["effects"]["hidden"] = effect
+    with pytest.raises(InputError, match=expected):
+        read_model(two_bars, "model.json")

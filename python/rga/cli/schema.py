@@ -23,9 +23,9 @@ def schema(
     from rga.cli.output import write_json
 
     if of is Format.model:
-        from rga.model import Model
+        from rga.model import model_schema
 
-        content = Model.model_json_schema()
+        content = model_schema()
     elif of is Format.record:
         from rga.records import record_schema
 

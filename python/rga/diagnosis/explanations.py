@@ -6,6 +6,7 @@ also hold for channels that were not fitted: whole groups of them are left out i
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from rga.diagnosis.evidence import Fit, fit
 from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.screening import Prospect, screen
-from rga.diagnosis.search import Found
+from rga.diagnosis.search import Found, evidence
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.simulation import Simulator
@@ -22,6 +23,8 @@ from rga.simulation import Simulator
 KINDS = {True: 14, False: 5}
 PARTNERS = 4
 STEPS = 5
+#: log evidence below which a fit has gone astray: no effect at all is this much likelier
+POOR = -15.0
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,10 @@ def compare(
     tried = []
     for number, (together, start) in enumerate(_each_once(chosen)):
         one = fit(problem, base, together, start)
+        if len(together) == 1 and one.log_evidence < POOR:
+            # The signature of a kind that slips or opens misleads: begin from every trial value.
+            trials = product(*(prior.trials for prior in together[0].priors.values()))
+            one = max((fit(problem, base, together, z) for z in trials), key=evidence)
         tried.append(
             Tried(
                 one,

@@ -113,7 +113,11 @@ class GroupGap(Part):
 
 
 class Findings(Part):
-    """What a diagnosis found: the verdict, the causes, the gain, and what stays unexplained."""
+    """What a diagnosis found: the verdict, the causes, the gain, and what stays unexplained.
+
+    Attributes:
+        misfits: sensors that work and do not fit the extended model as their like do.
+    """
 
     rga_findings: Literal[1] = 1
     verdict: Verdict
@@ -125,6 +129,7 @@ class Findings(Part):
     groups: list[GroupGap] = []
     contexts: dict[str, dict[str, Any]] = {}
     warnings: list[str] = []
+    misfits: list[str] = []
     seed: int
     model_sha256: str
     record_sha256: str

@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
 from rga.diagnosis.channels import Fault
+from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
@@ -64,6 +65,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     start = settled(base, data)
     prospects = screen(start, base, candidates, progress=lambda x: progress("screening", x))
     found = search(start, base, candidates, prospects, progress)
+    noise = found.problem
     found = _confirmed(found, candidates, progress)
     tried = compare(found, prospects, lambda done: progress("comparing explanations", done))
 
@@ -71,10 +73,11 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     faults = {f"fault of {fault.sensor}": _fault_effect(fault) for fault in prepared.faults}
     named = {tell.cause_name(model, effect): effect for effect in effects}
     extended = model.extended({**named, **faults})
-    account = _account(model, extended, prepared, held_out, start, found)
+    account = _account(model, extended, prepared, held_out, (start, found.problem), noise)
     share = leftover.share_left(found.problem)
     structure = share > STRUCTURE
     grouped = sensor_groups(model, data.sensors)
+    misfits = tell.misfits(account, grouped)
     findings = Findings(
         verdict=tell.verdict(found, bool(prepared.faults), structure),
         gap=tell.gap(account, gain_of(account, seed)),
@@ -90,7 +93,8 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         explanations=tell.explanations(tried, found, prepared.record),
         groups=tell.groups(account, grouped),
         contexts=tell.contexts(found.problem, model),
-        warnings=prepared.warnings + tell.misfits(account, grouped),
+        warnings=[*prepared.warnings, *misfits.values()],
+        misfits=list(misfits),
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,
@@ -118,11 +122,20 @@ def _confirmed(found: Found, candidates: Sequence[Hypothesis], progress: Progres
 
 
 def _account(
-    model: Model, extended: Model, prepared: Prepared, held_out: Any, start: Problem, found: Found
+    model: Model,
+    extended: Model,
+    prepared: Prepared,
+    held_out: BoolArray,
+    problems: tuple[Problem, Problem],
+    noise_of: Problem,
 ) -> Account:
+    """What was measured and simulated, before and after (`problems`).
+
+    The gap is in units of the noise as it was before shared patterns were taken out of it.
+    """
     full = prepared.data
-    before = _everywhere(full, start).predict(Simulator(model))
-    after = _everywhere(full, found.problem).predict(Simulator(extended))
+    before = _everywhere(full, problems[0]).predict(Simulator(model))
+    after = _everywhere(full, problems[1]).predict(Simulator(extended))
     record = prepared.record
     columns = [record.sensors.index(name) for name in full.sensors]
     rejected = np.array([name not in full.sensors for name in record.sensors])
@@ -132,12 +145,12 @@ def _account(
         out[:, columns] = values
         return out
 
-    spread = np.sqrt(variance(found.problem))
+    spread = np.sqrt(variance(noise_of))
     noise = np.empty_like(full.readings)
     noise[~held_out] = spread
     noise[held_out] = np.sqrt((spread**2).mean(0))
     sigma = np.full(len(record.sensors), np.nan)
-    sigma[columns] = found.problem.noise.sigma
+    sigma[columns] = noise_of.noise.sigma
     readings = placed(np.where(full.observed, full.readings, np.nan))
 
     return Account(

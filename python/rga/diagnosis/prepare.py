@@ -19,6 +19,7 @@ from rga.simulation import Simulator
 #: rows that are analysed at most; more are thinned evenly
 MOST_ROWS = 800
 LEAST_ROWS = 12
+FEW_ROWS = 60
 ZERO_ROWS = 8
 
 
@@ -75,6 +76,8 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         )
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
     warnings = list(record.warnings)
+    if chosen.sum() < FEW_ROWS:
+        warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     silent = int((~data.observed.any(1)).sum())
     if silent:
         warnings.append(f"{silent} rows without a context or without any reading were left aside")

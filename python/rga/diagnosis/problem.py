@@ -13,6 +13,8 @@ from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3
+#: share of the noise that a sensor keeps beside a shared pattern, at least
+LEAST_OWN_NOISE = 0.6
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,9 @@ def pose(
     scale = np.sqrt((left**2).sum(0) / np.maximum(data.observed.sum(0), 1))
     stated = np.array([simulator.model.sensors[name].noise or 0.0 for name in data.sensors])
     floor = np.maximum(0.3 * stated, 1e-9 + 1e-4 * np.abs(simulated).max(0, initial=0.0))
+    if factors.shape[1] and before is not None:
+        # A pattern of unknown origin must not take all of a sensor's noise for itself.
+        floor = np.maximum(floor, LEAST_OWN_NOISE * before.noise.sigma)
     start = Noise(
         sigma=np.maximum(scale, floor),
         phi=np.full(len(data.sensors), 0.3),

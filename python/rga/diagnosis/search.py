@@ -117,14 +117,14 @@ def weighed(
                 tuple(_alternatives(problem, base, current, without, number, candidates))
             )
         found = Found(problem, current, base, tuple(alternatives), tuple(odds))
-        better = max((one[0].fit for one in alternatives if one), key=_evidence, default=current)
+        better = max((one[0].fit for one in alternatives if one), key=evidence, default=current)
         if better.log_evidence <= current.log_evidence + WORTH_EXCHANGE:
             break
         problem, current = _settled_with(base, problem, better)
     return found
 
 
-def _evidence(one: Fit) -> float:
+def evidence(one: Fit) -> float:
     return one.log_evidence
 
 

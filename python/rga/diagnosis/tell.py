@@ -26,7 +26,7 @@ from rga.diagnosis.heldout import Gain
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.screening import Prospect
 from rga.diagnosis.search import RIVAL, Alternative, Found, onset_chances
-from rga.diagnosis.words import effect_words
+from rga.diagnosis.words import effect_words, place_words
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault, SensorGain
 from rga.model.parameter import Estimated, FloatArray
@@ -41,6 +41,8 @@ MISFIT, LEAST_MISFIT = 3.0, 3.0
 DEAD = 0.05
 #: share of the gap on unseen channels that an explanation must take off; unlikely z
 UNHELPFUL, UNLIKELY = 0.98, 3.0
+#: share of the named causes' gap on unseen channels below which another predicts them better
+BETTER = 0.9
 
 
 def effects_of(found: Found, record: Record) -> list[Effect]:
@@ -80,11 +82,13 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
         d_prime, d_perp = _sizes(found, number, nearest)
         separated = ""
         if nearest is not None:
-            separated = separating_sensor(
+            found_out = separating_sensor(
                 found.fit.simulator(found.base),
                 nearest.fit.simulator(found.base),
                 found.problem.data,
             )
+            against = effect_words(_last_effect(nearest.fit, record))
+            separated = f"against {against}: {found_out}" if found_out else ""
         told.append(
             Cause(
                 effect=content(effect),
@@ -160,7 +164,7 @@ def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
     return [
         Unidentifiable(
             kind=p.hypothesis.name,
-            place=", ".join(str(one) for one in p.hypothesis.place.values()),
+            place=place_words(p.hypothesis.place.values()),
             d_prime_at_largest=p.largest,
         )
         for p in prospects
@@ -171,6 +175,7 @@ def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
 def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
     """The explanations that were tried, the likeliest first."""
     nothing = tried[0]
+    named = next((one for one in tried if one.fit and _same(one.fit, found.fit)), nothing)
     told = []
     for one in tried:
         if one.fit is None:
@@ -180,7 +185,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             effects = [content(_effect(one.fit, k, record)) for k in range(len(one.fit.hypotheses))]
             words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
             odds = one.fit.log_evidence
-            remark = _remark(one, nothing, found.fit)
+            remark = _remark(one, nothing, named, found.fit)
         told.append(
             Explanation(
                 words=words,
@@ -222,7 +227,7 @@ def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
     return told
 
 
-def misfits(account: Account, grouped: Mapping[str, Sequence[str]]) -> list[str]:
+def misfits(account: Account, grouped: Mapping[str, Sequence[str]]) -> dict[str, str]:
     """Channels that work but do not fit the extended model as their like do, in words."""
     columns = {name: k for k, name in enumerate(account.record.sensors)}
     off = {
@@ -236,12 +241,12 @@ def misfits(account: Account, grouped: Mapping[str, Sequence[str]]) -> list[str]
     apart = {name: abs(one - middle[name]) for name, one in off.items()}
     usual = max(1.4826 * float(np.median(list(apart.values()))), LEAST_MISFIT)
     like = {n: [o for o in names if o != n] for names in grouped.values() for n in names}
-    return [
-        f"channel {name} does not fit: it reads {off[name]:+.0f} % against the extended model, "
-        f"its like ({', '.join(like[name])}) {middle[name]:+.0f} % in the middle"
+    return {
+        name: f"channel {name} does not fit: it reads {off[name]:+.0f} % against the extended "
+        f"model, its like ({', '.join(like[name])}) {middle[name]:+.0f} % in the middle"
         for name in off
         if apart[name] > MISFIT * usual and like[name]
-    ]
+    }
 
 
 def versions() -> dict[str, str]:
@@ -272,6 +277,12 @@ def _effect(one: Fit, number: int, record: Record) -> Effect:
     if hypothesis.onset is None:
         return effect
     return effect.model_copy(update={"onset": record.time_label(hypothesis.onset - record.origin)})
+
+
+def _same(one: Fit, other: Fit) -> bool:
+    return len(one.hypotheses) == len(other.hypotheses) and all(
+        a.same_place(b) for a, b in zip(one.hypotheses, other.hypotheses, strict=True)
+    )
 
 
 def _dead(effect: Effect) -> Effect:
@@ -339,7 +350,7 @@ def _why(found: Found, number: int) -> str:
     return f"it shows most in {names}"
 
 
-def _remark(one: Tried, nothing: Tried, causes: Fit) -> str:
+def _remark(one: Tried, nothing: Tried, named: Tried, causes: Fit) -> str:
     """Why an explanation was kept or rejected."""
     assert one.fit is not None  # the caller tells free gains apart
     if not one.fit.hypotheses:
@@ -356,6 +367,8 @@ def _remark(one: Tried, nothing: Tried, causes: Fit) -> str:
         remarks.append(close if ahead > -RIVAL else f"rejected ({ahead:+.0f} log-odds)")
     else:
         remarks.append("rejected: not likelier than no effect at all")
+    if not all(held) and one.gap_unseen < BETTER * named.gap_unseen:
+        remarks.append("yet it predicts channels that were left out better than what is named")
     if np.isfinite(one.gap_unseen) and one.gap_unseen > UNHELPFUL * nothing.gap_unseen:
         remarks.append("does not help channels that it was not fitted to")
     remarks += [

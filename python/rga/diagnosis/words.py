@@ -1,6 +1,6 @@
 """Findings in plain words."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rga.model import Effect
@@ -24,18 +24,27 @@ def effect_words(effect: Mapping[str, Any]) -> str:
     kind = Effect.vocabulary.get(effect["kind"])
     parameters = kind.parameters() if kind else {}
     places = list(kind.place_fields()) if kind else []
-    place = ", ".join(_place(effect[name]) for name in places if effect.get(name) is not None)
+    place = place_words(effect[name] for name in places if effect.get(name) is not None)
     values = "; ".join(
         f"{name.replace('_', ' ')} {quantity(effect[name], mark.unit)}"
         for name, mark in parameters.items()
         if effect.get(name) is not None
     )
     mode = f" ({effect['mode']})" if "mode" in effect else ""
-    onset = f", from {effect['onset']} on" if effect.get("onset") is not None else ""
+    onset = f", from {_moment(effect['onset'])} on" if effect.get("onset") is not None else ""
     of = f" of {place}" if place else ""
     return (
         f"{effect['kind'].replace('_', ' ')}{of}{mode}" + (f": {values}" if values else "") + onset
     )
+
+
+def place_words(places: Iterable[Any]) -> str:
+    """The parts of a place in words.
+
+    >>> place_words(["east", "ux"])
+    'east, ux'
+    """
+    return ", ".join(_place(place) for place in places)
 
 
 def quantity(value: Any, unit: str) -> str:
@@ -65,9 +74,11 @@ def verdict_sentence(findings: "Findings") -> str:
             told.append(f"These data cannot tell it from: {'; '.join(rivals)}.")
         held = findings.gap.held_out
         low, high = held.gain_ci90
+        moves = "falls" if held.gain > 0 else "rises"
+        doubt = "" if low > 0 else "; so the gain is not sure"
         told.append(
-            f"On rows that no step saw the gap falls from {held.before:.3g} to {held.after:.3g} "
-            f"times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to {high:.3g})."
+            f"On rows that no step saw the gap {moves} from {held.before:.3g} to {held.after:.3g} "
+            f"times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to {high:.3g}{doubt})."
         )
     elif findings.verdict == "nothing_wrong":
         told.append("Nothing is wrong with the model that these data could show.")
@@ -77,12 +88,20 @@ def verdict_sentence(findings: "Findings") -> str:
         told.append("What was asked cannot show in these data.")
     if faults:
         told.append(f"Channels that do not work: {', '.join(map(str, faults))}.")
+    if findings.misfits:
+        told.append(f"Channels that work and do not fit: {', '.join(findings.misfits)}.")
     if findings.verdict in ("partial", "unknown"):
         told.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
     return " ".join(told)
 
 
+def _moment(onset: Any) -> str:
+    return onset if isinstance(onset, str) else f"{onset:g} s"
+
+
 def _place(place: Any) -> str:
+    if isinstance(place, list | tuple) and all(isinstance(one, int | float) for one in place):
+        return f"direction [{', '.join(f'{one:g}' for one in place)}]"
     if isinstance(place, list | tuple):
         if len(place) > 4 and all(isinstance(one, str) for one in place):
             return f"{place[0]} and {len(place) - 1} more"

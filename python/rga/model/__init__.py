@@ -3,7 +3,7 @@
 from rga.model import effects as effects
 from rga.model.effect import Effect
 from rga.model.load import load_model, model_content, read_model, write_model
-from rga.model.schema import ContextVariable, Model, Sensor, read_effect
+from rga.model.schema import ContextVariable, Model, Sensor, model_schema, read_effect
 
 __all__ = [
     "ContextVariable",
@@ -12,6 +12,7 @@ __all__ = [
     "Sensor",
     "load_model",
     "model_content",
+    "model_schema",
     "read_effect",
     "read_model",
     "write_model",

@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, field_validator
+from pydantic import BaseModel, ConfigDict, field_validator, model_validator
 
 from rga.model.parameter import (
     Driven,
@@ -66,6 +66,19 @@ class Effect(BaseModel):
             raise ValueError(f"{moment!r} is no time: give seconds or ISO 8601")
         return moment
 
+    @model_validator(mode="after")
+    def _some_parameter(self) -> Self:
+        marked = self.parameters()
+        idle = all(
+            type(self).model_fields[name].default in (None, mark.neutral)
+            for name, mark in marked.items()
+            if mark.neutral is not None
+        )
+        if marked and idle and not self.model_fields_set & marked.keys():
+            needed = " or ".join(f"{name!r} [{mark.unit}]" for name, mark in marked.items())
+            raise ValueError(f"without {needed} the effect does nothing: give it")
+        return self
+
     @classmethod
     @cache
     def parameters(cls) -> dict[str, Parameter]:
@@ -123,6 +136,9 @@ class Effect(BaseModel):
                 value = blend(value, parameter.neutral, weight)
             resolved[name] = value
         return resolved
+
+    def check(self, model: "Model") -> None:
+        """Refuse a model that the effect does not fit (ValueError), beyond missing places."""
 
     def drivers(self) -> set[str]:
         """Context variables that drive parameters of this effect."""

@@ -2,7 +2,7 @@
 
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Union
 
 from pydantic import (
     BaseModel,
@@ -10,6 +10,7 @@ from pydantic import (
     Field,
     PrivateAttr,
     SerializeAsAny,
+    TypeAdapter,
     field_validator,
     model_validator,
 )
@@ -223,6 +224,8 @@ class Model(Part):
         for number, tie in enumerate(self.ties):
             for node in tie.nodes:
                 self._known("nodes", node, f"ties[{number}]")
+        if "time" in {**self.sensors, **self.context}:
+            raise ValueError("'time' is the column of the time: choose another name")
         if both := sorted(self.sensors.keys() & self.context.keys()):
             raise ValueError(f"sensors.{both[0]}: a context variable has the same name")
         for name, sensor in self.sensors.items():
@@ -259,8 +262,7 @@ class Model(Part):
                     raise ValueError(f"{where}.{field}: there is no {mark.of} {one!r} in the model")
         for node in getattr(effect, "nodes", ()):
             self._known("nodes", node, where)
-        if check_groups := getattr(effect, "check_groups", None):
-            check_groups(self)
+        effect.check(self)
         for context in effect.drivers():
             if context not in self.context:
                 raise ValueError(f"{where}: there is no context {context!r} in the model")
@@ -305,3 +307,20 @@ def read_effect(effect: Any, name: str) -> Effect:
             + ", ".join(sorted(Effect.vocabulary))
         )
     return Effect.vocabulary[kind].model_validate(effect)
+
+
+def model_schema() -> dict[str, Any]:
+    """JSON Schema of a model file, the kinds of effects in it."""
+    schema = Model.model_json_schema()
+    kinds: Any = Union[tuple(Effect.vocabulary.values())]  # noqa: UP007
+    effects = TypeAdapter(kinds).json_schema()
+    for definition in effects["$defs"].values():
+        for entry in definition.get("properties", {}).values():
+            if entry.get("default") == float("inf"):
+                del entry["default"]  # JSON has no infinity
+        if "kind" in definition.get("properties", {}):
+            definition["required"] = sorted({"kind", *definition.get("required", [])})
+    schema["$defs"] = {**schema["$defs"], **effects.pop("$defs")}
+    schema["$defs"].pop("Effect", None)
+    schema["properties"]["effects"]["additionalProperties"] = effects
+    return schema

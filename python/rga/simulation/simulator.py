@@ -138,9 +138,7 @@ class Simulator:
         return np.stack(columns, axis=2)
 
     def _table(self, contexts: Mapping[str, ArrayLike]) -> Values:
-        given = {
-            name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in contexts.items()
-        }
+        given = {name: _numbers(name, value) for name, value in contexts.items()}
         rows = max((len(column) for column in given.values()), default=1)
         table = {}
         for name in ("time", *self.model.context):
@@ -227,6 +225,14 @@ class Simulator:
                 if lead_in.any():
                     column -= column[lead_in].mean()
         return readings.values
+
+
+def _numbers(name: str, value: ArrayLike) -> FloatArray:
+    try:
+        return np.atleast_1d(np.asarray(value, dtype=float))
+    except (TypeError, ValueError):
+        remedy = "give a number, or one a row"
+        raise InputError(f"the context {name!r} holds no numbers", "contexts", remedy) from None
 
 
 def _rows(structure: Structure, loads: list[Load], rows: int) -> FloatArray:

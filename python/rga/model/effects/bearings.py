@@ -23,6 +23,11 @@ class SupportSpring(Effect):
     dof: Direction
     stiffness: Annotated[Value, Parameter("N/m", 0.0)] = 0.0
 
+    def check(self, model: Model) -> None:
+        for name in [self.support] if isinstance(self.support, str) else self.support:
+            if self.dof in model.supports[name].fixed:
+                raise ValueError(f"support {name!r} holds {self.dof}: name a free direction")
+
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from directions(model, held=False)
@@ -44,7 +49,7 @@ class SupportFlexibility(Effect):
     structural = True
     support: Supports
     dof: Direction
-    stiffness: Annotated[Value, Parameter("N/m", float("inf"))] = 1e12
+    stiffness: Annotated[Value, Parameter("N/m", float("inf"))] = float("inf")
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
+from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.parameter import Factor, Parameter, Place, Prior, Value
 from rga.model.schema import Model
@@ -26,6 +27,7 @@ class ElasticModulus(Effect):
         return {"factor": Factor(0.1)}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
+        positive(self, value["factor"])
         made_of = structure.of_material(self.material)
         structure.arrays["E"][made_of] *= value["factor"]
         structure.arrays["G"][made_of] *= value["factor"]
@@ -50,6 +52,17 @@ class MemberStiffness(Effect):
         return {"factor": Factor(0.5 if "member" in place else 0.2)}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
+        positive(self, value["factor"])
         chosen = structure.named(self.member, self.group)
         structure.arrays["E"][chosen] *= value["factor"]
         structure.arrays["G"][chosen] *= value["factor"]
+
+
+def positive(effect: Effect, factor: float) -> None:
+    """InputError where a factor on a stiffness is not positive."""
+    if not factor > 0:
+        raise InputError(
+            f"the factor {factor:g} leaves no stiffness",
+            f"{effect.kind} of {effect.place}",
+            "give a factor above 0",
+        )

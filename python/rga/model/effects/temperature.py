@@ -19,7 +19,7 @@ class Temperature(Effect):
     groups: dict[str, Number]
     delta: Annotated[Value, Parameter("K", 0.0)] = 1.0
 
-    def check_groups(self, model: "Model") -> None:
+    def check(self, model: "Model") -> None:
         """ValueError where a group is missing, or a member is in two of the listed groups."""
         seen: dict[str, str] = {}
         for group in self.groups:
