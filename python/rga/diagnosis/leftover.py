@@ -8,6 +8,7 @@ independent noise give (Marchenko and Pastur 1967 for its edge, a margin for its
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import lstsq
 from scipy.signal import lombscargle
 from scipy.stats import spearmanr
 
@@ -20,6 +21,8 @@ from rga.model.parameter import FloatArray
 MOST = 3
 MARGIN = 1.25
 CORRELATED, SWINGING = 0.4, 0.2
+#: standard deviations beyond which a bend is no chance
+BENT = 7.0
 
 
 @dataclass(frozen=True)
@@ -90,12 +93,48 @@ def share_left(problem: Problem) -> float:
     return float(np.mean(patterns / (patterns + variance)))
 
 
+def bent_contexts(problem: Problem) -> list[str]:
+    """Measured contexts whose errors bend with a context, in words.
+
+    The errors of a measurement know nothing of what is measured. Where they grow with the square of
+    a context, the structure answers to it otherwise than in proportion.
+    """
+    belief = problem.data.belief
+    residual = problem.residual(problem.simulated)
+    estimate = problem.covariance.scatter_estimate(residual)
+    error = problem.covariance.rows.context_error(residual - problem.covariance.scatter @ estimate)
+    told = []
+    for number, name in enumerate(belief.spread):
+        if name in belief.latent:
+            continue
+        size = {by: _bend(belief.centre[by], error[:, number]) for by in belief.spread}
+        strongest = max(size, key=lambda by: size[by])
+        if size[strongest] > BENT:
+            told.append(f"the response to {name} bends with {strongest}")
+    return told
+
+
+def _bend(context: FloatArray, error: FloatArray) -> float:
+    """Size of the quadratic part of an error over a context, in its standard deviations."""
+    scaled = (context - context.mean()) / max(float(context.std()), 1e-300)
+    design = np.column_stack([np.ones(len(scaled)), scaled, scaled**2])
+    # A context of two values has no square of its own.
+    weights, _, rank, _ = lstsq(design, error, cond=1e-6)
+    if rank < design.shape[1]:
+        return 0.0
+    rest = error - design @ weights
+    variance = float(rest @ rest) / max(len(rest) - design.shape[1], 1)
+    own = variance * np.linalg.inv(design.T @ design)[2, 2]
+    return float(abs(weights[2]) / np.sqrt(max(own, 1e-300)))
+
+
 def in_words(problem: Problem, contexts: Values) -> str:
     """What is left: patterns with what they follow, and the scatter that had to be assumed."""
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
-    scatter = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
+    chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
+    scatter = "; ".join([*bent_contexts(problem), chance])
     if problem.factors.shape[1] == 0:
-        return f"nothing that sensors share; {scatter}"
+        return f"nothing that varies in common from row to row; {scatter}"
     rows = problem.covariance.rows
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)

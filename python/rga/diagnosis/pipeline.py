@@ -75,7 +75,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     extended = model.extended({**named, **faults})
     account = _account(model, extended, prepared, held_out, (start, found.problem), noise)
     share = leftover.share_left(found.problem)
-    structure = share > STRUCTURE
+    structure = share > STRUCTURE or bool(leftover.bent_contexts(found.problem))
     grouped = sensor_groups(model, data.sensors)
     misfits = tell.misfits(account, grouped)
     findings = Findings(

@@ -210,8 +210,7 @@ def _settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem
     for _ in range(2):
         simulator = current.simulator(base)
         problem = pose(simulator, problem.data, problem)
-        if problem.data.belief.inferred:
-            problem = pose(simulator, relaxed(problem), problem)
+        problem = pose(simulator, relaxed(problem), problem)
         current = fit(problem, base, current.hypotheses, current.z)
     return problem, current
 

@@ -36,7 +36,7 @@ from rga.records import Record
 NORMAL_90 = 1.6448536269514722
 SMALLEST_D_PRIME = 3.0
 FAULT_NATS = float(np.log(1000.0))
-MISFIT, LEAST_MISFIT = 3.0, 3.0
+MISFIT, LEAST_MISFIT = 3.0, 4.0
 #: gain below which a channel is dead [-]
 DEAD = 0.05
 #: share of the gap on unseen channels that an explanation must take off; unlikely z
@@ -185,7 +185,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             effects = [content(_effect(one.fit, k, record)) for k in range(len(one.fit.hypotheses))]
             words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
             odds = one.fit.log_evidence
-            remark = _remark(one, nothing, named, found.fit)
+            remark = _remark(one, nothing, named, found)
         told.append(
             Explanation(
                 words=words,
@@ -350,12 +350,14 @@ def _why(found: Found, number: int) -> str:
     return f"it shows most in {names}"
 
 
-def _remark(one: Tried, nothing: Tried, named: Tried, causes: Fit) -> str:
+def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
     """Why an explanation was kept or rejected."""
     assert one.fit is not None  # the caller tells free gains apart
     if not one.fit.hypotheses:
         return "what every other explanation is measured against"
+    causes = found.fit
     ahead = one.fit.log_evidence - causes.log_evidence
+    rivals = [r for number in range(len(found.log_odds)) for r in _rivals(found, number)]
     held = [any(h.same_place(cause) for h in one.fit.hypotheses) for cause in causes.hypotheses]
     remarks = []
     if causes.hypotheses and all(held):
@@ -364,7 +366,13 @@ def _remark(one: Tried, nothing: Tried, named: Tried, causes: Fit) -> str:
         remarks.append(earned if added else "what is named")
     elif causes.hypotheses:
         close = f"cannot be told from what is named ({ahead:+.1f} log-odds)"
-        remarks.append(close if ahead > -RIVAL else f"rejected ({ahead:+.0f} log-odds)")
+        hangs = f"its distance ({ahead:+.0f} log-odds) hangs on one channel: cannot be told apart"
+        rejected = (
+            hangs
+            if any(_same(one.fit, r.fit) for r in rivals)
+            else f"rejected ({ahead:+.0f} log-odds)"
+        )
+        remarks.append(close if ahead > -RIVAL else rejected)
     else:
         remarks.append("rejected: not likelier than no effect at all")
     if not all(held) and one.gap_unseen < BETTER * named.gap_unseen:

@@ -88,7 +88,7 @@ def verdict_sentence(findings: "Findings") -> str:
         told.append("What was asked cannot show in these data.")
     if faults:
         told.append(f"Channels that do not work: {', '.join(map(str, faults))}.")
-    if findings.misfits:
+    if findings.misfits and findings.verdict != "nothing_wrong":
         told.append(f"Channels that work and do not fit: {', '.join(findings.misfits)}.")
     if findings.verdict in ("partial", "unknown"):
         told.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
