@@ -23,18 +23,14 @@ class Load:
         coefficient: float[rows].
         forces: node -> six force and moment components [N, N m].
         strain: initial axial strain of every member, float[members], or None.
-        curvature: initial curvature about local y and z, float[members, 2] [1/m], or None.
         prescribed: (node, dof) -> displacement of a support [m or rad].
-        prescribed_inclined: number of the inclined support -> displacement [m].
         spread: (member, axis, from, to, start, end) of loads along members.
     """
 
     coefficient: FloatArray
     forces: dict[int, FloatArray] = field(default_factory=dict)
     strain: FloatArray | None = None
-    curvature: FloatArray | None = None
     prescribed: dict[tuple[int, int], float] = field(default_factory=dict)
-    prescribed_inclined: dict[int, float] = field(default_factory=dict)
     spread: list[tuple[int, int, float, float, float, float]] = field(default_factory=list)
 
 

@@ -50,12 +50,8 @@ def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]
             forces[number, node] += force
         if load.strain is not None:
             strain[number, :, 0] = load.strain
-        if load.curvature is not None:
-            strain[number, :, 1:] = load.curvature
         for (node, dof), displacement in load.prescribed.items():
             prescribed[number, node, dof] = displacement
-        for support, displacement in load.prescribed_inclined.items():
-            inclined[number, support] = displacement
         spread += [(number, *one) for one in load.spread]
     table = np.array(spread, dtype=float).reshape(-1, 7)
     names = ("member_pattern", "member_index", "member_axis")
