@@ -5,6 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+import polars as pl
 import pytest
 
 from rga.cli import main
@@ -83,3 +85,127 @@ def model_file(tmp_path: Path, two_bars: dict[str, Any]) -> Path:
     path = tmp_path / "model.json"
     path.write_text(json.dumps(two_bars), encoding="utf-8")
     return path
+
+
+@pytest.fixture(scope="session")
+def small_bridge() -> dict[str, Any]:
+    """A model file: a plane truss of four panels, its temperature measured, its two loads not."""
+    nodes = {f"L{i}": [3.0 * i, 0, 0] for i in range(5)}
+    nodes |= {f"U{i}": [3.0 * i, 0, 3.0] for i in range(1, 4)}
+    bars = {
+        "bottom chord": ["L0-L1", "L1-L2", "L2-L3", "L3-L4"],
+        "top chord": ["U1-U2", "U2-U3"],
+        "verticals": ["L1-U1", "L2-U2", "L3-U3"],
+        "diagonals": ["L0-U1", "L4-U3", "U1-L2", "L2-U3"],
+    }
+    sensors: dict[str, Any] = {
+        f"D{i}": {
+            "kind": "displacement",
+            "node": f"L{i}",
+            "direction": [0, 0, 1],
+            "unit": "mm",
+            "noise": 0.05,
+        }
+        for i in (1, 2, 3)
+    }
+    sensors["DX"] = {**sensors["D1"], "node": "L4", "direction": [1, 0, 0]}
+    for bar in ("L0-L1", "L2-L3", "U1-U2", "U2-U3", "L0-U1", "U1-L2", "L2-U3"):
+        strain = {"kind": "strain", "member": bar, "unit": "microstrain", "noise": 1.0}
+        sensors[f"S {bar}"] = strain
+    load = {"unit": "kN", "range": [0, 100]}
+    return {
+        "rga_model": 1,
+        "name": "small bridge",
+        "plane": "xz",
+        "materials": {"steel": {"E": 2e11, "alpha": 1.2e-5}},
+        "sections": {"bar": {"A": 0.004}},
+        "nodes": nodes,
+        "members": {
+            bar: {"nodes": bar.split("-"), "section": "bar", "material": "steel", "groups": [group]}
+            for group, members in bars.items()
+            for bar in members
+        },
+        "supports": {
+            "west": {"node": "L0", "fixed": ["ux", "uz"]},
+            "east": {"node": "L4", "fixed": ["uz"]},
+        },
+        "context": {
+            "temperature": {"unit": "degC", "range": [-20, 40], "noise": 0.3},
+            "west load": load,
+            "east load": load,
+        },
+        "effects": {
+            "warmth": {
+                "kind": "temperature",
+                "groups": dict.fromkeys(bars, 1.0),
+                "delta": {"context": "temperature", "minus": 10.0},
+            },
+            "west": {
+                "kind": "nodal_load",
+                "forces": {"L1": [0, 0, -1000], "L2": [0, 0, -500]},
+                "factor": {"context": "west load"},
+            },
+            "east": {
+                "kind": "nodal_load",
+                "forces": {"L3": [0, 0, -1000], "L2": [0, 0, -500]},
+                "factor": {"context": "east load"},
+            },
+        },
+        "sensors": sensors,
+    }
+
+
+@pytest.fixture(scope="session")
+def small_stream(
+    small_bridge: dict[str, Any], tmp_path_factory: pytest.TempPathFactory
+) -> Callable[..., Path]:
+    """Writes model.json, record.csv and settings.json of a short stream on the small bridge.
+
+    It tests the loop, not the finding: the record is the simulator's own, with gains and noise. A
+    heavy load comes and goes in rows 60 to 89; from row 105 on a bearing is 2 mm lower (`sinks`).
+    """
+    from rga.model import read_effect, read_model
+    from rga.simulation import Simulator
+
+    def write(*, drifts: bool = True, sinks: bool = True, rows: int = 150) -> Path:
+        draw = np.random.default_rng(3)
+        time, days = 600.0 * np.arange(rows), np.arange(rows) / 24
+        west = 20 + 10 * np.sin(3 * days) + 8 * draw.random(rows)
+        if drifts:
+            west[60:90] += 70
+        contexts = {
+            "time": time,
+            "temperature": 10 + 6 * np.sin(2 * np.pi * days),
+            "west load": west,
+            "east load": 25 + 10 * np.cos(2 * days) + 8 * draw.random(rows),
+        }
+        model = read_model(small_bridge, "small bridge")
+        if sinks:
+            low = {"kind": "support_settlement", "support": "east", "dof": "uz"}
+            low |= {"displacement": -0.002, "onset": 600.0 * 105}
+            model = model.extended({"low": read_effect(low, "low")})
+        readings = Simulator(model).predict(contexts)
+        readings *= 1 + 0.01 * draw.standard_normal(readings.shape[1])
+        noise = np.array([sensor.noise for sensor in model.sensors.values()], dtype=float)
+        readings += noise * draw.standard_normal(readings.shape)
+        measured = contexts["temperature"] + 0.3 * draw.standard_normal(rows)
+        folder = tmp_path_factory.mktemp("small")
+        columns = {"time": time, "temperature": measured}
+        columns |= dict(zip(model.sensors, readings.T, strict=True))
+        pl.DataFrame(columns).write_csv(folder / "record.csv")
+        (folder / "model.json").write_text(json.dumps(small_bridge), encoding="utf-8")
+        training = {"steps": 200, "fine_steps": 60, "reduced_steps": 200, "width": 32}
+        training |= {"features": 8, "reduced_width": 32}
+        settings = {
+            "calibration_rows": 40,
+            "packet": 10,
+            "window": 30,
+            "persistence": [3, 4],
+            "settle": 12,
+            "design_rows": 256,
+            "training": training,
+        }
+        (folder / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
+        return folder
+
+    return write

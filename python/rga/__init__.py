@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from rga.model import Effect, Model, load_model
     from rga.records import Record, load_record
     from rga.simulation import Simulator
+    from rga.twin import Twin, run
 
 __version__ = version("rga")
 
@@ -19,9 +20,11 @@ _DOORS = {
     "Model": "rga.model",
     "Record": "rga.records",
     "Simulator": "rga.simulation",
+    "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
     "load_model": "rga.model",
     "load_record": "rga.records",
+    "run": "rga.twin",
 }
 
 __all__ = [
@@ -30,10 +33,12 @@ __all__ = [
     "Model",
     "Record",
     "Simulator",
+    "Twin",
     "__version__",
     "diagnose",
     "load_model",
     "load_record",
+    "run",
 ]
 
 

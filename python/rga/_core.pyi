@@ -1,11 +1,18 @@
 """Finite elements for truss and frame bridges."""
 
-from typing import Any
+from typing import Any, Self, final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["InvalidInput", "NotConverged", "UnstableStructure", "respond", "slide"]
+__all__ = [
+    "GaussianWindow",
+    "InvalidInput",
+    "NotConverged",
+    "UnstableStructure",
+    "respond",
+    "slide",
+]
 
 class InvalidInput(ValueError):
     """An array is missing, malformed or out of range; the message names it."""
@@ -41,3 +48,40 @@ def slide(
     mu: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Coulomb friction forces [rows, bearings] of bearings through time."""
+
+@final
+class GaussianWindow:
+    """A Gaussian bound for each sensor, on a stream; `help(GaussianWindow)` tells the rule."""
+
+    def __new__(
+        cls,
+        n_sensors: int,
+        window: int,
+        z: float = 3.0,
+        *,
+        inclusive: bool = False,
+        persistence: tuple[int, int] = (1, 1),
+        frozen: bool = False,
+    ) -> Self: ...
+    def update(self, row: ArrayLike) -> NDArray[np.bool_]:
+        """Alarms bool[n_sensors] of one row float[n_sensors]."""
+
+    def update_many(self, rows: ArrayLike) -> NDArray[np.bool_]:
+        """Alarms bool[n, n_sensors] of rows float[n, n_sensors], bit for bit those of `update`."""
+
+    @property
+    def bound(self) -> NDArray[np.float64]:
+        """What the next row must exceed, float[n_sensors]; NaN until the window is full."""
+
+    @property
+    def rows(self) -> int:
+        """Rows seen."""
+
+    def to_bytes(self) -> bytes:
+        """The whole state: what `from_bytes` makes of it goes on with the same bits."""
+
+    @classmethod
+    def from_bytes(cls, state: bytes) -> Self:
+        """The window that `to_bytes` stored; InputError for other bytes."""
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...

@@ -4,8 +4,11 @@ import typer
 
 from rga.cli.options import JsonTarget
 
-NEEDED = ("numpy", "scipy", "pydantic", "polars", "PyYAML", "typer", "rich", "jinja2", "matplotlib")
-OPTIONAL = ("torch",)
+NEEDED = (
+    "numpy", "scipy", "pydantic", "polars", "PyYAML", "typer", "rich", "jinja2", "matplotlib",
+    "torch", "safetensors", "sqlalchemy", "alembic",
+)  # fmt: skip
+OPTIONAL = ("psycopg",)
 CPU_FEATURES = ("sse4_2", "avx", "avx2", "fma", "avx512f", "neon", "asimd", "sve")
 
 

@@ -1,7 +1,36 @@
 """`rga run`: the main job."""
 
-from rga.cli.diagnose import diagnose_into
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
 from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory, RecordFile, Seed
+
+if TYPE_CHECKING:
+    from rga.cli.progress import Shown
+    from rga.twin import Event
+    from rga.twin.running import Running
+
+Level = Annotated[
+    str | None,
+    typer.Option(
+        metavar="A|B|C",
+        help="A calibrates once, B also recalibrates, C also stores novel contexts (default).",
+    ),
+]
+SettingsFile = Annotated[
+    Path | None,
+    typer.Option("--settings", metavar="FILE", help="Settings of the run (JSON or TOML)."),
+]
+RepositoryUrl = Annotated[
+    str | None,
+    typer.Option(
+        "--repository",
+        metavar="URL",
+        help="PostgreSQL database for the repository, instead of twin.sqlite in DIR.",
+    ),
+]
 
 
 def run(
@@ -10,7 +39,74 @@ def run(
     output: OutputDirectory,
     mapping: MappingFile = None,
     seed: Seed = 0,
+    level: Level = None,
+    settings: SettingsFile = None,
+    repository: RepositoryUrl = None,
     json: JsonTarget = None,
 ) -> None:
-    """Calibrate, diagnose and report on a record."""
-    diagnose_into(output, model, record, mapping, seed, json)
+    """Calibrate a twin, watch its gap, recalibrate, diagnose and report.
+
+    A run that was interrupted goes on where it stood; one that had ended is not done again.
+    """
+    from rga.cli.output import write_json
+    from rga.cli.progress import shown_progress
+    from rga.cli.settings import read_settings
+    from rga.model import load_model
+    from rga.records import load_record
+
+    structure = load_model(model)
+    measured = load_record(record, structure, mapping)
+    chosen = read_settings(settings, level)
+    for warning in measured.warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    # Not needed before the input is known to be good, and slow to import.
+    from rga.twin import run as run_twin
+
+    quiet = json == "-"
+    with shown_progress() as progress:
+        outcome = run_twin(
+            structure,
+            measured,
+            output,
+            settings=chosen,
+            seed=seed,
+            repository=repository,
+            progress=progress,
+            watch=None if quiet else _News(progress),
+        )
+    if json is not None:
+        write_json(outcome.findings.model_dump(mode="json"), json)
+    if not quiet:
+        typer.echo(outcome.findings.sentence())
+        typer.echo(f"The report is {output / 'report.html'}.")
+
+
+class _News:
+    """Tells what happens: a line for each event, and a live line for where the run stands."""
+
+    def __init__(self, progress: "Shown") -> None:
+        self._progress = progress
+        self._told = 0
+        self._begun = False
+
+    def __call__(self, running: "Running") -> None:
+        if not self._begun and running.resumed_at is not None:
+            typer.echo(f"The run goes on at row {running.resumed_at}.")
+        self._begun = True
+        for event in running.events[self._told :]:
+            typer.echo(_line(event))
+        self._told = len(running.events)
+        version = f"model version {running.version}"
+        live = f"row {running.row} of {running.rows}, gap {running.gap:.3g}, {version}"
+        if running.out_of_sync:
+            live += ", out of sync"
+        self._progress.describe("stream", live)
+
+
+def _line(event: "Event") -> str:
+    change = ""
+    if event.gap_before is not None and event.gap_after is not None:
+        change = f" (gap {event.gap_before:.3g} -> {event.gap_after:.3g})"
+    elif event.gap_after is not None:
+        change = f" (gap {event.gap_after:.3g})"
+    return f"{event.time}  {event.kind}: {event.words}{change}"

@@ -2,12 +2,16 @@
 
 from math import isclose
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rga.cli.options import JsonTarget, ModelFile
+from rga.cli.options import JsonTarget
 from rga.errors import InputError
+
+if TYPE_CHECKING:
+    from rga.model import Effect
+    from rga.simulation.whatif import WhatIf
 
 Settings = Annotated[
     list[str] | None,
@@ -21,39 +25,79 @@ Additions = Annotated[
 ]
 
 
-def whatif(
-    model: ModelFile, settings: Settings = None, add: Additions = None, json: JsonTarget = None
-) -> None:
-    """Show every sensor before and after a change; contexts not set stand at mid-range."""
-    from rich.console import Console
-    from rich.table import Table
+Source = Annotated[
+    str,
+    typer.Argument(
+        metavar="MODEL|DIR",
+        help="Model file, or the directory of a run: then from where its twin stands.",
+    ),
+]
 
+
+def whatif(
+    model: Source, settings: Settings = None, add: Additions = None, json: JsonTarget = None
+) -> None:
+    """Show every sensor before and after a change, with intervals where something is not sure.
+
+    Contexts that are not set stand at mid-range, or where the twin of a run stands.
+    """
     from rga.cli.output import write_json
-    from rga.model import load_model
-    from rga.simulation.whatif import read_effects, whatif
+    from rga.simulation.whatif import read_effects
 
     given = dict(_setting(text) for text in settings or [])
     effects = {name: effect for path in add or [] for name, effect in read_effects(path).items()}
-    result = whatif(load_model(model), given, effects)
+    result = _answer(model, given, effects)
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)
-    rows = list(zip(result.sensors, result.units, result.before, result.after, strict=True))
     if json is not None:
-        sensors = {
-            name: {"unit": unit, "before": float(before), "after": float(after)}
-            for name, unit, before, after in rows
-        }
-        content = {"contexts": result.contexts, "sensors": sensors, "warnings": result.warnings}
-        write_json(content, json)
-    if json == "-":
-        return
+        write_json(_content(result), json)
+    if json != "-":
+        _show(result)
+
+
+def _answer(source: str, settings: dict[str, float], add: "dict[str, Effect]") -> "WhatIf":
+    if "://" in source or Path(source).is_dir() or Path(source).suffix == ".sqlite":
+        from rga.twin import Twin
+
+        with Twin.open(source) as twin:
+            return twin.whatif(settings, add)
+    from rga.model import load_model
+    from rga.simulation.whatif import whatif as compare
+
+    return compare(load_model(source), settings, add)
+
+
+def _content(result: "WhatIf") -> dict[str, Any]:
+    sensors: dict[str, Any] = {
+        name: {"unit": unit, "before": float(before), "after": float(after)}
+        for name, unit, before, after in zip(
+            result.sensors, result.units, result.before, result.after, strict=True
+        )
+    }
+    for key, table in (("after_ci90", result.after_ci90), ("change_ci90", result.change_ci90)):
+        if table is not None:
+            for name, interval in zip(result.sensors, table.tolist(), strict=True):
+                sensors[name][key] = interval
+    return {"contexts": result.contexts, "sensors": sensors, "warnings": result.warnings}
+
+
+def _show(result: "WhatIf") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
     table = Table("sensor", "unit")
-    for title in ("before", "after", "change"):
+    unsure = result.change_ci90
+    titles = ("before", "after", "change") + (("90 % interval",) if unsure is not None else ())
+    for title in titles:
         table.add_column(title, justify="right")
-    for name, unit, before, after in rows:
+    for row, name in enumerate(result.sensors):
+        before, after = result.before[row], result.after[row]
         # What is left of the arithmetic's last digits is no change.
         change = after - before if not isclose(after, before, rel_tol=1e-9) else 0.0
-        table.add_row(name, unit, f"{before:.4g}", f"{after:.4g}", f"{change:+.4g}")
+        cells = [f"{before:.4g}", f"{after:.4g}", f"{change:+.4g}"]
+        if unsure is not None:
+            cells.append(f"{unsure[row, 0]:+.3g} to {unsure[row, 1]:+.3g}")
+        table.add_row(name, result.units[row], *cells)
     Console().print(table)
 
 

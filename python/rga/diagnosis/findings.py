@@ -1,6 +1,7 @@
 """Findings: what a diagnosis says, as it stands in findings.json."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
@@ -150,10 +151,16 @@ class Findings(Part):
 
         return verdict_sentence(self)
 
-    def write(self, directory: str | Path) -> Path:
+    def write(
+        self, directory: str | Path, report: Callable[["Findings", Path], Path] | None = None
+    ) -> Path:
         """Write findings.json, model.json and report.html to a directory.
 
         Every file is written under a temporary name first and then renamed.
+
+        Args:
+            directory: is made where it is missing.
+            report: writes another report than that of a diagnosis.
 
         Returns:
             The path of the report.
@@ -167,9 +174,9 @@ class Findings(Part):
         temporary = path.with_name("findings.json.partial")
         temporary.write_text(self.to_json() + "\n", encoding="utf-8")
         write_model(self.account.extended, directory / "model.json")
-        report = write_report(self, directory / "report.html")
+        shown = (report or write_report)(self, directory / "report.html")
         temporary.replace(path)
-        return report
+        return shown
 
     def to_json(self) -> str:
         """The content of findings.json."""

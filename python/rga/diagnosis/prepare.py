@@ -8,7 +8,7 @@ import numpy as np
 from rga.diagnosis.channels import Fault, find_faults, lone_spikes
 from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.data import Data, first_belief
-from rga.diagnosis.latent import guess_lines
+from rga.diagnosis.latent import guess_lines, guess_rows
 from rga.diagnosis.problem import load_basis
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
@@ -62,7 +62,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     data = _without(data, stuck)
     data = guess_lines(simulator, data, progress)
     chosen = _loaded_rows(simulator, data)
-    data = data.rows(chosen)
+    data = guess_rows(simulator, data.rows(chosen))
     basis = load_basis(simulator, data)
     expected = data.predict(simulator).std(0)
     broken = find_faults(data.sensors, data.readings, data.observed, expected, basis)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,9 @@ from rga.model.schema import Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.simulation.friction import respond_with_friction
 from rga.simulation.response import respond
+
+if TYPE_CHECKING:
+    from rga.simulation.differentiable import DifferentiableSimulator
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,17 @@ class Simulator:
         if not columns:
             return np.zeros((rows, len(self.model.sensors), 0))
         return np.stack(columns, axis=2)
+
+    def as_torch(self, time: ArrayLike | None = None) -> "DifferentiableSimulator":
+        """The simulation as a torch module: contexts in the order of the model in, sensors out.
+
+        Args:
+            time: clock of the rows [s], float[rows], where the model needs one.
+        """
+        # Torch is heavy, and most uses of a simulator do without it.
+        from rga.simulation.differentiable import DifferentiableSimulator
+
+        return DifferentiableSimulator(self, None if time is None else np.asarray(time, float))
 
     def _table(self, contexts: Mapping[str, ArrayLike]) -> Values:
         given = {name: _numbers(name, value) for name, value in contexts.items()}

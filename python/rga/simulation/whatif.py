@@ -6,12 +6,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from rga.errors import InputError
 from rga.model import Effect, Model, read_effect
-from rga.model.parameter import FloatArray
+from rga.model.parameter import Estimated, FloatArray
 from rga.simulation.simulator import Simulator
+
+#: draws behind an interval, and the half width of a 90 % interval in standard deviations
+DRAWS, HALF_WIDTH = 200, 1.6449
 
 
 @dataclass(frozen=True)
@@ -22,27 +26,39 @@ class WhatIf:
         sensors: names, in the order of the model.
         units: of the sensors.
         before, after: float[sensors].
+        after_ci90, change_ci90: 90 % intervals of the value after, and of the change, from what
+            is not sure of contexts and effects, float[sensors, 2]; None where all is taken as
+            sure.
         contexts: the contexts after the change.
-        warnings: contexts outside their range, in words.
+        warnings: where the answer reaches beyond what the model holds for, in words.
     """
 
     sensors: tuple[str, ...]
     units: tuple[str, ...]
     before: FloatArray
     after: FloatArray
+    after_ci90: FloatArray | None
+    change_ci90: FloatArray | None
     contexts: dict[str, float]
     warnings: list[str] = field(default_factory=list)
 
 
 def whatif(
-    model: Model, settings: Mapping[str, float], add: Mapping[str, Effect] | None = None
+    model: Model,
+    settings: Mapping[str, float],
+    add: Mapping[str, Effect] | None = None,
+    *,
+    base: Mapping[str, float] | None = None,
+    spread: Mapping[str, float] | None = None,
 ) -> WhatIf:
-    """Compare the model at mid-range contexts with the same model after a change.
+    """Compare the model with the same model after a change.
 
     Args:
         model: the model.
         settings: context variables after the change, and `time` [s] where it matters.
         add: effects that the changed model has besides its own; one of the same name is replaced.
+        base: contexts before the change, and `time` [s]; mid-range where left out.
+        spread: standard deviations of contexts of the base that are not sure.
 
     Raises:
         InputError: a setting is no context variable of the model, or an effect does not fit it.
@@ -55,11 +71,13 @@ def whatif(
                 "it has " + (", ".join(model.context) or "none"),
             )
     middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
-    contexts = {**middle, **settings}
+    contexts = {**middle, **(base or {}), **settings}
     # At the same time on both sides, so that only what was set makes a difference.
     start = {"time": settings["time"]} if "time" in settings else {}
-    before = Simulator(model).predict({**middle, **start})[0]
-    after = Simulator(model.extended(dict(add or {}))).predict(contexts)[0]
+    first = {**middle, **(base or {}), **start}
+    changed = model.extended(dict(add or {}))
+    before = Simulator(model).predict(first)[0]
+    after = Simulator(changed).predict(contexts)[0]
     warnings = []
     for name, variable in model.context.items():
         low, high = variable.range
@@ -68,8 +86,62 @@ def whatif(
                 f"{name} = {contexts[name]:g} lies outside its range "
                 f"{low:g}..{high:g} {variable.unit}"
             )
+    unsure = {name: s for name, s in (spread or {}).items() if s > 0}
+    intervals: tuple[FloatArray | None, FloatArray | None] = (None, None)
+    if unsure or any(_estimated(effect) for effect in changed.effects.values()):
+        intervals = _intervals(model, changed, (first, contexts), unsure, set(settings))
     units = tuple(sensor.unit for sensor in model.sensors.values())
-    return WhatIf(tuple(model.sensors), units, before, after, contexts, warnings)
+    kept = {name: value for name, value in contexts.items() if name in model.context}
+    return WhatIf(tuple(model.sensors), units, before, after, *intervals, kept, warnings)
+
+
+def _intervals(
+    model: Model,
+    changed: Model,
+    contexts: tuple[Mapping[str, float], Mapping[str, float]],
+    spread: Mapping[str, float],
+    sure: set[str],
+) -> tuple[FloatArray, FloatArray]:
+    """90 % intervals of the values after and of the change, float[sensors, 2] each."""
+    generator = np.random.default_rng(0)
+    after, change = [], []
+    for _ in range(DRAWS):
+        off = {name: s * generator.standard_normal() for name, s in spread.items()}
+        ends = []
+        drawn = {name: _drawn(effect, generator) for name, effect in changed.effects.items()}
+        for one, table in zip((model, changed), contexts, strict=True):
+            # What is set is sure after the change; before it, the context is what it was.
+            moved = {
+                name: value + (off.get(name, 0.0) if one is model or name not in sure else 0.0)
+                for name, value in table.items()
+            }
+            effects = {name: drawn[name] for name in one.effects}
+            whole = one.model_copy(update={"effects": effects})
+            ends.append(Simulator(whole).predict(moved)[0])
+        after.append(ends[1])
+        change.append(ends[1] - ends[0])
+    quantiles = (np.quantile(table, [0.05, 0.95], axis=0).T for table in (after, change))
+    whole_after, whole_change = quantiles
+    return np.asarray(whole_after), np.asarray(whole_change)
+
+
+def _estimated(effect: Effect) -> dict[str, Estimated]:
+    """Parameters of an effect that a diagnosis estimated."""
+    values = {name: getattr(effect, name) for name in effect.parameters()}
+    return {name: value for name, value in values.items() if isinstance(value, Estimated)}
+
+
+def _drawn(effect: Effect, generator: np.random.Generator) -> Effect:
+    """The effect with estimated parameters drawn from their intervals."""
+    values = {}
+    for name, known in _estimated(effect).items():
+        low, high = known.ci90
+        step = generator.standard_normal()
+        if low > 0:
+            values[name] = known.value * (high / low) ** (step / (2 * HALF_WIDTH))
+        else:
+            values[name] = known.value + (high - low) / (2 * HALF_WIDTH) * step
+    return effect.with_values(values) if values else effect
 
 
 def read_effects(path: str | Path) -> dict[str, Effect]:

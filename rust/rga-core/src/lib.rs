@@ -8,6 +8,8 @@
 //! (`model`, `reduction`, `assembly`) and factorised (`solve`, `stability`), and the outputs are
 //! read off the solution (`observe`). `respond` runs the steps;
 //! `friction` follows bearings through time.
+//!
+//! `gaussian_window` stands on its own: it watches what sensors send.
 
 mod assembly;
 mod axes;
@@ -19,6 +21,7 @@ mod constraint;
 mod element;
 mod error;
 mod friction;
+mod gaussian_window;
 mod input;
 mod load;
 mod member;
@@ -31,5 +34,6 @@ mod stability;
 
 pub use error::{Error, Result};
 pub use friction::{Bearings, slide};
+pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
 pub use input::{Array, Loads, Outputs, Structure};
 pub use respond::respond;

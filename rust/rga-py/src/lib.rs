@@ -3,6 +3,7 @@
 mod arrays;
 mod exceptions;
 mod functions;
+mod gaussian_window;
 
 use pyo3::prelude::*;
 
@@ -16,6 +17,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
         py.get_type::<exceptions::UnstableStructure>(),
     )?;
     module.add("NotConverged", py.get_type::<exceptions::NotConverged>())?;
+    module.add_class::<gaussian_window::GaussianWindow>()?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::slide, module)?)
 }

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .as_built import build
 from .bridges import BRIDGES
 from .contexts import courses, errors
 from .draft import Bridge, ModelDict
@@ -142,33 +143,23 @@ def _choose(
 
 
 def _reality(seed: int, bridge: Bridge, reality: str, rows: int) -> _Reality:
-    rng = stream(seed, "as built")
-    sensors = bridge.model["sensors"]
-    count = len(sensors)
-    scatter, gain = float(rng.uniform(0.01, 0.04)), float(rng.uniform(0.005, 0.02))
-    world = World.of(bridge.model)
-    world.scale_stiffness(np.exp(scatter * rng.standard_normal(len(world.alpha))))
-    world.sensor_ops.append(("gains", 1.0 + gain * rng.standard_normal(count)))
-    joint = float(f"{10.0 ** rng.uniform(6.0, 9.0):.4g}")
-    sd = np.array([s["noise"] for s in sensors.values()])
-    sd = sd * np.exp(0.1 * rng.standard_normal(count))
-    phi = rng.uniform(0.2, 0.7, count)
+    built = build(bridge.model, stream(seed, "as built"))
+    world = built.world
     time, contexts = courses(bridge, stream(seed, "contexts"), rows)
     measured = errors(bridge, stream(seed, "context errors"), contexts)
     clean = observe(world, contexts, time)
     _, shares = respond(world, contexts, time)
     pinned = clean
     if reality == "frame":
-        world.join(bridge.jointed, joint)
+        world.join(bridge.jointed, built.joint)
         clean = observe(world, contexts, time)
     blur = observe(world, measured, time) - clean
-    noise = autoregressive(stream(seed, "noise"), rows, sd, phi)
-    variance = long_run_variance(sd, phi) + (blur**2).mean(axis=0)
+    noise = autoregressive(stream(seed, "noise"), rows, built.sd, built.phi)
+    variance = long_run_variance(built.sd, built.phi) + (blur**2).mean(axis=0)
     parts = list(shares.values())
     facts = {
-        "scatter": {"EA": scatter, "gain": gain},
-        "noise_memory": [float(p) for p in phi],
-        "joint_stiffness": joint if reality == "frame" else None,
+        **built.facts,
+        "joint_stiffness": built.joint if reality == "frame" else None,
         "reality_d_prime": d_prime(clean - pinned, parts, variance),
     }
     return _Reality(world, time, contexts, measured, noise, variance, parts, clean, facts)

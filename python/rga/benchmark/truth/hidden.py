@@ -17,7 +17,7 @@ HIDDEN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
 KINDS = ("null", *HIDDEN)
 _PLACES = 8
 _HALVINGS = 9
-_VISIBLE = 8.0
+VISIBLE = 8.0
 
 
 class Hidden(NamedTuple):
@@ -55,13 +55,26 @@ def draw_hidden(
     aim = float(np.exp(rng.uniform(np.log(low), np.log(high))))
     late = rng.random() < HIDDEN[kind].onset
     onset = float(time[int(rng.uniform(0.25, 0.7) * len(time))]) if late else None
+    return sized(kind, setting, rng, onset, aim, size_of)
+
+
+def sized(
+    kind: str,
+    setting: Setting,
+    rng: np.random.Generator,
+    onset: float | None,
+    aim: float,
+    size_of: Callable[[Span, float | None, float | None], float],
+    visible: float = VISIBLE,
+) -> Hidden:
+    """Draw a place where d' may reach ``visible``, then the value whose d' meets ``aim``."""
     best: tuple[float, Span] | None = None
     for _ in range(_PLACES):
         span = HIDDEN[kind].draw(setting, rng)
         most = size_of(span, span.at(1.0), onset)
         if best is None or most > best[0]:
             best = (most, span)
-        if most >= _VISIBLE:
+        if most >= visible:
             break
     assert best is not None
     most, span = best

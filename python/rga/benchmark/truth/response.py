@@ -6,7 +6,7 @@ few dozen right-hand sides, whatever its length.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -95,16 +95,19 @@ def _patterns(world: World, contexts: Contexts, time: Array) -> list[Pattern]:
     for name, effect in world.model["effects"].items():
         if effect["kind"] == "temperature":
             out.extend(_warmth(world, effect, contexts, rows))
+        elif effect["kind"] == "thermal_gradient":
+            out.append(_gradient(world, effect, contexts, rows))
         elif effect["kind"] == "nodal_load":
             force = np.zeros(size)
             for node, push in effect["forces"].items():
                 first = world.dof(node, "ux")
                 force[first : first + len(push)] += _lean(world, name, node) * np.array(push)
             course = world.load_factor.get(name, 1.0) * value(effect["factor"], contexts, rows)
-            driver = effect["factor"]["context"]
-            out.append(Pattern(driver, force, cold, fast, course))
+            load = [Pattern(effect["factor"]["context"], force, cold, fast, course)]
+            out.extend(_leaning(world, name, load, contexts, rows))
         elif effect["kind"] == "axle_load":
-            out.extend(_axle(world, name, effect, contexts, rows))
+            load = _axle(world, name, effect, contexts, rows)
+            out.extend(_leaning(world, name, load, contexts, rows))
     if world.settlement:
         moved = np.zeros(size)
         for dof, way in world.settlement.items():
@@ -133,18 +136,55 @@ def _warmth(world: World, effect: Any, contexts: Contexts, rows: int) -> list[Pa
         uniform[world.members_of(group=group)] = factor
     out = [Pattern(driver, none, uniform, none, delta)]
     for axis, (ratio, difference) in world.gradient.items():
-        along = world.geometry.xyz[:, 2 if axis == "vertical" else 1]
-        middle = along[world.geometry.ends].mean(axis=1)
-        shape = (middle - (along.max() + along.min()) / 2.0) / (along.max() - along.min())
+        shape = _slope(world, axis)
         out.append(Pattern(driver, none, shape, none, ratio * delta + difference))
+    return out
+
+
+def _gradient(world: World, effect: Any, contexts: Contexts, rows: int) -> Pattern:
+    """A gradient that the model has, driven by a context."""
+    none = np.zeros(world.size)
+    course = value(effect["difference"], contexts, rows)
+    shape = _slope(world, effect["axis"])
+    return Pattern(effect["difference"]["context"], none, shape, none, course)
+
+
+def _slope(world: World, axis: str) -> Array:
+    """Members' share of a unit difference of temperature over the height or the width [m]."""
+    along = world.geometry.xyz[:, 2 if axis == "vertical" else 1]
+    middle = along[world.geometry.ends].mean(axis=1)
+    return np.asarray((middle - (along.max() + along.min()) / 2.0) / (along.max() - along.min()))
+
+
+def _leaning(
+    world: World, load: str, upright: list[Pattern], contexts: Contexts, rows: int
+) -> list[Pattern]:
+    """The patterns of a load, and those that eccentricities in the model add to them."""
+    out = list(upright)
+    for effect in world.model["effects"].values():
+        if effect["kind"] == "load_eccentricity" and load in np.atleast_1d(effect["effect"]):
+            side = np.zeros(world.size)
+            for k, node in enumerate(world.model["nodes"]):
+                side[6 * k : 6 * k + 6] = _side(world, node)
+            share = 2.0 * value(effect["share"], contexts, rows)
+            driver = effect["share"]["context"]
+            out += (
+                replace(p, driver=driver, force=side * p.force, course=share * p.course)
+                for p in upright
+            )
     return out
 
 
 def _lean(world: World, effect: str, node: str) -> float:
     share = world.load_share.get(effect, 0.0)
+    return float(1.0 + 2.0 * share * _side(world, node))
+
+
+def _side(world: World, node: str) -> float:
+    """1 at +y nodes, -1 at -y nodes."""
     across = world.geometry.xyz[:, 1]
     offset = world.model["nodes"][node][1] - (across.max() + across.min()) / 2.0
-    return float(1.0 + 2.0 * share * np.sign(offset))
+    return float(np.sign(offset))
 
 
 def _axle(world: World, name: str, effect: Any, contexts: Contexts, rows: int) -> list[Pattern]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .frame import Array
 
-_SCATTER = 0.03
+SCATTER = 0.03
 
 
 def d_prime(signature: Array, shares: list[Array], variance: Array) -> float:
@@ -20,7 +20,7 @@ def d_prime(signature: Array, shares: list[Array], variance: Array) -> float:
     total = 0.0
     for c in range(signature.shape[1]):
         s = signature[:, c]
-        spread = _SCATTER * np.column_stack([share[:, c] for share in shares])
+        spread = SCATTER * np.column_stack([share[:, c] for share in shares])
         inner = np.eye(spread.shape[1]) * variance[c] + spread.T @ spread
         across = spread.T @ s
         total += float(s @ s - across @ np.linalg.solve(inner, across)) / float(variance[c])

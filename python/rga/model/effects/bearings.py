@@ -73,6 +73,7 @@ class BearingFriction(Effect):
 
     kind: Literal["bearing_friction"] = "bearing_friction"
     structural = True
+    remembers = True
     support: Supports
     dof: Direction
     mu: Annotated[Value, Parameter("-", 0.0)] = 0.0

@@ -61,6 +61,7 @@ class SensorDrift(Effect):
     """An offset that grows from the first row, or from the onset [unit/day]."""
 
     kind: Literal["sensor_drift"] = "sensor_drift"
+    remembers = True
     on_sensors = True
     sensor: OneSensor
     rate: Annotated[Value, Parameter("unit/day", 0.0)] = 0.0

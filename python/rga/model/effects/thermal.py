@@ -83,6 +83,7 @@ class ThermalLag(Effect):
     """Members that follow the air temperature late, with a time constant [h]."""
 
     kind: Literal["thermal_lag"] = "thermal_lag"
+    remembers = True
     time_constant: Annotated[Value, Parameter("h", 0.0)] = 0.0
 
     @classmethod

@@ -1,0 +1,59 @@
+"""`rga replay` and `rga rollback`: the log of the twin, and an earlier model again."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rga.cli.options import JsonTarget
+
+Place = Annotated[
+    str, typer.Argument(metavar="DIR", help="Directory of a run, or a database by URL.")
+]
+Row = Annotated[
+    int | None, typer.Option("--row", min=0, help="As the twin stood at this row of the record.")
+]
+Time = Annotated[
+    float | None,
+    typer.Option("--time", help="As it stood at this time, seconds since the first row."),
+]
+VersionNumber = Annotated[
+    int, typer.Option("--to", min=1, help="Model version to put in force again.")
+]
+
+
+def replay(place: Place, row: Row = None, time: Time = None, json: JsonTarget = None) -> None:
+    """Replay the log of queries and responses, and check that it leads to where the twin stands."""
+    from rga.cli.output import write_json
+    from rga.errors import InputError
+    from rga.twin import Twin
+
+    if row is not None and time is not None:
+        raise InputError("both --row and --time are given", "options", "give one of them")
+    with Twin.open(place) as twin:
+        if row is not None or time is not None:
+            twin = twin.as_of(row=row, time=time)
+        log = twin.log()
+        state = {
+            "version": twin.version,
+            "row": twin.state.row,
+            "context": dict(twin.context),
+            "effects": twin.state.versions.get(twin.version, {}),
+        }
+    if json is not None:
+        entries = [{"row": at, "messages": kinds, "words": words} for at, kinds, words in log]
+        write_json({"log": entries, "twin": state}, json)
+    if json == "-":
+        return
+    for at, kinds, words in log:
+        typer.echo(f"row {at:>6}  {kinds}  {words}")
+    where = "before its first row" if state["row"] is None else f"at row {state['row']}"
+    typer.echo(f"The twin stands {where}, with model version {state['version']}.")
+
+
+def rollback(place: Place, to: VersionNumber) -> None:
+    """Put an earlier model version of the twin in force again."""
+    from rga.twin import rollback
+
+    twin = rollback(place if "://" in place else Path(place), to)
+    typer.echo(f"Model version {twin.version} is in force.")

@@ -1,0 +1,272 @@
+"""The reality gap analysis: calibrates, watches, recalibrates, and asks the diagnosis.
+
+It reaches the twin and the repository through queries alone. Each public method that acts is one
+step of a run.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from rga.diagnosis import Findings
+from rga.model.parameter import FloatArray
+from rga.twin.archive import Archive
+from rga.twin.calibration import Calibration
+from rga.twin.exchange import QueryResponse
+from rga.twin.hardware import Station
+from rga.twin.history import Event, Kind
+from rga.twin.integration import novel, spacing
+from rga.twin.messages import Q1, R1
+from rga.twin.settings import Settings
+from rga.twin.standing import Standing
+from rga.twin.synchrony import Synchrony
+
+Effects = dict[str, dict[str, Any]]
+SHOWN = 4
+
+
+class RealityGapAnalysis:
+    """The workflow algorithms of the twin.
+
+    Args:
+        exchange: takes queries to the twin and to the repository.
+        archive: keeps events and findings.
+        station: what is mounted on the structure.
+        calibration: captures the contexts.
+        settings: of the run.
+        label: how the record writes the time of a row.
+    """
+
+    def __init__(
+        self,
+        exchange: QueryResponse,
+        archive: Archive,
+        station: Station,
+        calibration: Calibration,
+        settings: Settings,
+        label: Callable[[int], str | float],
+    ) -> None:
+        self.standing = Standing()
+        self.synchrony = Synchrony(len(station.channels), settings)
+        self._exchange, self._archive, self._station = exchange, archive, station
+        self._calibration, self._settings, self._label = calibration, settings, label
+
+    def initialise(self) -> R1:
+        """Q1: can the twin represent what a calibration needs? Then the design phase is filled."""
+        answer = self._ask_twin()
+        if answer.adequate:
+            if answer.latent:
+                self._design()
+                stored = self._archive.run.simulated(version=answer.version).contexts
+                latent, width = self._latent()
+                near = spacing(stored[:, latent], width)
+                self.standing.distinct = self._settings.distinct or near
+            self.standing.stage = "gather"
+        return answer
+
+    def gather(self, wanted: int) -> None:
+        """Wait until so many rows are there for the first calibration."""
+        self.standing.row = len(self._calibration.ledger)
+        if self.standing.row >= wanted:
+            self.standing.stage = "calibrate"
+
+    def calibrate(self) -> None:
+        """Q4: learn from simulated and measured rows, and measure the gap that is left."""
+        standing, calibration = self.standing, self._calibration
+        standing.calibrated = standing.row
+        calibration.estimate_noise()
+        calibration.learn([(0, standing.row)], afresh=True)
+        calibration.follow(0, standing.row)
+        self.synchrony.begin_again(calibration.ledger.gaps)
+        standing.share = calibration.scatter_share(0, standing.row)
+        words = f"calibrated on {standing.row} rows; the model is off by {standing.share:.1%}"
+        self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
+        standing.stage = "watch"
+
+    def watch(self, last: bool) -> None:
+        """Infer the new rows' contexts, measure their gap (T1), and store what is novel (T2).
+
+        Args:
+            last: no more rows will come.
+        """
+        standing, settings = self.standing, self._settings
+        first, end = standing.row, len(self._calibration.ledger)
+        if end > first:
+            self._calibration.follow(first, end)
+            standing.row = end
+            if settings.level != "A":
+                self._detect(first, end)
+            if settings.level == "C" and standing.alarm is None:
+                self._integrate(first, end)
+        if standing.alarm is not None and (last or end - standing.alarm >= settings.settle):
+            standing.stage = "recalibrate"
+        elif standing.doubted and self._may_ask():
+            standing.stage = "diagnose"
+        elif last:
+            standing.stage = "close"
+
+    def recalibrate(self, last: bool) -> None:
+        """T1: refine the networks on the latest rows; if the gap stays, the model is in doubt.
+
+        Args:
+            last: no more rows will come.
+        """
+        standing, settings, calibration = self.standing, self._settings, self._calibration
+        assert standing.alarm is not None
+        recent = (max(0, standing.alarm - settings.persistence[1] + 1), standing.row)
+        before = calibration.gap(*recent)
+        if calibration.learned is not None:
+            self._refine(recent)
+        after = calibration.gap(*recent)
+        recovered = calibration.gap(*recent, standing.share) <= settings.recovered
+        done = "recalibrated" if calibration.learned is not None else "all contexts are measured"
+        ended = "the gap is down" if recovered else "the gap stays, the model is in doubt"
+        words = f"{done}, rows {recent[0]} to {recent[1] - 1}: {ended}"
+        self._event("recalibration", standing.row - 1, words, before=before, after=after)
+        if settings.level == "C" and recovered:
+            self._integrate(*recent)
+        self._begin_again()
+        standing.doubted = standing.doubted or not recovered
+        if standing.doubted and self._may_ask():
+            standing.stage = "diagnose"
+        else:
+            self._go_on(last)
+
+    def conclude(self, findings: Findings, effects: Effects, closing: bool) -> None:
+        """Take findings over: an extended model becomes a new version of the twin.
+
+        Args:
+            findings: of all rows so far, about the model as it was given.
+            effects: what the extended model has beyond it.
+            closing: no more rows will come.
+        """
+        standing, state = self.standing, self._exchange.twin.state
+        self._archive.keep_findings(standing.row - 1, findings.to_json())
+        self._event("diagnosis", standing.row - 1, findings.sentence())
+        standing.diagnosed, standing.doubted = standing.row, not effects
+        held = findings.gap.held_out
+        if effects and effects != state.versions[state.version] and held.gain > 0:
+            self._change_version(effects=effects, gain=held.gain, gain_ci90=held.gain_ci90)
+        elif state.versions[state.version] and not effects:
+            self._change_version(restore=1)
+        self._go_on(closing)
+        if closing:
+            standing.stage = "report"
+
+    def _detect(self, first: int, end: int) -> None:
+        exceeded = self.synchrony.exceeded(self._calibration.ledger.gaps[first:end])
+        rows = np.flatnonzero(exceeded.any(axis=1))
+        if not len(rows) or self.standing.alarm is not None:
+            return
+        row = first + int(rows[0])
+        self.standing.alarm = row
+        sensors = tuple(np.array(self._station.channels)[exceeded[rows[0]]].tolist())
+        more = f" and {len(sensors) - SHOWN} more" if len(sensors) > SHOWN else ""
+        words = f"out of sync: the gap of {', '.join(sensors[:SHOWN])}{more} exceeds its bound"
+        self._event("alarm", row, words, sensors)
+
+    def _integrate(self, first: int, end: int) -> None:
+        state, ledger = self._exchange.twin.state, self._calibration.ledger
+        if not state.latent:
+            return
+        latent, width = self._latent()
+        chosen = novel(
+            ledger.gaps[first:end],
+            ledger.contexts[first:end][:, latent],
+            errors=ledger.gaps[:first],
+            stored=self._archive.run.simulated(version=state.version).contexts[:, latent],
+            width=width,
+            z=self._settings.repository_z,
+            distinct=self.standing.distinct,
+        )
+        if chosen:
+            rows = first + np.array(chosen)
+            self._archive.keep_novel(
+                state.version, end - 1, ledger.contexts[rows], ledger.simulated[rows]
+            )
+            values = zip(state.latent, ledger.contexts[rows[0], latent], strict=True)
+            words = ", ".join(f"{name} {value:.3g}" for name, value in values)
+            more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+            self._event("novel context", int(rows[0]), f"stored: {words}{more}")
+
+    def _refine(self, recent: tuple[int, int]) -> None:
+        """Fine-tune on the latest rows; where that makes the gap larger, return to what was."""
+        calibration = self._calibration
+        stored = self._archive.run.simulated(
+            version=self._exchange.twin.state.version, origin="novel"
+        ).contexts
+        if len(stored):
+            around = np.stack([stored.min(axis=0), stored.max(axis=0)], axis=1)
+            wanted = self._settings.design_rows // 8
+            calibration.supply(around, wanted, requested=True)
+        kept, before = (calibration.learned, calibration.ledger.copy()), calibration.gap(*recent)
+        calibration.learn([(0, self.standing.calibrated), recent], afresh=False)
+        calibration.follow(*recent)
+        if not calibration.gap(*recent) < before:
+            calibration.learned, calibration.ledger = kept
+            calibration.send(*recent)
+
+    def _change_version(self, **change: Any) -> None:
+        """Q1 with an update or a rollback; an update that does not lower the gap is taken back."""
+        standing, calibration = self.standing, self._calibration
+        since = standing.row if standing.alarm is None else standing.alarm
+        recent = (max(0, min(since, standing.row - 2 * self._settings.settle)), standing.row)
+        before, old = calibration.gap(*recent), self._exchange.twin.state.version
+        kept = calibration.learned, calibration.ledger.copy()
+        answer = self._ask_twin(**change)
+        if not answer.adequate:
+            words = f"the update of the model was refused: {'; '.join(answer.missing)}"
+            self._event("version", standing.row - 1, words)
+            return
+        self._design()
+        calibration.learn([recent], afresh=True)
+        calibration.follow(*recent)
+        after = calibration.gap(*recent)
+        words = f"version {answer.version} of the model is in force"
+        self._event("version", standing.row - 1, words, before=before, after=after)
+        if "restore" not in change and not after < before:
+            calibration.learned, calibration.ledger = kept
+            self._ask_twin(restore=old)
+            calibration.send(*recent)
+            words = f"the gap did not fall: version {old} is in force again"
+            self._event("rollback", standing.row - 1, words, before=after, after=before)
+        self._begin_again()
+
+    def _design(self) -> None:
+        """The design phase of the version in force: simulations over the ranges of the contexts."""
+        if self._exchange.twin.state.latent:
+            self._calibration.supply(self._calibration.ranges, self._settings.design_rows)
+
+    def _ask_twin(self, **change: Any) -> R1:
+        row = max(0, self.standing.row - 1)
+        channels, measured = self._station.channels, self._station.measured
+        return self._exchange.ask(Q1(row=row, channels=channels, measured=measured, **change))
+
+    def _begin_again(self) -> None:
+        gaps = self._calibration.ledger.gaps
+        self.synchrony.begin_again(gaps[-2 * self._settings.window :])
+
+    def _go_on(self, last: bool) -> None:
+        self.standing.alarm = None
+        self.standing.stage = "close" if last else "watch"
+
+    def _may_ask(self) -> bool:
+        """The diagnosis is slow: it is asked again when the record has grown enough."""
+        asked = self.standing.diagnosed
+        return asked is None or self.standing.row >= self._settings.growth * asked
+
+    def _latent(self) -> tuple[list[int], FloatArray]:
+        columns = self._calibration.latent
+        return columns, np.ptp(self._calibration.ranges, axis=1)[columns]
+
+    def _event(
+        self,
+        kind: Kind,
+        row: int,
+        words: str,
+        sensors: tuple[str, ...] = (),
+        before: float | None = None,
+        after: float | None = None,
+    ) -> None:
+        self._archive.event(Event(kind, row, self._label(row), words, sensors, before, after))

@@ -1,0 +1,151 @@
+"""The historical repository as the exchange and the analysis see it."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+
+import numpy as np
+
+from rga.model import Model
+from rga.model.parameter import FloatArray
+from rga.twin.hardware import Packet
+from rga.twin.history import Event
+from rga.twin.ledger import Ledger
+from rga.twin.messages import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256
+from rga.twin.repository import Run, Step
+from rga.twin.simulation_model import SimulationModel
+from rga.twin.versions import extended, written
+
+
+class Archive:
+    """A run of the repository, and the step that is open in it.
+
+    Args:
+        run: where the history is kept.
+        given: the model as it was given.
+        simulation: the simulation model of a version, by its number.
+
+    Attributes:
+        events: that were kept since this archive was opened.
+    """
+
+    def __init__(
+        self, run: Run, given: Model, simulation: Callable[[int], SimulationModel]
+    ) -> None:
+        self.run = run
+        self._given = given
+        self._simulation = simulation
+        self._step: Step | None = None
+        self._proposal: Q1 | None = None
+        self.events: list[Event] = []
+
+    @contextmanager
+    def step(self) -> Iterator[None]:
+        """One step: all that is logged and kept within it is acknowledged together, or nothing."""
+        with self.run.step() as step:
+            self._step = step
+            try:
+                yield
+            finally:
+                self._step = None
+
+    @property
+    def _open(self) -> Step:
+        if self._step is None:
+            raise RuntimeError("messages pass within a step")
+        return self._step
+
+    def receive(self, packet: Packet) -> None:
+        """Keep measured rows."""
+        self._open.measured(packet.first, packet.time, packet.readings, packet.contexts)
+
+    def log(self, message: Message) -> None:
+        """Write a message into the log."""
+        body = message.model_dump(mode="json")
+        self._open.message(kind=body.pop("kind"), row=body.pop("row"), body=body)
+        if isinstance(message, Q1):
+            self._proposal = message
+
+    def take(self, response: Response) -> None:
+        """Write a response into the log, and keep what it brings."""
+        self.log(response)
+        if isinstance(response, R1) and response.adequate:
+            self._take_version(response)
+        if isinstance(response, R3):
+            self._open.simulated(
+                response.version,
+                response.origin,
+                response.row,
+                response.contexts,
+                response.readings,
+                response.falling,
+            )
+
+    def answer(self, query: Q2 | Q4) -> R2 | R4:
+        """What the repository holds."""
+        if isinstance(query, Q2):
+            box = (np.array(query.box.low), np.array(query.box.high))
+            held = self.run.count_simulated(version=query.version, within=box)
+            return R2(row=query.row, held=held, missing=max(0, query.wanted - held))
+        simulated = self.run.simulated(version=query.version)
+        parts = [self.run.measured(first, end) for first, end in query.measured]
+        real = np.concatenate([part.readings for part in parts])
+        contexts = np.concatenate([part.contexts for part in parts])
+        return R4(
+            row=query.row,
+            simulation=self._simulation(query.version),
+            contexts=simulated.contexts,
+            readings=simulated.readings,
+            falling=simulated.falling,
+            real=real,
+            real_contexts=contexts,
+            simulated_rows=len(simulated),
+            measured_rows=len(real),
+            sha256=sha256(simulated.contexts, simulated.readings, real, contexts),
+        )
+
+    def keep_rows(self, first: int, end: int, version: int, ledger: Ledger) -> None:
+        """Keep what was inferred and simulated for rows."""
+        rows = slice(first, end)
+        self._open.inferred(first, ledger.contexts[rows], ledger.spread[rows], version)
+        self._open.gaps(first, ledger.simulated[rows], ledger.gaps[rows], version)
+
+    def keep_novel(
+        self, version: int, row: int, contexts: FloatArray, simulated: FloatArray
+    ) -> None:
+        """T2: keep novel contexts with what the twin simulated there."""
+        whole = np.isfinite(simulated).all(axis=1)
+        level = np.zeros(int(whole.sum()), dtype=bool)
+        self._open.simulated(version, "novel", row, contexts[whole], simulated[whole], level)
+
+    def keep_findings(self, row: int, findings: str) -> None:
+        """Keep the findings of a diagnosis."""
+        self._open.findings(row, findings)
+
+    def keep(self, name: str, data: bytes, row: int) -> None:
+        """Keep a checkpoint."""
+        self._open.keep(name, data, row)
+
+    def event(self, event: Event) -> None:
+        """Keep what happened to the twin."""
+        self._open.event(**asdict(event))
+        self.events.append(event)
+
+    def _take_version(self, response: R1) -> None:
+        """Keep a model version where it is new, and that it is in force."""
+        known = {version.number for version in self.run.versions()}
+        if response.version not in known:
+            text, digest = written(extended(self._given, response.effects))
+            proposal = self._proposal
+            self._open.version(
+                response.version,
+                response.row,
+                text,
+                digest,
+                json.dumps(response.effects),
+                None if proposal is None else proposal.gain,
+                None if proposal is None else proposal.gain_ci90,
+                "given" if not response.effects else "extended",
+            )
+        self._open.in_force(response.version, response.row)

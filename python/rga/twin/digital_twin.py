@@ -1,0 +1,172 @@
+"""The digital twin: its information model, its simulation model, and the state they are in."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from rga.errors import InputError
+from rga.inference.design import design
+from rga.model import Model
+from rga.simulation import Simulator
+from rga.twin.hardware import Station
+from rga.twin.messages import Q1, Q3, Q5, R1, R3, R5, Response
+from rga.twin.simulation_model import SimulationModel, mounted
+from rga.twin.versions import Effects, extended
+
+#: contexts at which the sensors are asked what they see
+TRIAL_CONTEXTS = 64
+
+
+@dataclass(frozen=True)
+class State:
+    """What the twin holds; it follows from the responses alone.
+
+    Attributes:
+        version: number of the model version in force; 0 before the first response.
+        versions: effects of every version beyond the model as given.
+        latent: context variables that are inferred.
+        row: row of the record at which the twin stands.
+        context, simulated: of that row, by name.
+    """
+
+    version: int = 0
+    versions: Mapping[int, Effects] = field(default_factory=dict)
+    latent: tuple[str, ...] = ()
+    row: int | None = None
+    context: Mapping[str, float] = field(default_factory=dict)
+    simulated: Mapping[str, float] = field(default_factory=dict)
+
+
+def follow(state: State, response: Response, channels: tuple[str, ...]) -> State:
+    """The state after a response. Nothing else changes the twin."""
+    if isinstance(response, R1) and response.adequate:
+        versions = {**state.versions, response.version: response.effects}
+        return replace(state, version=response.version, versions=versions, latent=response.latent)
+    if isinstance(response, R5):
+        last = response.simulated[-1].tolist() if len(response.simulated) else []
+        simulated = dict(zip(channels, last, strict=bool(last)))
+        row = response.first + response.rows - 1
+        return replace(state, row=row, context=response.context, simulated=simulated)
+    return state
+
+
+class DigitalTwin:
+    """The one proxy of the structure: others read it, query it, and change it by responses alone.
+
+    Args:
+        model: as it was given; versions add effects to it.
+        station: what is mounted on the structure.
+    """
+
+    def __init__(self, model: Model, station: Station) -> None:
+        self.given = model
+        self.station = station
+        self.state = State()
+        self._simulations: dict[int, SimulationModel] = {}
+
+    def accept(self, response: Response) -> None:
+        """Take a response over."""
+        self.state = follow(self.state, response, self.station.channels)
+
+    def answer(self, query: Q1 | Q3 | Q5) -> R1 | R3 | R5:
+        """The response to a query; the twin itself stays as it is."""
+        if isinstance(query, Q1):
+            return self._adequacy(query)
+        simulation = self.simulation(query.version)
+        return simulation.draw(query) if isinstance(query, Q3) else simulation.follow(query)
+
+    def model(self, version: int | None = None) -> Model:
+        """The model of a version, of the one in force by default."""
+        return extended(self.given, self.state.versions[version or self.state.version])
+
+    def simulation(self, version: int | None = None) -> "SimulationModel":
+        """The simulation model of a version, of the one in force by default."""
+        number = version or self.state.version
+        if number not in self._simulations:
+            self._simulations[number] = SimulationModel(self.model(number), self.station)
+        return self._simulations[number]
+
+    def _adequacy(self, query: Q1) -> R1:
+        state = self.state
+        number, effects = max(1, state.version), state.versions.get(state.version, {})
+        if query.restore is not None:
+            number, effects = query.restore, state.versions.get(query.restore, {})
+        elif query.effects is not None:
+            number, effects = max(state.versions) + 1, query.effects
+        latent: tuple[str, ...] = ()
+        blind: tuple[str, ...] = ()
+        missing: list[str] = []
+        if query.restore is not None and query.restore not in state.versions:
+            missing.append(f"there is no version {query.restore}")
+        try:
+            model = extended(self.given, effects)
+            latent, blind, lacks = InformationModel(model, self.station).check(query)
+            missing += lacks
+        except InputError as error:
+            missing.append(str(error))
+        return R1(
+            row=query.row,
+            version=number,
+            effects=effects,
+            adequate=not missing,
+            missing=tuple(missing),
+            latent=latent,
+            blind=blind,
+        )
+
+
+@dataclass(frozen=True)
+class InformationModel:
+    """What the twin knows of the structure, its sensors and its contexts."""
+
+    model: Model
+    station: Station
+
+    def check(self, query: Q1) -> tuple[tuple[str, ...], tuple[str, ...], list[str]]:
+        """Latent contexts that can be inferred, those that no channel sees, and what is missing.
+
+        Raises:
+            InputError: the model cannot be simulated.
+        """
+        missing = [
+            f"a sensor {name!r}" for name in query.channels if name not in self.model.sensors
+        ]
+        missing += [
+            f"a context variable {name!r}"
+            for name in query.measured
+            if name not in self.model.context
+        ]
+        if not query.channels:
+            missing.append("a sensor that the record holds")
+        if missing:
+            return (), (), missing
+        model = mounted(self.model, query.channels)
+        latent = [
+            name
+            for name in model.context
+            if name in Simulator(model).needed and name not in query.measured
+        ]
+        seen = self._seen(model, latent)
+        if latent and not any(seen[name] for name in latent):
+            missing.append(f"a sensor that sees {' or '.join(latent)}")
+        return (
+            tuple(name for name in latent if seen[name]),
+            tuple(name for name in latent if not seen[name]),
+            missing,
+        )
+
+    def _seen(self, model: Model, latent: list[str]) -> dict[str, bool]:
+        """Whether the whole range of a context moves some channel by more than its noise."""
+        if not latent:
+            return {}
+        origin = self.station.origin
+        trial = design(model, TRIAL_CONTEXTS, latent=latent, seed=0, time=origin)
+        table = dict(zip(model.context, trial.contexts.T, strict=True))
+        slopes = Simulator(model).jacobian({**table, "time": origin})
+        width = np.array([high - low for low, high in (v.range for v in model.context.values())])
+        reach = np.nan_to_num(np.abs(slopes)).max(axis=0) * width
+        noise = np.array([sensor.noise or 0.0 for sensor in model.sensors.values()])
+        visible = (reach > np.maximum(noise[:, None], 1e-9)).any(axis=0)
+        found = dict(zip(model.context, visible.tolist(), strict=True))
+        return {name: found[name] for name in latent}

@@ -1,0 +1,56 @@
+"""What gap a calibrated twin may have: noise, and a model that is off by a share of what it says.
+
+As-built structures differ from their model by a few percent everywhere. The squared gap that this
+makes grows with the response, so the gap under a heavy load must not be held against that of quiet
+rows.
+"""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from rga.model.parameter import FloatArray
+
+#: largest share by which a calibrated model is taken to be off
+LARGEST = 0.3
+
+
+def scatter_share(gaps: FloatArray, simulated: FloatArray, noise: FloatArray) -> float:
+    """The share e by which the model is off, so that gaps are noise^2 + (e simulated)^2.
+
+    Args:
+        gaps: squared gaps of calibrated rows, float[rows, channels], NaN where missing.
+        simulated: float[rows, channels].
+        noise: standard deviation of each channel's noise, float[channels].
+
+    >>> simulated = np.full((9, 2), 10.0)
+    >>> round(scatter_share(np.full((9, 2), 1.25), simulated, np.ones(2)), 3)
+    0.05
+    """
+
+    def excess(share: float) -> float:
+        return against_expected(gaps, simulated, noise, share) - 1.0
+
+    if not excess(0.0) > 0:
+        return 0.0
+    if excess(LARGEST) > 0:
+        return LARGEST
+    return float(brentq(excess, 0.0, LARGEST, xtol=1e-6))
+
+
+def against_expected(
+    gaps: FloatArray, simulated: FloatArray, noise: FloatArray, share: float
+) -> float:
+    """Gap over the gap to expect: the median over rows of the mean over sensors [-].
+
+    Args:
+        gaps, simulated: float[rows, channels], NaN where missing.
+        noise: float[channels].
+        share: by which the model is off [-]; 0: the gap over the variance of the noise.
+
+    >>> against_expected(np.array([[4.0, np.nan], [1.0, 3.0]]), np.zeros((2, 2)), np.ones(2), 0.0)
+    3.0
+    """
+    with np.errstate(invalid="ignore"):
+        scaled = gaps / (noise**2 + (share * simulated) ** 2)
+    rows = scaled[np.isfinite(scaled).any(axis=1)]
+    return float(np.median(np.nanmean(rows, axis=1))) if len(rows) else float("nan")

@@ -1,0 +1,116 @@
+"""The hardware interface: what the structure's sensors send, packet by packet."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rga.model.effect import seconds
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.records import Record
+
+ZERO_ROWS = 8
+
+
+@dataclass(frozen=True)
+class Packet:
+    """Rows that arrive together.
+
+    Attributes:
+        first: number of the first row.
+        time: float[n], seconds since the first row of the record.
+        readings: float[n, channels], NaN where missing.
+        contexts: measured contexts, float[n, measured], NaN where missing.
+    """
+
+    first: int
+    time: FloatArray
+    readings: FloatArray
+    contexts: FloatArray
+
+    @property
+    def end(self) -> int:
+        """Number of the row after the last."""
+        return self.first + len(self.time)
+
+
+@dataclass(frozen=True)
+class Station:
+    """What is mounted on the structure.
+
+    Attributes:
+        channels: sensors, in the order of the readings.
+        measured: context variables that are measured, in the order of the packets.
+        start, time_format: time of the first row and how the record writes time, as of a Record.
+        zero: clock (`time`) and measured contexts of the unloaded rows whose mean the logger took
+            off every channel, float[n] each; of no length where nothing was taken off.
+    """
+
+    channels: tuple[str, ...]
+    measured: tuple[str, ...]
+    start: str | float
+    time_format: Literal["iso", "seconds"]
+    zero: Mapping[str, FloatArray]
+
+    @property
+    def origin(self) -> float:
+        """Clock of the first row [s]."""
+        return seconds(self.start)
+
+    def to_json(self) -> str:
+        """The station as text."""
+        zero = {name: values.tolist() for name, values in self.zero.items()}
+        return json.dumps({**vars(self), "zero": zero})
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> "Station":
+        """The station that `to_json` wrote."""
+        known = json.loads(text)
+        zero = {name: np.array(values, dtype=float) for name, values in known["zero"].items()}
+        channels, measured = tuple(known["channels"]), tuple(known["measured"])
+        return cls(channels, measured, known["start"], known["time_format"], zero)
+
+
+class HardwareInterface:
+    """Plays a record as the sensors sent it.
+
+    A live station takes its place by offering the same three members.
+
+    Args:
+        record: what was measured.
+        model: names the context variables.
+    """
+
+    def __init__(self, record: Record, model: Model) -> None:
+        self._record = record
+        measured = tuple(name for name in model.context if name in record.contexts)
+        leading = np.zeros(0, dtype=np.int64)
+        if record.zero is not None:
+            first, end = np.searchsorted(record.time, record.zero)
+            leading = np.unique(np.linspace(first, max(first, end - 1), ZERO_ROWS).astype(int))
+        zero = {name: record.contexts[name][leading] for name in measured}
+        zero["time"] = record.origin + record.time[leading]
+        self.station = Station(
+            tuple(record.sensors), measured, record.start, record.time_format, zero
+        )
+
+    @property
+    def rows(self) -> int:
+        """Rows that have arrived."""
+        return len(self._record)
+
+    def packet(self, first: int, rows: int) -> Packet:
+        """At most so many rows from a row on."""
+        chosen = slice(first, first + rows)
+        record = self._record
+        contexts = [record.contexts[name][chosen] for name in self.station.measured]
+        time = record.time[chosen]
+        return Packet(
+            first,
+            time,
+            record.readings[chosen],
+            np.column_stack(contexts) if contexts else np.zeros((len(time), 0)),
+        )

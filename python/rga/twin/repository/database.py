@@ -1,0 +1,46 @@
+"""Which database a place names."""
+
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Protocol
+
+from sqlalchemy import Connection, Engine, make_url
+from sqlalchemy.exc import ArgumentError
+
+from rga.errors import InputError
+from rga.twin.repository.postgresql import PostgreSQL
+from rga.twin.repository.sqlite import SQLite
+
+FILE_NAME = "twin.sqlite"
+
+
+class Database(Protocol):
+    """What a repository needs of its database; `where` names it in errors."""
+
+    where: str
+    read_only: bool
+    engine: Engine
+
+    def writer(self, key: str) -> AbstractContextManager[Connection]:
+        """A connection that only one process holds at a time."""
+
+
+def database(place: str | Path, read_only: bool) -> Database:
+    """The database at a path (a file, or a directory that holds `twin.sqlite`) or a URL.
+
+    Raises:
+        InputError: the URL cannot be read or is not PostgreSQL's, the driver is missing, or the
+            file is missing or cannot be written.
+    """
+    if isinstance(place, str) and "://" in place:
+        remedy = "name a file, or a server as postgresql://user@host/database"
+        try:
+            url = make_url(place)
+        except (ArgumentError, ValueError) as error:
+            raise InputError("the URL cannot be read", "repository", remedy) from error
+        if url.drivername not in ("postgresql", "postgresql+psycopg"):
+            where = f"repository {url.render_as_string(hide_password=True)}"
+            raise InputError(f"no repository is kept in {url.drivername!r}", where, remedy)
+        return PostgreSQL(url.set(drivername="postgresql+psycopg"), read_only)
+    path = Path(place)
+    return SQLite(path / FILE_NAME if path.is_dir() else path, read_only)

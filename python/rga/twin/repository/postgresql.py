@@ -1,0 +1,44 @@
+"""A repository in a database server: PostgreSQL, one writer for each run."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy import URL, Connection, Engine, create_engine, text
+
+from rga.errors import InputError
+
+_LOCK = text("SELECT pg_advisory_lock(hashtextextended(current_schema() || ' ' || :key, 0))")
+
+
+class PostgreSQL:
+    """Connections to a database, for all or for reading only.
+
+    Raises:
+        InputError: the driver is not installed.
+    """
+
+    def __init__(self, url: URL, read_only: bool) -> None:
+        self.where = f"repository {url.render_as_string(hide_password=True)}"
+        self.read_only = read_only
+        try:
+            engine = create_engine(url)
+        except ImportError as error:
+            remedy = "install it: pip install 'rga[postgres]'"
+            raise InputError("PostgreSQL needs the driver psycopg", self.where, remedy) from error
+        self.engine: Engine = engine.execution_options(postgresql_readonly=read_only)
+
+    @contextmanager
+    def writer(self, key: str) -> Iterator[Connection]:
+        """The connection of the one writer under this key; the lock ends with the connection.
+
+        Raises:
+            sqlalchemy.exc.OperationalError: another writer holds the lock.
+        """
+        with self.engine.connect() as connection:
+            # Not handed back to the pool: closing it ends the session, and with it the lock.
+            connection.detach()
+            with connection.begin():
+                connection.execute(text("SET LOCAL lock_timeout = '2s'"))
+                connection.execute(_LOCK, {"key": key})
+                connection.execute(text("SET synchronous_commit = on"))
+            yield connection

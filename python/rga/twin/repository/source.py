@@ -1,0 +1,109 @@
+"""What is stored of one run, up to one of its steps."""
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, select
+
+from rga.model.parameter import FloatArray
+from rga.twin.repository import tables
+from rga.twin.repository.entries import Rows
+from rga.twin.repository.packets import LONGEST, unpack
+
+
+@dataclass(frozen=True)
+class Source:
+    """Entries of a run.
+
+    Attributes:
+        reading: opens a transaction to read in.
+        run_id: key of the run in its repository.
+        until: number of the last step to see; None: all.
+    """
+
+    reading: Callable[[], AbstractContextManager[Connection]]
+    run_id: int
+    until: int | None = None
+
+    def scalar(self, table: Table, value: ColumnElement[Any], *where: ColumnElement[bool]) -> Any:
+        """A value over the entries of a table, None where there are none."""
+        with self.reading() as connection:
+            return connection.scalar(self._select(table, value).where(*where))
+
+    def entries(
+        self, table: Table, *columns: ColumnElement[Any], where: Sequence[ColumnElement[bool]] = ()
+    ) -> Sequence[Row[Any]]:
+        """Columns of a table (all, if none is named), in the order in which they were stored."""
+        statement = self._select(table, *(columns or table.columns)).where(*where)
+        with self.reading() as connection:
+            return connection.execute(statement.order_by(table.c.step, table.c.ordinal)).all()
+
+    def last(self, table: Table, *where: ColumnElement[bool]) -> Row[Any] | None:
+        """The entry that was stored last, if any."""
+        order = table.c.step.desc(), table.c.ordinal.desc()
+        statement = self._select(table, *table.columns).where(*where).order_by(*order).limit(1)
+        with self.reading() as connection:
+            return connection.execute(statement).one_or_none()
+
+    def rows(
+        self, table: Table, names: Sequence[str], first: int, end: int | None, version: int | None
+    ) -> tuple[Rows, list[FloatArray], Sequence[Row[Any]]]:
+        """Rows from `first` to before `end` as they were stored last.
+
+        Returns:
+            The rows int[n], an array float[n, width] for each name, and the packet of each row.
+        """
+        c = table.c
+        where = [c.first_row > first - LONGEST]
+        if end is not None:
+            where.append(c.first_row < end)
+        if version is not None:
+            where.append(c.version == version)
+        packets = self.entries(table, where=where)
+        spans = [
+            np.arange(packet.first_row, packet.first_row + packet.length) for packet in packets
+        ]
+        stored = np.concatenate(spans) if spans else np.zeros(0, dtype=np.int64)
+        rows, place = np.unique(stored[::-1], return_index=True)
+        inside = (rows >= first) & (rows < (np.inf if end is None else end))
+        chosen = len(stored) - 1 - place[inside]
+        owner = np.repeat(np.arange(len(packets)), [packet.length for packet in packets])[chosen]
+        arrays = [joined(packets, name)[chosen] for name in names]
+        return rows[inside], arrays, [packets[index] for index in owner]
+
+    def step_at(self, row: int) -> int:
+        """Number of the last step about rows up to this one; 0 where there is none."""
+        step = tables.step.c
+        return int(self.scalar(tables.step, func.max(step.number), step.row <= row) or 0)
+
+    def row_at(self, time: float) -> int:
+        """Last measured row at or before a time [s]; -1 where there is none."""
+        c = tables.measured.c
+        packet = self.last(
+            tables.measured,
+            c.first_time
+            == self._select(tables.measured, func.max(c.first_time))
+            .where(c.first_time <= time)
+            .scalar_subquery(),
+        )
+        if packet is None:
+            return -1
+        clock = unpack(packet.time, packet.length).ravel()
+        return int(packet.first_row + np.searchsorted(clock, time, side="right") - 1)
+
+    def _select(self, table: Table, *columns: ColumnElement[Any]) -> Select[Any]:
+        statement = select(*columns).where(table.c.run_id == self.run_id)
+        if self.until is None:
+            return statement
+        step = table.c.number if table is tables.step else table.c.step
+        return statement.where(step <= self.until)
+
+
+def joined(packets: Sequence[Row[Any]], name: str) -> FloatArray:
+    """The rows of packets one after another, float[n, width]; float[0, 0] without packets."""
+    if not packets:
+        return np.zeros((0, 0))
+    return np.concatenate([unpack(getattr(packet, name), packet.length) for packet in packets])

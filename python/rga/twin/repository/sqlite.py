@@ -1,0 +1,87 @@
+"""A repository in a file: SQLite, one writer for the file."""
+
+import os
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+from sqlalchemy import Connection, QueuePool, create_engine, event
+
+from rga.errors import InputError
+
+# How long to wait for a lock [s]: a killed writer's may need a moment to vanish.
+PATIENCE = 2.0
+
+
+class SQLite:
+    """Connections to a file, for all or for reading only.
+
+    Raises:
+        InputError: the file is missing where it is only to be read, or cannot be written.
+    """
+
+    def __init__(self, path: Path, read_only: bool) -> None:
+        self.where = f"repository {path}"
+        self.read_only = read_only
+        self._path = path
+        if read_only and not path.is_file():
+            raise InputError("there is no such file", self.where, "name a repository of a run")
+        if not read_only and not os.access(path if path.exists() else path.parent, os.W_OK):
+            remedy = "name a file in a directory that exists and can be written"
+            raise InputError("the repository cannot be written", self.where, remedy)
+        self.engine = create_engine("sqlite://", creator=self._connect, poolclass=QueuePool)
+        event.listen(self.engine, "begin", _begin)
+
+    def _connect(self) -> sqlite3.Connection:
+        query = "mode=ro" if self.read_only else "mode=rwc"
+        if self.read_only and not (self._log.exists() or os.access(self._path.parent, os.W_OK)):
+            # SQLite cannot put its files beside a database on a medium that is read-only.
+            query += "&immutable=1"
+        connection = sqlite3.connect(
+            f"{self._path.absolute().as_uri()}?{query}",
+            uri=True,
+            timeout=PATIENCE,
+            isolation_level=None,
+            check_same_thread=False,
+        )
+        if not self.read_only:
+            connection.execute("PRAGMA journal_mode = WAL")
+        # What is acknowledged survives a power cut; fullfsync is what that takes on macOS.
+        connection.execute("PRAGMA synchronous = FULL")
+        connection.execute("PRAGMA fullfsync = ON")
+        connection.execute("PRAGMA foreign_keys = ON")
+        return connection
+
+    @property
+    def _log(self) -> Path:
+        return self._path.with_name(f"{self._path.name}-wal")
+
+    @contextmanager
+    def writer(self, key: str) -> Iterator[Connection]:
+        """The connection of the one writer; the system drops its lock if the process is killed.
+
+        Raises:
+            InputError: another writer holds the lock.
+        """
+        lock = FileLock(f"{self._path}.lock", timeout=PATIENCE, thread_local=False)
+        try:
+            lock.acquire()
+        except Timeout:
+            remedy = "wait for it, or end it"
+            raise InputError("another process writes this repository", self.where, remedy) from None
+        except OSError as error:
+            remedy = "allow writing to its directory"
+            what = f"the repository cannot be locked: {error.strerror}"
+            raise InputError(what, self.where, remedy) from error
+        try:
+            with self.engine.connect() as connection:
+                yield connection
+        finally:
+            lock.release()
+
+
+def _begin(connection: Connection) -> None:
+    # The driver by itself begins no transaction before the first change, and none for tables.
+    connection.exec_driver_sql("BEGIN")

@@ -1,0 +1,191 @@
+"""The writer of a run: one step, acknowledged as a whole."""
+
+import json
+from datetime import UTC, datetime
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from sqlalchemy import Connection, Table, insert, select, update
+
+from rga.twin.repository import tables
+from rga.twin.repository.entries import Origin, Time
+from rga.twin.repository.packets import packets
+
+
+class Step:
+    """What one transaction stores; `Run.step` begins and ends it.
+
+    Where a method takes `row`, it is the row of the record at which something was decided; where
+    it takes `first_row`, the row that the arrays begin with. A ValueError tells of arrays that do
+    not fit one another and of bodies that JSON cannot hold.
+
+    Attributes:
+        number: of the step in its run, from 1.
+        row: last row that this step or one before it was about, -1 where there was none.
+    """
+
+    def __init__(self, connection: Connection, run_id: int) -> None:
+        before = (
+            select(tables.step.c.number, tables.step.c.row)
+            .where(tables.step.c.run_id == run_id)
+            .order_by(tables.step.c.number.desc())
+            .limit(1)
+        )
+        last = connection.execute(before).one_or_none()
+        self.number: int = last.number + 1 if last else 1
+        self.row: int = last.row if last else -1
+        self._connection = connection
+        self._run_id = run_id
+        self._ordinal = 0
+        self._ended = False
+        connection.execute(
+            insert(tables.step).values(
+                run_id=run_id, number=self.number, row=self.row, written_at=now()
+            )
+        )
+
+    def message(
+        self, *, kind: str, row: int, body: dict[str, Any], time: Time | None = None
+    ) -> None:
+        """A query or a response; `body` is what JSON can hold."""
+        self._store(
+            tables.message,
+            row,
+            kind=kind,
+            row=row,
+            time=None if time is None else _json(time),
+            body=_json(body),
+            written_at=now(),
+        )
+
+    def measured(
+        self, first_row: int, time: ArrayLike, readings: ArrayLike, contexts: ArrayLike
+    ) -> None:
+        """Rows of the record: float[n] [s], float[n, sensors], float[n, measured contexts]."""
+        clock = np.asarray(time, dtype=float)
+        for start, packet in packets(time=clock, readings=readings, contexts=contexts):
+            first_time = float(clock[start])
+            self._store_rows(tables.measured, first_row + start, packet, first_time=first_time)
+
+    def simulated(
+        self,
+        version: int,
+        origin: Origin,
+        row: int,
+        contexts: ArrayLike,
+        readings: ArrayLike,
+        falling: ArrayLike | None = None,
+    ) -> None:
+        """Simulations of a model version: float[n, k], float[n, sensors].
+
+        Those marked `falling`, bool[n], were simulated with a latent position that falls.
+        """
+        if falling is None:
+            falling = np.zeros(len(np.asarray(contexts)))
+        for _, packet in packets(contexts=contexts, readings=readings, falling=falling):
+            packet |= {"version": version, "origin": origin, "row": row}
+            self._store(tables.simulated, row, **packet)
+
+    def inferred(
+        self, first_row: int, contexts: ArrayLike, spread: ArrayLike, version: int
+    ) -> None:
+        """Posterior mean and standard deviation of the contexts of rows: float[n, k] each."""
+        for start, packet in packets(contexts=contexts, spread=spread):
+            self._store_rows(tables.inferred, first_row + start, packet, version=version)
+
+    def gaps(self, first_row: int, simulated: ArrayLike, gaps: ArrayLike, version: int) -> None:
+        """What a version simulated for rows, and their gaps [unit squared]: float[n, sensors]."""
+        for start, packet in packets(simulated=simulated, gaps=gaps):
+            self._store_rows(tables.gap, first_row + start, packet, version=version)
+
+    def version(
+        self,
+        number: int,
+        row: int,
+        model_json: str,
+        model_sha256: str,
+        causes_json: str,
+        gain: float | None,
+        gain_ci90: tuple[float, float] | None,
+        status: str,
+    ) -> None:
+        """A model version, each number once; `in_force` is what puts it in force."""
+        low, high = gain_ci90 or (None, None)
+        self._store(
+            tables.version,
+            row,
+            number=number,
+            row=row,
+            model=model_json,
+            model_sha256=model_sha256,
+            causes=causes_json,
+            gain=gain,
+            gain_low=low,
+            gain_high=high,
+            status=status,
+        )
+
+    def in_force(self, version: int, row: int) -> None:
+        """From this row on a version is in force: a new one, or with a rollback an old one."""
+        self._store(tables.in_force, row, version=version, row=row)
+
+    def findings(self, row: int, findings_json: str) -> None:
+        """Findings of a diagnosis that ended with this row."""
+        self._store(tables.findings, row, row=row, findings=findings_json)
+
+    def event(
+        self,
+        kind: str,
+        row: int,
+        time: Time,
+        words: str,
+        sensors: tuple[str, ...] = (),
+        gap_before: float | None = None,
+        gap_after: float | None = None,
+    ) -> None:
+        """Something that happened to the twin: the parts of a `rga.twin.history.Event`."""
+        self._store(
+            tables.event,
+            row,
+            kind=kind,
+            row=row,
+            time=_json(time),
+            words=words,
+            sensors=_json(sensors),
+            gap_before=gap_before,
+            gap_after=gap_after,
+        )
+
+    def keep(self, name: str, data: bytes, row: int) -> None:
+        """A checkpoint (weights, the state of a detector or of the loop) under a name."""
+        self._store(tables.kept, row, name=name, row=row, data=data)
+
+    def end(self) -> None:
+        """Note the row that the step reached; nothing more can be stored in it."""
+        own = (tables.step.c.run_id == self._run_id) & (tables.step.c.number == self.number)
+        self._connection.execute(update(tables.step).where(own).values(row=self.row))
+        self._ended = True
+
+    def _store_rows(
+        self, table: Table, first_row: int, packet: dict[str, Any], **columns: Any
+    ) -> None:
+        last_row = first_row + packet["length"] - 1
+        self._store(table, last_row, first_row=first_row, **packet, **columns)
+
+    def _store(self, table: Table, about: int, **columns: Any) -> None:
+        if self._ended:
+            raise RuntimeError("the step has ended: begin another")
+        key = {"run_id": self._run_id, "step": self.number, "ordinal": self._ordinal}
+        self._connection.execute(insert(table), key | columns)
+        self._ordinal += 1
+        self.row = max(self.row, about)
+
+
+def now() -> str:
+    """The wall clock, UTC, as ISO 8601 text."""
+    return datetime.now(UTC).isoformat()
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, allow_nan=False)

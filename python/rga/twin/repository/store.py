@@ -1,0 +1,181 @@
+"""The repository: runs, found by their identity, in a file or a database server."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Self
+
+from sqlalchemy import Connection, Row, insert, select
+
+from rga.errors import InputError
+from rga.twin.repository import migrations, tables
+from rga.twin.repository.database import Database, database
+from rga.twin.repository.entries import Identity
+from rga.twin.repository.faults import told
+from rga.twin.repository.source import Source
+from rga.twin.repository.step import Step, now
+from rga.twin.repository.view import View
+
+
+class Run(View):
+    """A run that this process writes; the lock is held until `close`.
+
+    Its readers see what an open step has stored so far.
+    """
+
+    def __init__(self, connection: Connection, where: str, entry: Row[Any], held: ExitStack):
+        super().__init__(Source(self._reading, entry.id), *_of(entry))
+        self._connection = connection
+        self._where = where
+        self._held = held
+
+    @contextmanager
+    def step(self) -> Iterator[Step]:
+        """Store all that the `with` block writes, acknowledged at its end, or nothing of it.
+
+        Raises:
+            InputError: the disk is full, the server is lost, or the like.
+        """
+        with told(self._where), self._transaction():
+            step = Step(self._connection, self._source.run_id)
+            yield step
+            step.end()
+
+    def close(self) -> None:
+        """Let another process write."""
+        self._held.close()
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        # SQLAlchemy would connect again by itself, and the new session would have no lock.
+        if self._connection.invalidated:
+            raise InputError("the server was lost", self._where, "run again: the run resumes")
+        with self._connection.begin():
+            yield
+
+    @contextmanager
+    def _reading(self) -> Iterator[Connection]:
+        with told(self._where), ExitStack() as own:
+            if not self._connection.in_transaction():
+                own.enter_context(self._transaction())
+            yield self._connection
+
+
+class Repository:
+    """A historical repository; close it, or use it in a `with` block.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as directory, Repository.open(directory) as repository:
+    ...     run = repository.run(Identity("model", "record", 1, "{}"))
+    ...     with run.step() as step:
+    ...         step.measured(0, [0.0, 60.0], [[1.5], [1.7]], [[20.0], [20.5]])
+    ...     run.measured(first=1).readings
+    array([[1.7]])
+    """
+
+    def __init__(self, kept_in: Database) -> None:
+        self._database = kept_in
+        self._held = ExitStack()
+        self._held.callback(kept_in.engine.dispose)
+
+    @classmethod
+    def open(cls, place: str | Path, *, read_only: bool = False) -> Self:
+        """Open or begin a repository, and bring its tables to where the code is.
+
+        Args:
+            place: a file, a directory that holds `twin.sqlite`, or the URL of a PostgreSQL
+                database, `postgresql://user@host/database`.
+            read_only: take no lock and change nothing; the repository must be there.
+
+        Raises:
+            InputError: what is there is no repository, is newer than the code, is locked, cannot
+                be read or written, or is out of reach; the driver of PostgreSQL is missing.
+        """
+        repository = cls(database(place, read_only))
+        try:
+            repository._prepare()
+        except BaseException:
+            repository.close()
+            raise
+        return repository
+
+    def run(self, identity: Identity) -> Run:
+        """The run with this identity, begun if it is new, for writing.
+
+        A file has one writer at a time, a server one for each run.
+
+        Raises:
+            InputError: another writer is there, or the repository is open for reading only.
+        """
+        kept_in = self._database
+        if kept_in.read_only:
+            raise InputError("nothing can be written", kept_in.where, "open it for writing")
+        with told(kept_in.where), ExitStack() as held:
+            connection = held.enter_context(kept_in.writer(identity.key))
+            of_identity = select(tables.run).where(tables.run.c.key == identity.key)
+            with connection.begin():
+                entry = connection.execute(of_identity).one_or_none()
+                if entry is None:
+                    connection.execute(insert(tables.run).values(**_columns(identity)))
+                    entry = connection.execute(of_identity).one()
+            run = Run(connection, kept_in.where, entry, held.pop_all())
+        self._held.callback(run.close)
+        return run
+
+    def runs(self) -> tuple[View, ...]:
+        """All runs, in the order in which they were begun."""
+        with self._reading() as connection:
+            entries = connection.execute(select(tables.run).order_by(tables.run.c.id)).all()
+        return tuple(View(Source(self._reading, entry.id), *_of(entry)) for entry in entries)
+
+    def close(self) -> None:
+        """Close all connections; the lock of a run goes with them."""
+        self._held.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @contextmanager
+    def _reading(self) -> Iterator[Connection]:
+        with told(self._database.where), self._database.engine.begin() as connection:
+            yield connection
+
+    def _prepare(self) -> None:
+        where, read_only = self._database.where, self._database.read_only
+        with self._reading() as connection:
+            state = migrations.state(connection)
+        if state == "foreign" or (state == "empty" and read_only):
+            remedy = "name a repository that rga wrote, or a new one"
+            raise InputError("this is no repository", where, remedy)
+        if state == "newer":
+            raise InputError("the repository is newer than this rga", where, "install a newer rga")
+        if state == "older" and read_only:
+            remedy = "open it for writing once: rga run brings it up to date"
+            raise InputError("the repository is older than this rga", where, remedy)
+        if state in ("empty", "older"):
+            with (
+                told(where),
+                self._database.writer("migration") as connection,
+                connection.begin(),
+            ):
+                migrations.upgrade(connection)
+
+
+def _columns(identity: Identity) -> dict[str, Any]:
+    return {
+        "key": identity.key,
+        "model_sha256": identity.model_sha256,
+        "record_sha256": identity.record_sha256,
+        "seed": identity.seed,
+        "settings": identity.settings,
+        "begun_at": now(),
+    }
+
+
+def _of(entry: Row[Any]) -> tuple[Identity, datetime]:
+    identity = Identity(entry.model_sha256, entry.record_sha256, entry.seed, entry.settings)
+    return identity, datetime.fromisoformat(entry.begun_at)

@@ -1,0 +1,158 @@
+"""The tables. Nothing stored is ever changed, so that the past can be read as it stood."""
+
+from typing import Any
+
+from sqlalchemy import (
+    BigInteger,
+    Column,
+    Float,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Text,
+)
+
+metadata = MetaData(
+    naming_convention={
+        "pk": "pk_%(table_name)s",
+        "fk": "fk_%(table_name)s_%(referred_table_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_name)s",
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+    }
+)
+
+run = Table(
+    "run",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("key", String(64), nullable=False, unique=True),
+    Column("model_sha256", String(64), nullable=False),
+    Column("record_sha256", String(64), nullable=False),
+    Column("seed", BigInteger, nullable=False),
+    Column("settings", Text, nullable=False),
+    Column("begun_at", String(40), nullable=False),
+)
+
+# `row` is the last row of the record that this step or one before it was about.
+step = Table(
+    "step",
+    metadata,
+    Column("run_id", Integer, ForeignKey("run.id"), primary_key=True, autoincrement=False),
+    Column("number", Integer, primary_key=True, autoincrement=False),
+    Column("row", Integer, nullable=False),
+    Column("written_at", String(40), nullable=False),
+)
+
+
+def _stored(name: str, *columns: Column[Any] | Index) -> Table:
+    """A table of what steps stored, in the order (step, ordinal)."""
+    return Table(
+        name,
+        metadata,
+        Column("run_id", Integer, primary_key=True, autoincrement=False),
+        Column("step", Integer, primary_key=True, autoincrement=False),
+        Column("ordinal", Integer, primary_key=True, autoincrement=False),
+        *columns,
+        ForeignKeyConstraint(["run_id", "step"], ["step.run_id", "step.number"]),
+    )
+
+
+def _number(name: str) -> Column[Any]:
+    return Column(name, Integer, nullable=False)
+
+
+def _text(name: str) -> Column[Any]:
+    return Column(name, Text, nullable=False)
+
+
+def _blob(name: str) -> Column[Any]:
+    return Column(name, LargeBinary, nullable=False)
+
+
+message = _stored(
+    "message",
+    _text("kind"),
+    _number("row"),
+    Column("time", Text),
+    _text("body"),
+    Column("written_at", String(40), nullable=False),
+)
+
+# Packets of rows: arrays are little-endian float64, row after row.
+measured = _stored(
+    "measured",
+    _number("first_row"),
+    _number("length"),
+    Column("first_time", Float(53), nullable=False),
+    _blob("time"),
+    _blob("readings"),
+    _blob("contexts"),
+    Index(None, "run_id", "first_row"),
+    Index(None, "run_id", "first_time"),
+)
+simulated = _stored(
+    "simulated",
+    _number("version"),
+    _text("origin"),
+    _number("row"),
+    _number("length"),
+    _blob("contexts"),
+    _blob("readings"),
+    _blob("falling"),
+)
+inferred = _stored(
+    "inferred",
+    _number("version"),
+    _number("first_row"),
+    _number("length"),
+    _blob("contexts"),
+    _blob("spread"),
+    Index(None, "run_id", "first_row"),
+)
+gap = _stored(
+    "gap",
+    _number("version"),
+    _number("first_row"),
+    _number("length"),
+    _blob("simulated"),
+    _blob("gaps"),
+    Index(None, "run_id", "first_row"),
+)
+
+version = _stored(
+    "version",
+    _number("number"),
+    _number("row"),
+    _text("model"),
+    Column("model_sha256", String(64), nullable=False),
+    _text("causes"),
+    Column("gain", Float(53)),
+    Column("gain_low", Float(53)),
+    Column("gain_high", Float(53)),
+    _text("status"),
+    Index(None, "run_id", "number", unique=True),
+)
+in_force = _stored("in_force", _number("version"), _number("row"))
+findings = _stored("findings", _number("row"), _text("findings"))
+event = _stored(
+    "event",
+    _text("kind"),
+    _number("row"),
+    _text("time"),
+    _text("words"),
+    _text("sensors"),
+    Column("gap_before", Float(53)),
+    Column("gap_after", Float(53)),
+)
+kept = _stored(
+    "kept",
+    _text("name"),
+    _number("row"),
+    _blob("data"),
+    Index(None, "run_id", "name", "step"),
+)

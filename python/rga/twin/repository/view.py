@@ -1,0 +1,221 @@
+"""The readers of a run, as it stands or as it stood."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from sqlalchemy import ColumnElement, Row, func
+
+from rga.model.parameter import FloatArray
+from rga.twin.history import Event
+from rga.twin.repository import tables
+from rga.twin.repository.entries import (
+    Findings,
+    Gaps,
+    Identity,
+    Inferred,
+    Measured,
+    Message,
+    ModelVersion,
+    Origin,
+    Simulated,
+)
+from rga.twin.repository.source import Source, joined
+
+Box = tuple[ArrayLike, ArrayLike]
+
+
+class View:
+    """A run of a repository, for reading.
+
+    Rows are rows of the record; a range of them is that of a slice, from `first` to before `end`.
+    Rows that nothing was stored for are left out; of what was stored more than once for a row the
+    last is read, unless a version is asked for. Without any rows, arrays of two axes are
+    float[0, 0].
+
+    Attributes:
+        identity: of the run.
+        begun_at: wall clock at its beginning, UTC.
+    """
+
+    def __init__(self, source: Source, identity: Identity, begun_at: datetime) -> None:
+        self.identity = identity
+        self.begun_at = begun_at
+        self._source = source
+
+    def as_of(self, row: int | None = None, *, time: float | None = None) -> "View":
+        """The run as it stood when the record had reached a row, or a time [s].
+
+        Seen is what was acknowledged in steps about rows up to this one: a step that took in
+        several rows at once is seen from the last of them on. Times count from the first row of
+        the record.
+
+        Raises:
+            TypeError: not exactly one of row and time is given.
+        """
+        if row is None and time is not None:
+            reached = self._source.row_at(time)
+        elif row is not None and time is None:
+            reached = row
+        else:
+            raise TypeError("as_of takes either a row or a time")
+        source = replace(self._source, until=self._source.step_at(reached))
+        return View(source, self.identity, self.begun_at)
+
+    @property
+    def steps(self) -> int:
+        """Number of acknowledged steps."""
+        return self._source.scalar(tables.step, func.max(tables.step.c.number)) or 0
+
+    @property
+    def row(self) -> int:
+        """Last row of the record that a step was about; -1 where there is none."""
+        row = self._source.scalar(tables.step, func.max(tables.step.c.row))
+        return -1 if row is None else int(row)
+
+    def measured(self, first: int = 0, end: int | None = None) -> Measured:
+        """Rows of the record."""
+        names = ("time", "readings", "contexts")
+        rows, arrays, _ = self._source.rows(tables.measured, names, first, end, None)
+        time, readings, contexts = arrays
+        return Measured(rows, time.reshape(-1), readings, contexts)
+
+    def inferred(
+        self, first: int = 0, end: int | None = None, version: int | None = None
+    ) -> Inferred:
+        """Inferred contexts of rows."""
+        names = ("contexts", "spread")
+        rows, arrays, packets = self._source.rows(tables.inferred, names, first, end, version)
+        contexts, spread = arrays
+        return Inferred(rows, contexts, spread, _versions(packets))
+
+    def gaps(self, first: int = 0, end: int | None = None, version: int | None = None) -> Gaps:
+        """What was simulated for rows, and their gaps."""
+        names = ("simulated", "gaps")
+        rows, arrays, packets = self._source.rows(tables.gap, names, first, end, version)
+        simulated, gaps = arrays
+        return Gaps(rows, simulated, gaps, _versions(packets))
+
+    def simulated(
+        self, version: int | None = None, origin: Origin | None = None, within: Box | None = None
+    ) -> Simulated:
+        """Simulations, of a version, of an origin, with contexts in a box (low, high) float[k]."""
+        packets = self._source.entries(tables.simulated, where=_conditions(version, origin))
+        contexts = joined(packets, "contexts")
+        inside = _inside(contexts, within)
+        owner = np.repeat(np.arange(len(packets)), [packet.length for packet in packets])[inside]
+        owners = [packets[index] for index in owner]
+        return Simulated(
+            _versions(owners),
+            np.array([packet.origin for packet in owners], dtype=np.str_),
+            np.array([packet.row for packet in owners], dtype=np.int64),
+            contexts[inside],
+            joined(packets, "readings")[inside],
+            joined(packets, "falling").reshape(-1)[inside] > 0,
+        )
+
+    def count_simulated(
+        self, version: int | None = None, origin: Origin | None = None, within: Box | None = None
+    ) -> int:
+        """Number of those simulations, without loading their readings."""
+        c, where = tables.simulated.c, _conditions(version, origin)
+        if within is None:
+            return int(self._source.scalar(tables.simulated, func.sum(c.length), *where) or 0)
+        columns = c.length, c.contexts
+        packets = self._source.entries(tables.simulated, *columns, where=where)
+        return int(_inside(joined(packets, "contexts"), within).sum())
+
+    def versions(self) -> tuple[ModelVersion, ...]:
+        """Model versions in the order in which they were stored."""
+        return tuple(_version(entry) for entry in self._source.entries(tables.version))
+
+    def version_in_force(self, row: int | None = None) -> ModelVersion | None:
+        """The version in force, or the one that was in force at a row; None before the first."""
+        where = [] if row is None else [tables.in_force.c.row <= row]
+        chosen = self._source.last(tables.in_force, *where)
+        if chosen is None:
+            return None
+        numbered = tables.version.c.number == chosen.version
+        entry = self._source.last(tables.version, numbered)
+        return None if entry is None else _version(entry)
+
+    def in_force(self) -> tuple[tuple[int, int], ...]:
+        """(row, version): from which row on which version was in force, as it was stored."""
+        entries = self._source.entries(tables.in_force)
+        return tuple((entry.row, entry.version) for entry in entries)
+
+    def findings(self) -> tuple[Findings, ...]:
+        """Findings of diagnoses."""
+        entries = self._source.entries(tables.findings)
+        return tuple(Findings(entry.row, entry.findings) for entry in entries)
+
+    def events(self) -> tuple[Event, ...]:
+        """What happened to the twin."""
+        return tuple(
+            Event(
+                entry.kind,
+                entry.row,
+                json.loads(entry.time),
+                entry.words,
+                tuple(json.loads(entry.sensors)),
+                entry.gap_before,
+                entry.gap_after,
+            )
+            for entry in self._source.entries(tables.event)
+        )
+
+    def messages(self, kind: str | None = None) -> tuple[Message, ...]:
+        """The log of queries and responses, or of one kind."""
+        entries = self._source.entries(tables.message)
+        return tuple(
+            Message(
+                sequence,
+                entry.kind,
+                entry.row,
+                None if entry.time is None else json.loads(entry.time),
+                json.loads(entry.body),
+                datetime.fromisoformat(entry.written_at),
+            )
+            for sequence, entry in enumerate(entries, 1)
+            if kind in (None, entry.kind)
+        )
+
+    def kept(self, name: str) -> bytes | None:
+        """What was kept last under a name; None where nothing was."""
+        entry = self._source.last(tables.kept, tables.kept.c.name == name)
+        return None if entry is None else bytes(entry.data)
+
+
+def _conditions(version: int | None, origin: Origin | None) -> list[ColumnElement[bool]]:
+    c = tables.simulated.c
+    wanted = ((c.version, version), (c.origin, origin))
+    return [column == value for column, value in wanted if value is not None]
+
+
+def _inside(contexts: FloatArray, within: Box | None) -> NDArray[np.bool_]:
+    if within is None or not len(contexts):
+        return np.ones(len(contexts), dtype=np.bool_)
+    low, high = (np.asarray(side, dtype=float) for side in within)
+    return np.asarray(((contexts >= low) & (contexts <= high)).all(axis=1))
+
+
+def _versions(packets: Sequence[Row[Any]]) -> NDArray[np.int64]:
+    return np.array([packet.version for packet in packets], dtype=np.int64)
+
+
+def _version(entry: Row[Any]) -> ModelVersion:
+    interval = None if entry.gain_low is None else (entry.gain_low, entry.gain_high)
+    return ModelVersion(
+        entry.number,
+        entry.row,
+        entry.model,
+        entry.model_sha256,
+        entry.causes,
+        entry.gain,
+        interval,
+        entry.status,
+    )

@@ -1,0 +1,298 @@
+"""A run of the twin on a record: from where the repository says it stands, to the findings."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from threadpoolctl import threadpool_limits
+
+from rga.diagnosis import Findings, diagnose
+from rga.errors import InputError
+from rga.model import Model
+from rga.records import Record
+from rga.twin.analysis import RealityGapAnalysis
+from rga.twin.archive import Archive
+from rga.twin.calibration import Calibration
+from rga.twin.data_driven import DataDrivenModel
+from rga.twin.digital_twin import DigitalTwin
+from rga.twin.exchange import QueryResponse
+from rga.twin.hardware import HardwareInterface
+from rga.twin.history import Event, History
+from rga.twin.middleware import InProcess
+from rga.twin.recall import history_of, ledger_of, replay, standing_of
+from rga.twin.repository import Identity, Repository, Run
+from rga.twin.settings import Settings
+from rga.twin.versions import beyond, written
+
+Progress = Callable[[str, float], None]
+FILE = "twin.sqlite"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run ended with.
+
+    Attributes:
+        findings: of the closing diagnosis of the whole record.
+        history: of the twin.
+    """
+
+    findings: Findings
+    history: History
+
+    def write(self, directory: Path) -> Path:
+        """Write findings.json, model.json and report.html; the path of the report."""
+        from rga.report import write_run_report
+
+        return self.findings.write(
+            directory, lambda findings, path: write_run_report(self.history, findings, path)
+        )
+
+
+def run(
+    model: Model,
+    record: Record,
+    directory: str | Path,
+    *,
+    settings: Settings | None = None,
+    seed: int = 0,
+    repository: str | None = None,
+    progress: Progress | None = None,
+    watch: Callable[["Running"], None] | None = None,
+) -> Outcome:
+    """Calibrate a twin on a record, watch its gap, recalibrate, diagnose, and report.
+
+    The repository in the directory keeps everything: a run that was interrupted goes on from it
+    and ends in the same findings.
+
+    Args:
+        model: the structure with its effects and sensors.
+        record: measured data.
+        directory: for `findings.json`, `model.json`, `report.html` and the repository.
+        settings: level of integration and the rest.
+        seed: of everything random.
+        repository: URL of a PostgreSQL database, instead of the file in the directory.
+        progress: told a stage and the share of it that is done.
+        watch: told after every step where the run stands.
+
+    Returns:
+        The findings of the closing diagnosis, and the history; both are in the directory too.
+
+    Raises:
+        InputError: the model cannot represent what the calibration needs, the record is too
+            short, or the repository cannot be used.
+    """
+    directory = Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    settings = settings or Settings()
+    digest = model.sha256 or written(model)[1]
+    identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
+    with (
+        threadpool_limits(1),
+        Repository.open(repository or directory / FILE) as kept,
+    ):
+        running = Running(model, record, kept.run(identity), settings, seed, progress)
+        while running.stage not in ("report", "done"):
+            running.step()
+            if watch is not None:
+                watch(running)
+        outcome = Outcome(running.findings(), running.history())
+        outcome.write(directory)
+        running.end()
+    return outcome
+
+
+class Running:
+    """A run between two steps.
+
+    Args:
+        model: as it was given.
+        record: what was measured.
+        kept: the run in the repository.
+        settings: level of integration and the rest.
+        seed: of everything random.
+        progress: told a stage and the share of it that is done.
+
+    Attributes:
+        resumed_at: row at which an interrupted run was taken up; None for a new one.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        record: Record,
+        kept: Run,
+        settings: Settings,
+        seed: int,
+        progress: Progress | None,
+    ) -> None:
+        self._model, self._record, self._settings, self._seed = model, record, settings, seed
+        self._progress = progress or (lambda stage, done: None)
+        self._hardware = HardwareInterface(record, model)
+        station = self._hardware.station
+        self._twin = DigitalTwin(model, station)
+        self._archive = Archive(kept, model, self._twin.simulation)
+        exchange = QueryResponse(self._twin, self._archive)
+        self.calibration = Calibration(
+            exchange, self._archive, station, model, settings, seed, self._progress
+        )
+        self.analysis = RealityGapAnalysis(
+            exchange, self._archive, station, self.calibration, settings, self._label
+        )
+        self._middleware = InProcess()
+        self._middleware.subscribe(self._archive.receive)
+        self._middleware.subscribe(self.calibration.receive)
+        self._closing: Findings | None = None
+        self.resumed_at: int | None = None
+        self._learned_kept: DataDrivenModel | None = None
+        self._recall()
+
+    @property
+    def stage(self) -> str:
+        """What is to be done next."""
+        return self.analysis.standing.stage
+
+    @property
+    def row(self) -> int:
+        """The next row of the record."""
+        return self.analysis.standing.row
+
+    @property
+    def rows(self) -> int:
+        """Rows of the record."""
+        return self._hardware.rows
+
+    @property
+    def version(self) -> int:
+        """Number of the model version in force."""
+        return self._twin.state.version
+
+    @property
+    def out_of_sync(self) -> bool:
+        """Whether an alarm is being dealt with."""
+        return self.analysis.standing.alarm is not None
+
+    @property
+    def events(self) -> list[Event]:
+        """What happened since this process took the run up."""
+        return self._archive.events
+
+    @property
+    def gap(self) -> float:
+        """Standardised gap of the last packet; NaN where none was followed yet [-]."""
+        return self.calibration.gap(max(0, self.row - self._settings.packet), self.row)
+
+    def step(self) -> None:
+        """Do what is next, and have it acknowledged by the repository."""
+        if self.stage == "initialise":
+            self._initialise()
+        elif self.stage in ("diagnose", "close"):
+            self._diagnose(self.stage == "close")
+        else:
+            with self._archive.step():
+                self._advance()
+                self._checkpoint()
+            self._progress("stream", self.row / self.rows)
+
+    def findings(self) -> Findings:
+        """Findings of the closing diagnosis, with their account."""
+        if self._closing is None:
+            self._closing = self._ask_diagnosis()
+        return self._closing
+
+    def history(self) -> History:
+        """What the run left behind so far."""
+        return history_of(self._archive.run)
+
+    def end(self) -> None:
+        """Note that the files are written."""
+        self.analysis.standing.stage = "done"
+        with self._archive.step():
+            self._checkpoint()
+
+    def _initialise(self) -> None:
+        with self._archive.step():
+            answer = self.analysis.initialise()
+            self._archive.keep("station", self._hardware.station.to_json().encode(), 0)
+            self._checkpoint()
+        if not answer.adequate:
+            raise InputError(
+                f"the model cannot represent what a calibration needs: it lacks "
+                f"{'; '.join(answer.missing)}",
+                f"model {self._model.name!r}",
+                "add that, or leave the channel out",
+            )
+
+    def _advance(self) -> None:
+        analysis, stage = self.analysis, self.stage
+        if stage == "calibrate":
+            analysis.calibrate()
+            return
+        if stage == "recalibrate":
+            analysis.recalibrate(self._all_arrived)
+            return
+        first, rows = len(self.calibration.ledger), self._settings.packet
+        wanted = self._settings.first_rows(self._hardware.rows)
+        if stage == "gather":
+            rows = min(rows, wanted - first)
+        packet = self._hardware.packet(first, rows)
+        if len(packet.time):
+            self._middleware.publish(packet)
+        if stage == "gather":
+            analysis.gather(wanted)
+        else:
+            analysis.watch(self._all_arrived)
+
+    def _diagnose(self, closing: bool) -> None:
+        findings = self._ask_diagnosis()
+        if closing:
+            self._closing = findings
+        effects = beyond(self._model, findings.account.extended)
+        with self._archive.step():
+            self.analysis.conclude(findings, effects, closing)
+            self._checkpoint()
+
+    def _ask_diagnosis(self) -> Findings:
+        record = self._record.rows(slice(0, self.row))
+        return diagnose(self._model, record, seed=self._seed, progress=self._progress)
+
+    @property
+    def _all_arrived(self) -> bool:
+        return len(self.calibration.ledger) >= self._hardware.rows
+
+    def _label(self, row: int) -> str | float:
+        return self._record.time_label(float(self._record.time[row]))
+
+    def _checkpoint(self) -> None:
+        standing, row = self.analysis.standing, max(0, self.row - 1)
+        standing.draws = self.calibration.draws
+        self._archive.keep("standing", standing.model_dump_json().encode(), row)
+        self._archive.keep("window", self.analysis.synchrony.to_bytes(), row)
+        learned = self.calibration.learned
+        if learned is not None and learned is not self._learned_kept:
+            self._archive.keep("learned", learned.to_bytes(), row)
+            self._learned_kept = learned
+
+    def _recall(self) -> None:
+        """Go on where the repository says that the run stands."""
+        view, station = self._archive.run, self._hardware.station
+        if view.steps == 0:
+            return
+        self.analysis.standing = standing_of(view)
+        self.resumed_at = self.row
+        self._twin.state = replay(view, station.channels)
+        window = view.kept("window")
+        assert window is not None  # every step keeps it
+        self.analysis.synchrony.restore(window)
+        ledger = ledger_of(
+            view, len(station.channels), len(station.measured), len(self._model.context)
+        )
+        learned = view.kept("learned")
+        self.calibration.recall(
+            ledger,
+            self.analysis.standing,
+            None
+            if learned is None
+            else DataDrivenModel.from_bytes(learned, self._twin.simulation()),
+        )
+        self._learned_kept = self.calibration.learned

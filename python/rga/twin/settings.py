@@ -1,0 +1,63 @@
+"""Settings of a run: the level of integration, and the figures that T1 and T2 go by."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from rga.inference.settings import TrainingSettings
+
+Level = Literal["A", "B", "C"]
+Count = Annotated[int, Field(ge=1)]
+
+
+class Settings(BaseModel):
+    """Settings of a run.
+
+    Attributes:
+        level: A calibrates once; B also detects out-of-sync states and recalibrates (T1); C also
+            stores novel contexts (T2).
+        calibration_rows: rows of the first calibration; None: a third of the record, 200 at most.
+        packet: rows that arrive together.
+        window, z, persistence: the Gaussian window of T1: rows, width of its bound in standard
+            deviations, and how many of the last rows must exceed it.
+        settle: rows that are gathered after an alarm before a recalibration.
+        recovered: a recalibration has brought the gap down when the gap is below this multiple of
+            what noise and the model's scatter, as of the first calibration, let expect.
+        growth: the diagnosis is asked again when the record has grown by this factor.
+        design_rows: simulations of the design phase.
+        repository_z: width of the bound of T2 on the gap, in standard deviations.
+        distinct: least distance of a novel context from all stored ones, in shares of the ranges
+            of the contexts; None: what separates neighbours of the design phase.
+        training: of the networks.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    level: Level = "C"
+    calibration_rows: Count | None = None
+    packet: Count = 20
+    window: Annotated[int, Field(ge=2)] = 100
+    z: Annotated[float, Field(gt=0)] = 4.0
+    persistence: tuple[Count, Count] = (4, 6)
+    settle: Count = 40
+    recovered: Annotated[float, Field(gt=1)] = 1.8
+    growth: Annotated[float, Field(gt=1)] = 1.5
+    design_rows: Count = 4096
+    repository_z: Annotated[float, Field(gt=0)] = 4.0
+    distinct: Annotated[float, Field(gt=0)] | None = None
+    training: TrainingSettings = TrainingSettings()
+
+    @model_validator(mode="after")
+    def _some_of_more(self) -> "Settings":
+        if self.persistence[0] > self.persistence[1]:
+            raise ValueError(f"persistence {self.persistence}: more exceedances than rows")
+        return self
+
+    def first_rows(self, rows: int) -> int:
+        """Rows of the first calibration on a record of so many rows.
+
+        >>> Settings().first_rows(90)
+        30
+        """
+        if self.calibration_rows is not None:
+            return min(self.calibration_rows, rows)
+        return max(1, min(200, rows // 3))

@@ -1,0 +1,121 @@
+"""The simulation model: what the channels of a station would read at given contexts."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga.inference.design import design
+from rga.model import Effect, Model
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+from rga.twin.hardware import Station
+from rga.twin.messages import Q3, Q5, R3, R5, sha256
+
+
+class SimulationModel:
+    """What the channels of a station read.
+
+    Attributes:
+        model: a version of the twin's model, with the channels of the station as its sensors.
+        latent: context variables that nothing measures.
+        simulator: of that model.
+    """
+
+    def __init__(self, model: Model, station: Station) -> None:
+        self.model = mounted(model, station.channels)
+        self.station = station
+        self.latent = tuple(name for name in model.context if name not in station.measured)
+        self.simulator = Simulator(self.model)
+        self._remembers = any(effect.remembers for effect in model.effects.values())
+
+    def draw(self, query: Q3) -> R3:
+        """Contexts drawn from a box, and what the channels read there."""
+        box = dict(
+            zip(self.model.context, zip(query.box.low, query.box.high, strict=True), strict=True)
+        )
+        drawn = design(
+            self.model,
+            query.rows,
+            latent=self.latent,
+            seed=query.seed,
+            box={name: ends for name, ends in box.items() if ends[0] < ends[1]},
+            time=query.clock,
+        )
+        readings = drawn.readings - self.zero(np.full(1, query.clock), drawn.contexts[:1])
+        return R3(
+            row=query.row,
+            version=query.version,
+            origin=query.origin,
+            contexts=drawn.contexts,
+            readings=readings,
+            falling=drawn.reversed,
+            sha256=sha256(drawn.contexts, readings),
+        )
+
+    def follow(self, query: Q5) -> R5:
+        """What the channels read at the contexts of rows of the record."""
+        past_time, past = query.time_before, query.contexts_before
+        # A train's direction shows from row to row; more of the past only matters to a memory.
+        kept = len(past_time) if self._remembers else min(1, len(past_time))
+        clock = np.concatenate([past_time[len(past_time) - kept :], query.time])
+        contexts = np.concatenate([past[len(past) - kept :], query.contexts])
+        table = dict(zip(self.model.context, contexts.T, strict=True))
+        readings = self.simulator.predict({**table, "time": clock})
+        simulated = (readings - self.zero(clock, contexts))[kept:]
+        last = dict(zip(self.model.context, query.contexts[-1].tolist(), strict=True))
+        return R5(
+            row=query.row,
+            version=query.version,
+            first=query.first,
+            rows=query.rows,
+            context=last,
+            sha256=sha256(simulated),
+            simulated=simulated,
+        )
+
+    def zero(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
+        """Mean of the channels over the rows that the logger took for unloaded, float[channels].
+
+        Args:
+            clock, contexts: of rows at which the channels are read; latent lines are prolonged
+                from them, float[n] and float[n, contexts].
+        """
+        zero_clock = self.station.zero["time"]
+        if not len(zero_clock):
+            return np.zeros(len(self.model.sensors))
+        table = {"time": zero_clock}
+        for column, (name, variable) in enumerate(self.model.context.items()):
+            low, high = variable.range
+            if name in self.station.zero:
+                known = self.station.zero[name]
+                table[name] = np.where(np.isfinite(known), known, (low + high) / 2)
+            elif variable.law == "linear":
+                # What has not arrived yet stands at the end of its range.
+                span = clock[-1] - clock[0]
+                rate = (contexts[-1, column] - contexts[0, column]) / span if span > 0 else 0.0
+                ahead = contexts[0, column] + rate * (zero_clock - clock[0])
+                table[name] = ahead if rate else np.full(len(zero_clock), low)
+            else:
+                table[name] = np.full(len(zero_clock), (low + high) / 2)
+        return np.asarray(self.simulator.predict(table).mean(axis=0))
+
+
+def mounted(model: Model, channels: tuple[str, ...]) -> Model:
+    """The model with these sensors only, and without effects on others."""
+    sensors = {name: model.sensors[name] for name in channels}
+
+    def acts(effect: Effect) -> bool:
+        named = [
+            effect.place[field]
+            for field, mark in effect.place_fields().items()
+            if mark.of == "sensor" and field in effect.place
+        ]
+        each = [name for one in named for name in ([one] if isinstance(one, str) else one)]
+        return all(name in sensors for name in each)
+
+    effects = {name: effect for name, effect in model.effects.items() if acts(effect)}
+    return model.model_copy(update={"sensors": sensors, "effects": effects})
+
+
+def broken(readings: FloatArray) -> NDArray[np.bool_]:
+    """Channels that the model holds for faulty: it gives no reading for them, bool[channels]."""
+    return np.asarray(np.isnan(readings).any(axis=0))

@@ -1,0 +1,37 @@
+"""Where a run stands: all that a resumed run needs beyond what the repository holds in tables."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+Stage = Literal[
+    "initialise", "gather", "calibrate", "watch", "recalibrate", "diagnose", "close", "report",
+    "done",
+]  # fmt: skip
+
+
+class Standing(BaseModel):
+    """Where a run stands.
+
+    Attributes:
+        stage: what is to be done next.
+        row: the next row of the record.
+        calibrated: rows of the first calibration.
+        alarm: row of an alarm that is being dealt with.
+        draws: seeds drawn so far.
+        share: by which the model was off on the rows of the first calibration [-].
+        distinct: least distance of a novel context, in shares of the ranges.
+        diagnosed: rows of the last diagnosis.
+        doubted: whether a recalibration did not bring the gap down and nothing has explained it.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    stage: Stage = "initialise"
+    row: int = 0
+    calibrated: int = 0
+    alarm: int | None = None
+    draws: int = 0
+    share: float = 0.0
+    distinct: float = 0.0
+    diagnosed: int | None = None
+    doubted: bool = False

@@ -1,0 +1,163 @@
+"""A twin as its repository holds it."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from rga.errors import InputError
+from rga.model import Effect, Model
+from rga.simulation.whatif import WhatIf, whatif
+from rga.twin.archive import Archive
+from rga.twin.digital_twin import DigitalTwin, State
+from rga.twin.exchange import QueryResponse
+from rga.twin.history import Event, History
+from rga.twin.messages import Q1
+from rga.twin.recall import (
+    given_model,
+    history_of,
+    log_of,
+    record_of,
+    replay,
+    standing_of,
+    station_of,
+)
+from rga.twin.repository import Repository, View
+from rga.twin.retelling import retold
+from rga.twin.versions import extended
+
+
+class Twin:
+    """A twin, now or as it stood: its model, its context, its history, and what it answers.
+
+    Nothing but a response changes it; `rollback` asks for one.
+
+    Args:
+        view: a run of a repository.
+        place: of the repository.
+    """
+
+    def __init__(self, view: View, place: str | Path) -> None:
+        self._view, self._place = view, place
+        self._station, self.given = station_of(view), given_model(view)
+        self.state: State = replay(view, self._station.channels)
+
+    @classmethod
+    @contextmanager
+    def open(cls, place: str | Path) -> Iterator[Self]:
+        """The twin of the latest run in a run's directory, its file, or a database by URL.
+
+        Raises:
+            InputError: there is no repository, or nothing has run in it.
+        """
+        with Repository.open(place, read_only=True) as repository:
+            runs = repository.runs()
+            if not runs:
+                raise InputError("nothing has run here", str(place), "begin with rga run")
+            yield cls(runs[-1], place)
+
+    def as_of(self, *, row: int | None = None, time: float | None = None) -> "Twin":
+        """The twin as it stood when the record had reached a row, or a time since its start [s]."""
+        return Twin(self._view.as_of(row, time=time), self._place)
+
+    @property
+    def version(self) -> int:
+        """Number of the model version in force."""
+        return self.state.version
+
+    @property
+    def model(self) -> Model:
+        """The model version in force."""
+        return extended(self.given, self.state.versions[self.version])
+
+    @property
+    def context(self) -> Mapping[str, float]:
+        """The contexts at which the twin stands."""
+        return self.state.context
+
+    @property
+    def spread(self) -> dict[str, float]:
+        """Standard deviation of each of these contexts."""
+        if self.state.row is None:
+            return {}
+        last = self._view.inferred(self.state.row, self.state.row + 1).spread[0]
+        return dict(zip(self.given.context, last.tolist(), strict=True))
+
+    def history(self) -> History:
+        """What it lived through."""
+        return history_of(self._view)
+
+    def log(self) -> list[tuple[int, str, str]]:
+        """Row, kinds and words of each exchange of query and response."""
+        return list(retold(log_of(self._view)))
+
+    def whatif(
+        self, settings: Mapping[str, float], add: Mapping[str, Effect] | None = None
+    ) -> WhatIf:
+        """What a change does to every sensor, from where the twin stands, with intervals.
+
+        Args:
+            settings: contexts after the change, and `time` [s] where it matters.
+            add: effects that the changed structure has besides.
+
+        Raises:
+            InputError: a setting is no context variable, or an effect does not fit.
+        """
+        record = record_of(self._view)
+        now = {"time": float(record.origin + record.time[-1])} if len(record) else {}
+        answer = whatif(self.model, settings, add, base={**self.context, **now}, spread=self.spread)
+        far = self._distance(answer.contexts)
+        allowed = standing_of(self._view).distinct
+        if far is not None and far > allowed:
+            answer.warnings.append(
+                f"no simulated or stored context lies near: the nearest is {far:.2g} ranges away, "
+                f"neighbours are {allowed:.2g}"
+            )
+        return answer
+
+    def _distance(self, contexts: Mapping[str, float]) -> float | None:
+        """Distance of contexts from all that the repository holds, in shares of the ranges."""
+        known = self._view.simulated(version=self.version).contexts
+        columns = [list(self.given.context).index(name) for name in self.state.latent]
+        if not len(known) or not columns:
+            return None
+        ranges = np.array([variable.range for variable in self.given.context.values()])
+        place = np.array([contexts[name] for name in self.given.context])
+        steps = (known - place)[:, columns] / np.ptp(ranges, axis=1)[columns]
+        return float(np.linalg.norm(steps, axis=1).min())
+
+
+def rollback(place: str | Path, version: int) -> Twin:
+    """Put an earlier model version in force again: a query Q1, and the twin's response.
+
+    Raises:
+        InputError: there is no such version, or the repository is in use.
+    """
+    with Repository.open(place) as repository:
+        views = repository.runs()
+        if not views:
+            raise InputError("nothing has run here", str(place), "begin with rga run")
+        kept = repository.run(views[-1].identity)
+        station, given = station_of(kept), given_model(kept)
+        digital = DigitalTwin(given, station)
+        digital.state = replay(kept, station.channels)
+        archive = Archive(kept, given, digital.simulation)
+        row = max(0, len(kept.measured().rows) - 1)
+        record = record_of(kept)
+        with archive.step():
+            answer = QueryResponse(digital, archive).ask(
+                Q1(
+                    row=row,
+                    channels=station.channels,
+                    measured=station.measured,
+                    restore=version,
+                )
+            )
+            if not answer.adequate:
+                raise InputError("; ".join(answer.missing), str(place), "rga replay lists them")
+            words = f"version {version} is in force again, as asked"
+            label = record.time_label(float(record.time[row]) if len(record) else 0.0)
+            archive.event(Event("rollback", row, label, words))
+        return Twin(kept, place)

@@ -1,0 +1,39 @@
+"""Versions of the twin's model: the model as given with effects beyond it."""
+
+import hashlib
+import json
+from typing import Any
+
+from pydantic import ValidationError
+
+from rga.errors import InputError
+from rga.model import Model, model_content, read_effect
+
+Effects = dict[str, dict[str, Any]]
+
+
+def extended(model: Model, effects: Effects) -> Model:
+    """The model as given with the effects of a version.
+
+    Raises:
+        InputError: an effect does not fit the model.
+    """
+    try:
+        return model.extended({name: read_effect(one, name) for name, one in effects.items()})
+    except (ValidationError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = " ".join(str(error).split())
+        raise InputError(reason, f"model {model.name!r}", "mend the effect") from None
+
+
+def beyond(given: Model, model: Model) -> Effects:
+    """Effects that a model has beyond the one given, as they stand in a model file."""
+    effects = model_content(model)["effects"]
+    return {name: effect for name, effect in effects.items() if name not in given.effects}
+
+
+def written(model: Model) -> tuple[str, str]:
+    """A model as the text of a model file, and the hash of that text."""
+    text = json.dumps(model_content(model), indent=1)
+    return text, hashlib.sha256(text.encode()).hexdigest()

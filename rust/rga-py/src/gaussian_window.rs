@@ -1,0 +1,154 @@
+//! The class `GaussianWindow`.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyType};
+use rga_core::{Refusal, WindowRule};
+
+use crate::arrays::Held;
+
+pyo3::import_exception!(rga.errors, InputError);
+
+/// The paper's rule for a twin out of sync, on a stream: a Gaussian bound for each sensor.
+///
+/// A value alarms when it exceeds gamma = mean + z * standard deviation (population, 1/window) of
+/// the `window` values of its sensor before it. Until there are that many it does not alarm. Each
+/// value then enters the window. NaN is a missing value: no alarm, and nothing enters.
+///
+/// Values are squared gaps in the paper's rule (task T1), and may be of any unit; only a rise
+/// alarms. The paper tests against a window that holds the value itself: `inclusive`.
+///
+/// Decisions are those of exact arithmetic but for the rounding of single values: an outlier that
+/// has left the window, or a drop of scale, leaves nothing behind.
+///
+/// Parameters
+/// ----------
+/// n_sensors : sensors in a row, 1 or more
+/// window : values in the window, 2 or more
+/// z : bound in standard deviations, 0 or more
+/// inclusive : the window holds the value under test and the window - 1 before it, and counts as
+///     full with it. No value then lies more than sqrt(window - 1) standard deviations above the
+///     mean, so that a z from there on never alarms.
+/// persistence : (k, n): a sensor alarms when k of its last n tested values exceeded (n <= 64)
+/// frozen : a value that exceeds does not enter the window, so that a change is not absorbed
+///
+/// Raises
+/// ------
+/// InputError : arguments out of range; rows of another shape; an infinite value, or one beyond
+///     1e60, with its row in the stream and its sensor (counted from 0). Nothing of the call has
+///     then entered.
+///
+/// Examples
+/// --------
+/// >>> from rga.detection import GaussianWindow
+/// >>> gaps = GaussianWindow(n_sensors=2, window=4)
+/// >>> gaps.update_many([[1, 1], [2, 1], [1, 1], [2, 1]]).any()
+/// np.False_
+/// >>> gaps.bound
+/// array([3., 1.])
+/// >>> gaps.update([2.9, 1.1])
+/// array([False,  True])
+#[pyclass(module = "rga.detection")]
+pub struct GaussianWindow(rga_core::GaussianWindow);
+
+#[pymethods]
+impl GaussianWindow {
+    #[new]
+    #[pyo3(
+        signature = (
+            n_sensors, window, z=3.0, *, inclusive=false, persistence=(1, 1), frozen=false
+        ),
+        text_signature = "(n_sensors, window, z=3.0, *, inclusive=False, persistence=(1, 1), \
+                          frozen=False)"
+    )]
+    fn new(
+        n_sensors: i64,
+        window: i64,
+        z: f64,
+        inclusive: bool,
+        persistence: (i64, i64),
+        frozen: bool,
+    ) -> PyResult<Self> {
+        let rule = WindowRule {
+            sensors: n_sensors,
+            window,
+            z,
+            inclusive,
+            persistence,
+            frozen,
+        };
+        rga_core::GaussianWindow::new(rule)
+            .map(Self)
+            .map_err(refused)
+    }
+
+    /// Alarms bool[n_sensors] of one row float[n_sensors].
+    fn update<'py>(&mut self, row: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let held = floats(row, "row")?;
+        let alarms = self.0.update(held.view()).map_err(refused)?;
+        Ok(PyArray1::from_vec(row.py(), alarms))
+    }
+
+    /// Alarms bool[n, n_sensors] of rows float[n, n_sensors], bit for bit those of `update`.
+    fn update_many<'py>(
+        &mut self,
+        rows: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        let py = rows.py();
+        let held = floats(rows, "rows")?;
+        let view = held.view();
+        let alarms = py.detach(|| self.0.update_many(view)).map_err(refused)?;
+        PyArray1::from_vec(py, alarms).reshape([view.shape[0], view.shape[1]])
+    }
+
+    /// What the next row must exceed, float[n_sensors] in the unit of the values: gamma, and with
+    /// `inclusive` the value that would equal the gamma of the window that holds it (inf: there
+    /// is none). NaN until the sensor's window is full.
+    #[getter]
+    fn bound<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.0.bound())
+    }
+
+    /// Rows seen.
+    #[getter]
+    fn rows(&self) -> u64 {
+        self.0.rows()
+    }
+
+    /// The whole state: what `from_bytes` makes of it goes on with the same bits.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.to_bytes())
+    }
+
+    /// The window that `to_bytes` stored; InputError for other bytes.
+    #[classmethod]
+    fn from_bytes(_cls: &Bound<'_, PyType>, state: &[u8]) -> PyResult<Self> {
+        rga_core::GaussianWindow::from_bytes(state)
+            .map(Self)
+            .map_err(refused)
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let from_bytes = slf.get_type().getattr("from_bytes")?;
+        Ok((from_bytes, (slf.borrow().to_bytes(slf.py()),)))
+    }
+}
+
+/// Anything that NumPy makes an array of numbers of.
+fn floats<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Held<'py, f64>> {
+    let py = value.py();
+    let array = py
+        .import("numpy")?
+        .call_method1("asarray", (value, "float64"))
+        .map_err(|error| {
+            let remedy = "give an array of numbers, with NaN for a missing value";
+            InputError::new_err((error.value(py).to_string(), name.to_owned(), remedy))
+        })?;
+    Held::new(&array, name)
+}
+
+fn refused(refusal: Refusal) -> PyErr {
+    InputError::new_err((refusal.what, refusal.place, refusal.remedy))
+}

@@ -1,0 +1,237 @@
+"""The parts of the twin: messages, the exchange, T2, what gap to expect."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from rga.model import read_model
+from rga.records import Record
+from rga.twin.digital_twin import DigitalTwin, State, follow
+from rga.twin.expectation import against_expected, scatter_share
+from rga.twin.hardware import HardwareInterface, Station
+from rga.twin.integration import novel, spacing
+from rga.twin.ledger import Ledger
+from rga.twin.messages import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
+from rga.twin.settings import Settings
+from rga.twin.synchrony import Synchrony, noise_of
+
+
+def record(model: dict[str, Any], rows: int = 5, **more: Any) -> Record:
+    sensors = tuple(model["sensors"])
+    readings = np.zeros((rows, len(sensors)))
+    return Record(600.0 * np.arange(rows), 0.0, "seconds", sensors, readings, **more)
+
+
+def station(model: dict[str, Any], **more: Any) -> Station:
+    return HardwareInterface(record(model, **more), read_model(model, "test")).station
+
+
+def first_question(place: Station, **more: Any) -> Q1:
+    return Q1(row=0, channels=place.channels, measured=place.measured, **more)
+
+
+def test_messages_come_back_from_the_log() -> None:
+    query = Q2(row=3, version=1, box=Box(low=(0.0, 1.0), high=(2.0, 3.0)), wanted=5)
+    body = query.model_dump(mode="json")
+    kind, row = body.pop("kind"), body.pop("row")
+    assert read_message(kind, row, body) == query
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"box": {"low": [1.0], "high": [0.0]}},
+        {"box": {"low": [0.0], "high": [float("nan")]}},
+        {"box": {"low": [0.0], "high": [1.0, 2.0]}},
+        {"version": 0},
+        {"wanted": -1},
+        {"colour": "red"},
+    ],
+)
+def test_messages_are_validated(wrong: dict[str, Any]) -> None:
+    body = {"version": 1, "box": {"low": [0.0], "high": [1.0]}, "wanted": 5}
+    assert isinstance(read_message("Q2", 0, body), Q2)
+    with pytest.raises(ValidationError):
+        read_message("Q2", 0, body | wrong)
+
+
+def test_a_question_asks_one_change_only(small_bridge: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError, match="at once"):
+        first_question(station(small_bridge), effects={}, restore=1)
+
+
+def test_the_twin_says_what_it_can_represent(small_bridge: dict[str, Any]) -> None:
+    place = station(small_bridge, contexts={"temperature": np.zeros(5)})
+    twin = DigitalTwin(read_model(small_bridge, "test"), place)
+    answer = twin.answer(first_question(place))
+    assert isinstance(answer, R1)
+    assert answer.adequate
+    assert (answer.version, answer.latent) == (1, ("west load", "east load"))
+    # An answer alone changes nothing.
+    assert twin.state == State()
+    twin.accept(answer)
+    assert twin.state.version == 1
+
+
+def test_a_model_that_cannot_represent_the_contexts_is_refused(
+    small_bridge: dict[str, Any],
+) -> None:
+    """Two latent loads on a bridge whose only sensor hangs on an unloaded bar."""
+    sensor = {"S": {"kind": "strain", "member": "L2-U2", "unit": "microstrain", "noise": 1.0}}
+    blind = {**small_bridge, "sensors": sensor}
+    place = station(blind, contexts={"temperature": np.zeros(5)})
+    answer = DigitalTwin(read_model(blind, "test"), place).answer(first_question(place))
+    assert isinstance(answer, R1)
+    assert not answer.adequate
+    assert answer.missing == ("a sensor that sees west load or east load",)
+
+
+def test_an_update_that_does_not_fit_is_refused(small_bridge: dict[str, Any]) -> None:
+    place = station(small_bridge, contexts={"temperature": np.zeros(5)})
+    twin = DigitalTwin(read_model(small_bridge, "test"), place)
+    twin.accept(twin.answer(first_question(place)))
+    for effect in ({"kind": "sensor_bias", "sensor": "D9", "offset": 1.0}, {"kind": "magic"}):
+        answer = twin.answer(first_question(place, effects={"wrong": effect}))
+        assert isinstance(answer, R1)
+        assert not answer.adequate
+        twin.accept(answer)
+    assert twin.state.version == 1
+
+
+def test_versions_come_and_go_by_responses(small_bridge: dict[str, Any]) -> None:
+    place = station(small_bridge, contexts={"temperature": np.zeros(5)})
+    twin = DigitalTwin(read_model(small_bridge, "test"), place)
+    bias = {"bias": {"kind": "sensor_bias", "sensor": "D1", "offset": 1.0}}
+    for change in ({}, {"effects": bias}, {"restore": 1}):
+        twin.accept(twin.answer(first_question(place, **change)))
+    assert twin.state.version == 1
+    assert twin.state.versions == {1: {}, 2: bias}
+    assert list(twin.model(2).effects)[-1] == "bias"
+    answer = twin.answer(first_question(place, restore=7))
+    assert isinstance(answer, R1)
+    assert answer.missing == ("there is no version 7",)
+
+
+def test_a_context_brings_what_the_model_simulates(small_bridge: dict[str, Any]) -> None:
+    place = station(small_bridge, contexts={"temperature": np.zeros(5)})
+    twin = DigitalTwin(read_model(small_bridge, "test"), place)
+    twin.accept(twin.answer(first_question(place)))
+    contexts = np.array([[20.0, 50.0, 10.0], [20.0, 0.0, 0.0]])
+    query = Q5(
+        row=1, version=1, first=0, rows=2, sha256=sha256(contexts), time=np.array([0.0, 600.0]),
+        contexts=contexts, time_before=np.zeros(0), contexts_before=np.zeros((0, 3)),
+    )  # fmt: skip
+    answer = twin.answer(query)
+    assert isinstance(answer, R5)
+    table = dict(zip(small_bridge["context"], contexts.T, strict=True))
+    expected = twin.simulation().simulator.predict(table)
+    np.testing.assert_allclose(answer.simulated, expected, rtol=1e-12)
+    twin.accept(answer)
+    assert twin.state.row == 1
+    assert twin.state.context == {"temperature": 20.0, "west load": 0.0, "east load": 0.0}
+    assert twin.state.simulated["D1"] == pytest.approx(expected[1, 0])
+
+
+def test_simulations_are_relative_to_the_unloaded_rows(small_bridge: dict[str, Any]) -> None:
+    """Where the logger took the lead-in off every channel, the twin does the same."""
+    warm = {"temperature": np.full(5, 25.0)}
+    plain, zeroed = (
+        DigitalTwin(
+            read_model(small_bridge, "test"), station(small_bridge, contexts=warm, zero=zero)
+        )
+        for zero in (None, (0.0, 1200.0))
+    )
+    box = Box(low=(25.0, 0.0, 0.0), high=(25.0, 100.0, 100.0))
+    query = Q3(row=0, version=1, box=box, clock=0.0, rows=4, origin="design", seed=1)
+    drawn = []
+    for twin in (plain, zeroed):
+        twin.accept(twin.answer(first_question(twin.station)))
+        drawn.append(twin.answer(query))
+    rest = plain.simulation().simulator.predict(
+        {"temperature": 25.0, "west load": 50.0, "east load": 50.0}
+    )
+    # The unloaded contexts are not known: latent ones are taken in the middle of their range.
+    np.testing.assert_allclose(drawn[1].readings, drawn[0].readings - rest, atol=1e-9)
+
+
+def test_follow_ignores_a_refusal() -> None:
+    refusal = R1(
+        row=0, version=2, effects={}, adequate=False, missing=("x",), latent=(), blind=()
+    )  # fmt: skip
+    assert follow(State(), refusal, ()) == State()
+
+
+def test_only_credible_and_distinct_contexts_are_novel() -> None:
+    contexts = np.array([[0.5], [2.0], [2.01], [3.0], [9.0]])
+    gaps = np.array([[1.0], [1.0], [1.0], [50.0], [np.nan]])
+    found = novel(
+        gaps,
+        contexts,
+        errors=np.array([[0.5], [1.0], [1.5]]),
+        stored=np.array([[0.4], [0.6]]),
+        width=np.ones(1),
+        z=3.0,
+        distinct=0.3,
+    )
+    # Row 0 is known, 2 repeats 1, the gap of 3 is not credible, 4 has none.
+    assert found == [1]
+
+
+def test_spacing_is_that_of_neighbours() -> None:
+    grid = np.linspace(0.0, 10.0, 11)[:, None]
+    assert spacing(grid, np.array([10.0])) == pytest.approx(0.1)
+    assert spacing(grid[:1], np.array([10.0])) == 0.0
+
+
+def test_heavy_loads_are_no_drift() -> None:
+    """A model that is 3 % off everywhere has large gaps under large loads, and is in order."""
+    draw = np.random.default_rng(0)
+    noise = np.full(20, 0.1)
+    quiet, heavy = draw.normal(0, 5, (200, 20)), draw.normal(0, 50, (50, 20))
+
+    def gaps(simulated: np.ndarray) -> np.ndarray:
+        off = 0.03 * simulated * draw.choice([-1, 1], simulated.shape)
+        return (off + noise * draw.standard_normal(simulated.shape)) ** 2
+
+    share = scatter_share(gaps(quiet), quiet, noise)
+    assert share == pytest.approx(0.03, rel=0.25)
+    assert against_expected(gaps(heavy), heavy, noise, 0.0) > 50
+    assert against_expected(gaps(heavy), heavy, noise, share) < 1.6
+    moved = (np.sqrt(gaps(quiet)) + 10 * noise) ** 2
+    assert against_expected(moved, quiet, noise, share) > 5
+
+
+def test_noise_is_estimated_where_it_is_not_stated() -> None:
+    draw = np.random.default_rng(1)
+    slow = np.sin(np.arange(4000) / 300)[:, None] * [10.0, 10.0]
+    readings = slow + draw.normal(0, [0.2, 0.2], (4000, 2))
+    readings[7, 1] = np.nan
+    np.testing.assert_allclose(noise_of([0.5, None], readings), [0.5, 0.2], rtol=0.05)
+
+
+def test_missing_contexts_are_carried_on_and_told() -> None:
+    ledger = Ledger.empty(1, 2, 2)
+    ledger.measured = np.array([[np.nan, 1.0], [5.0, np.nan], [np.nan, 3.0]])
+    told, complete = ledger.told(np.array([9.0, 9.0]))
+    np.testing.assert_array_equal(told, [[9, 1], [5, 1], [5, 3]])
+    np.testing.assert_array_equal(complete, [False, False, False])
+
+
+def test_the_window_survives_a_restart() -> None:
+    gaps = np.random.default_rng(2).random((300, 3)) ** 2
+    gaps[200:, 1] += 30
+    settings = Settings(window=50)
+    whole = Synchrony(3, settings)
+    whole.begin_again(gaps[:50])
+    split = Synchrony(3, settings)
+    split.begin_again(gaps[:50])
+    expected = whole.exceeded(gaps[50:])
+    first = split.exceeded(gaps[50:130])
+    resumed = Synchrony(3, settings)
+    resumed.restore(split.to_bytes())
+    found = np.concatenate([first, resumed.exceeded(gaps[130:])])
+    np.testing.assert_array_equal(found, expected)
+    assert expected[150:, 1].any()
+    assert not expected[:150].any()
