@@ -15,6 +15,8 @@ SPIKE = 12.0
 SPIKES = 0.02
 #: a channel that shows less than this share of the expected variation is dead
 DEAD = 0.05
+#: rows that a spike lasts at most
+LONGEST_SPIKE = 2
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ def find_faults(
         spread = float(column.std())
         rest = column - _fitted(column, basis[seen])
         scale = max(_robust_deviation(rest), 1e-12)
-        spikes = float((np.abs(rest) > SPIKE * scale).mean())
+        spikes = float(_lone(np.abs(rest) > SPIKE * scale).mean())
         if spikes > SPIKES:
             faults.append(
                 Fault(
@@ -105,8 +107,18 @@ def lone_spikes(readings: FloatArray, observed: BoolArray, basis: FloatArray) ->
         column = readings[seen, number]
         if len(column) > 3 * basis.shape[1]:
             rest = column - _fitted(column, basis[seen])
-            spikes[seen, number] = np.abs(rest) > 3 * SPIKE * max(_robust_deviation(rest), 1e-12)
+            far = np.abs(rest) > 3 * SPIKE * max(_robust_deviation(rest), 1e-12)
+            spikes[seen, number] = _lone(far)
     return spikes
+
+
+def _lone(far: BoolArray) -> BoolArray:
+    """Those that stand alone or in short runs: what stays away has moved, and is no spike."""
+    edges = np.flatnonzero(np.diff(far.astype(int), prepend=0, append=0))
+    lone = far.copy()
+    for first, end in zip(edges[::2], edges[1::2], strict=True):
+        lone[first:end] = end - first <= LONGEST_SPIKE
+    return lone
 
 
 def _fitted(column: FloatArray, basis: FloatArray) -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.stats import bootstrap
 
 from rga.diagnosis.covariance import BoolArray
+from rga.errors import InputError
 from rga.model.parameter import FloatArray
 
 BLOCKS = 25
@@ -40,8 +41,15 @@ def gain(before: FloatArray, after: FloatArray, held_out: BoolArray, seed: int) 
         after: the same of the extended model.
         held_out: bool[rows], in blocks.
         seed: of the bootstrap.
+
+    Raises:
+        InputError: no held-out row has a reading to compare.
     """
     rows = np.flatnonzero(held_out & np.isfinite(before).any(1))
+    if not len(rows):
+        raise InputError(
+            "no held-out row has a reading to compare", "record", "give more rows under load"
+        )
     pieces = [
         piece
         for block in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)

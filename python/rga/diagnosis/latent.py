@@ -93,7 +93,7 @@ def guess_rows(simulator: Simulator, data: Data) -> Data:
 
     def cost(shares: FloatArray, off: FloatArray) -> FloatArray:
         # A context spread evenly over its range has the variance 1/12 in shares of it.
-        return (off**2).sum(axis=1) + 12 * (shares**2).sum(axis=1)
+        return np.asarray((off**2).sum(axis=1) + 12 * (shares**2).sum(axis=1))
 
     rows = len(data.time)
     best = np.zeros((rows, len(names)))

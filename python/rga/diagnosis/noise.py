@@ -1,8 +1,9 @@
 """How noisy the sensors are, with what memory, and how far off the measured contexts.
 
 The noise is estimated on what no linear structure can explain: the part of each channel that is
-not a combination of the load coefficients. So an effect that is hidden in the record does not pass
-for noise, as long as it leaves the structure linear and does not change with time.
+not a combination of the load coefficients, nor a step at one moment. So an effect that is hidden in
+the record does not pass for noise, as long as it leaves the structure linear; one that changes with
+time may pass for a little of it.
 """
 
 import numpy as np
@@ -13,6 +14,9 @@ from rga.model.parameter import FloatArray
 
 ITERATIONS = 12
 LARGEST_MEMORY = 0.995
+#: a step: a jump from one row to the next of so many robust deviations of such jumps, by which the
+#: median of so many rows before and after differs too
+JUMP, BESIDE = 6.0, 12
 
 
 def unexplainable(residual: FloatArray, observed: BoolArray, basis: FloatArray) -> FloatArray:
@@ -27,6 +31,16 @@ def unexplainable(residual: FloatArray, observed: BoolArray, basis: FloatArray) 
         float[rows, sensors], scaled for the degrees of freedom that the fit takes.
     """
     span = _orthonormal(basis, max(1, len(residual) // 12))
+    left = _left(residual, observed, span)
+    moment = _step(left, observed)
+    if moment is not None:
+        # A step would else pass for noise with a long memory, the better the larger it is.
+        step = (np.arange(len(residual)) >= moment).astype(float)
+        left = _left(residual, observed, np.column_stack([span, step]))
+    return left
+
+
+def _left(residual: FloatArray, observed: BoolArray, span: FloatArray) -> FloatArray:
     left = np.zeros_like(residual)
     for sensor in range(residual.shape[1]):
         seen = observed[:, sensor]
@@ -37,6 +51,24 @@ def unexplainable(residual: FloatArray, observed: BoolArray, basis: FloatArray) 
         else:
             left[seen, sensor] = residual[seen, sensor]
     return left
+
+
+def _step(left: FloatArray, observed: BoolArray) -> int | None:
+    """The row at which the channels jump most and stay, if any does."""
+    best: tuple[float, int] | None = None
+    for sensor in range(left.shape[1]):
+        rows = np.flatnonzero(observed[:, sensor])
+        column = left[rows, sensor]
+        jumps = np.abs(np.diff(column))
+        scale = 1.4826 * float(np.median(jumps)) if len(jumps) else 0.0
+        for place in np.flatnonzero(jumps > JUMP * scale) + 1 if scale > 0 else ():
+            if not BESIDE <= place <= len(column) - BESIDE:
+                continue
+            before, after = column[place - BESIDE : place], column[place : place + BESIDE]
+            shift = abs(float(np.median(after) - np.median(before))) / scale
+            if shift > JUMP and (best is None or shift > best[0]):
+                best = (shift, int(rows[place]))
+    return None if best is None else best[1]
 
 
 def estimate_noise(

@@ -1,5 +1,6 @@
 """Several contexts that one row of readings may mean."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,12 @@ class Candidates:
     share: FloatArray
     reversed: NDArray[np.bool_]
 
+    def rows(self, chosen: slice) -> "Candidates":
+        """Some of the rows."""
+        return Candidates(
+            self.value[chosen], self.spread[chosen], self.share[chosen], self.reversed
+        )
+
     def best(self) -> tuple[FloatArray, FloatArray]:
         """The most probable values, and how far the truth is expected from them.
 
@@ -51,3 +58,13 @@ class Candidates:
         value = (near[..., None] * self.value).sum(1)
         off = self.spread**2 + (self.value - value[:, None]) ** 2
         return value, np.sqrt((self.share[..., None] * off).sum(1))
+
+
+def joined(parts: Sequence[Candidates]) -> Candidates:
+    """Rows of the same network, one part after the other."""
+    return Candidates(
+        np.concatenate([part.value for part in parts]),
+        np.concatenate([part.spread for part in parts]),
+        np.concatenate([part.share for part in parts]),
+        parts[0].reversed,
+    )

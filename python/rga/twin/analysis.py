@@ -18,12 +18,14 @@ from rga.twin.hardware import Station
 from rga.twin.history import Event, Kind
 from rga.twin.integration import novel, spacing
 from rga.twin.messages import Q1, R1
-from rga.twin.settings import Settings
+from rga.twin.settings import Pace, Settings
 from rga.twin.standing import Standing
 from rga.twin.synchrony import Synchrony
 
 Effects = dict[str, dict[str, Any]]
 SHOWN = 4
+#: a gap that rises by more than this factor speaks against a new version
+WORSE = 1.25
 
 
 class RealityGapAnalysis:
@@ -35,6 +37,7 @@ class RealityGapAnalysis:
         station: what is mounted on the structure.
         calibration: captures the contexts.
         settings: of the run.
+        pace: how many rows it gathers for what.
         label: how the record writes the time of a row.
     """
 
@@ -45,12 +48,14 @@ class RealityGapAnalysis:
         station: Station,
         calibration: Calibration,
         settings: Settings,
+        pace: Pace,
         label: Callable[[int], str | float],
     ) -> None:
         self.standing = Standing()
         self.synchrony = Synchrony(len(station.channels), settings)
         self._exchange, self._archive, self._station = exchange, archive, station
-        self._calibration, self._settings, self._label = calibration, settings, label
+        self._calibration, self._settings = calibration, settings
+        self._pace, self._label = pace, label
 
     def initialise(self) -> R1:
         """Q1: can the twin represent what a calibration needs? Then the design phase is filled."""
@@ -65,10 +70,10 @@ class RealityGapAnalysis:
             self.standing.stage = "gather"
         return answer
 
-    def gather(self, wanted: int) -> None:
-        """Wait until so many rows are there for the first calibration."""
+    def gather(self) -> None:
+        """Wait until enough rows are there for the first calibration."""
         self.standing.row = len(self._calibration.ledger)
-        if self.standing.row >= wanted:
+        if self.standing.row >= self._pace.calibration_rows:
             self.standing.stage = "calibrate"
 
     def calibrate(self) -> None:
@@ -99,7 +104,7 @@ class RealityGapAnalysis:
                 self._detect(first, end)
             if settings.level == "C" and standing.alarm is None:
                 self._integrate(first, end)
-        if standing.alarm is not None and (last or end - standing.alarm >= settings.settle):
+        if standing.alarm is not None and (last or end - standing.alarm >= self._pace.settle):
             standing.stage = "recalibrate"
         elif standing.doubted and self._may_ask():
             standing.stage = "diagnose"
@@ -132,6 +137,12 @@ class RealityGapAnalysis:
             standing.stage = "diagnose"
         else:
             self._go_on(last)
+
+    def postpone(self, why: str) -> None:
+        """The diagnosis cannot say anything of the rows so far: it is asked again later."""
+        self._event("diagnosis", self.standing.row - 1, f"not possible yet: {why}")
+        self.standing.diagnosed = self.standing.row
+        self._go_on(False)
 
     def conclude(self, findings: Findings, effects: Effects, closing: bool) -> None:
         """Take findings over: an extended model becomes a new version of the twin.
@@ -208,10 +219,10 @@ class RealityGapAnalysis:
             calibration.send(*recent)
 
     def _change_version(self, **change: Any) -> None:
-        """Q1 with an update or a rollback; an update that does not lower the gap is taken back."""
+        """Q1 with an update or a rollback; an update that makes the gap rise is taken back."""
         standing, calibration = self.standing, self._calibration
         since = standing.row if standing.alarm is None else standing.alarm
-        recent = (max(0, min(since, standing.row - 2 * self._settings.settle)), standing.row)
+        recent = (max(0, min(since, standing.row - 2 * self._pace.settle)), standing.row)
         before, old = calibration.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.ledger.copy()
         answer = self._ask_twin(**change)
@@ -225,11 +236,11 @@ class RealityGapAnalysis:
         after = calibration.gap(*recent)
         words = f"version {answer.version} of the model is in force"
         self._event("version", standing.row - 1, words, before=before, after=after)
-        if "restore" not in change and not after < before:
+        if "restore" not in change and after > WORSE * before:
             calibration.learned, calibration.ledger = kept
             self._ask_twin(restore=old)
             calibration.send(*recent)
-            words = f"the gap did not fall: version {old} is in force again"
+            words = f"the gap rose: version {old} is in force again"
             self._event("rollback", standing.row - 1, words, before=after, after=before)
         self._begin_again()
 

@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.inference.law import follow_law
 from rga.model import Model
 from rga.model.parameter import FloatArray
 from rga.twin.archive import Archive
@@ -65,7 +64,6 @@ class Calibration:
         self.ledger, self.draws, self.learned = ledger, standing.draws, learned
         if standing.calibrated:
             self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
-        self._estimate_all()
 
     @property
     def latent(self) -> list[int]:
@@ -138,23 +136,20 @@ class Calibration:
             clock=float(self.clock(slice(-1, None))[0]),
             progress=lambda done: self._progress("learning contexts", done),
         )
-        self._estimate_all()
 
     def follow(self, first: int, end: int) -> None:
         """Infer the contexts of rows, and let the twin simulate them (Q5)."""
         rows = slice(first, end)
         contexts, spread = self._prior(rows)
         if self.learned is not None:
-            self._estimate(rows, contexts)
-            time = self.ledger.time[:end]
-            for column in self.latent:
-                moved = follow_law(
-                    time,
-                    self.ledger.estimates[:end, column],
-                    self.ledger.doubts[:end, column],
-                    self._laws[column],
-                )
-                contexts[:, column], spread[:, column] = (part[first:] for part in moved)
+            latent = self.latent
+            contexts[:, latent], spread[:, latent] = self.learned.infer(
+                first,
+                self.ledger.readings[:end],
+                self._prior(slice(0, end))[0],
+                self.clock(slice(0, end)),
+                [self._laws[column] for column in latent],
+            )
         self.ledger.contexts[rows], self.ledger.spread[rows] = contexts, spread
         self.send(first, end)
 
@@ -178,25 +173,6 @@ class Calibration:
         _, complete = self._told()
         ledger.simulated[rows] = np.where(complete[rows, None], answer.simulated, np.nan)
         self._archive.keep_rows(first, end, version, ledger)
-
-    def _estimate_all(self) -> None:
-        """What moves by a law is inferred from all rows: from all of them by the same network."""
-        if self.learned is None or all(
-            self._laws[column].law == "independent" for column in self.latent
-        ):
-            return
-        everything = slice(0, len(self.ledger))
-        self._estimate(everything, self._prior(everything)[0])
-
-    def _estimate(self, rows: slice, contexts: FloatArray) -> None:
-        """What the network makes of each row alone, into the ledger."""
-        assert self.learned is not None
-        latent = self.latent
-        value, doubt = self.learned.estimate(
-            rows.start, self.ledger.readings[rows], contexts, self.clock(rows)
-        )
-        self.ledger.estimates[rows, latent] = value
-        self.ledger.doubts[rows, latent] = doubt
 
     def _prior(self, rows: slice) -> tuple[FloatArray, FloatArray]:
         """Contexts as measured, and in the middle of their range where nothing measured them."""

@@ -1,7 +1,7 @@
 """The data-driven model: from live readings to the contexts that nothing measures."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import torch
@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
+from rga.inference.candidates import Candidates, joined
+from rga.inference.law import follow_law
 from rga.inference.posterior import covering_factor, laplace_spread
+from rga.model import ContextVariable
 from rga.model.parameter import FloatArray
 from rga.twin.messages import R4
 from rga.twin.simulation_model import SimulationModel, broken
@@ -18,6 +21,8 @@ from rga.twin.simulation_model import SimulationModel, broken
 HELD_OUT = 8
 #: rows are inferred in blocks of this size, so that packets of any size give the same bits
 BLOCK = 32
+#: rows on which lines are compared
+ROWS_COMPARED = 200
 
 
 class DataDrivenModel:
@@ -41,6 +46,7 @@ class DataDrivenModel:
     ) -> None:
         self._network, self._simulation = network, simulation
         self._faulty, self._noise, self._factor = faulty, noise, factor
+        self._known: dict[int, Candidates] = {}
 
     @classmethod
     def learn(
@@ -60,7 +66,8 @@ class DataDrivenModel:
         Args:
             data: simulated and measured rows.
             latent: contexts to infer.
-            noise: standard deviation of each channel's noise, float[channels].
+            noise: standard deviation of each channel's noise, float[channels]; NaN for one that
+                is not to be looked at.
             settings: of the training.
             seed: of everything random.
             start: a model to refine; None: from new networks.
@@ -70,7 +77,7 @@ class DataDrivenModel:
         simulation: SimulationModel = data.simulation
         model = simulation.model
         variables = Variables.of(model, latent)
-        faulty = broken(data.readings)
+        faulty = broken(data.readings) | np.isnan(noise)
         source = Samples(
             np.where(faulty, 0.0, data.readings),
             data.contexts[:, variables.measured_columns],
@@ -82,7 +89,7 @@ class DataDrivenModel:
         columns = [variables.contexts.index(name) for name in simulation.station.measured]
         told[:, columns] = data.real_contexts
         known = [model.context[name].noise or 0.0 for name in variables.measured]
-        level = np.concatenate([noise, known])
+        level = np.concatenate([np.where(np.isnan(noise), 1.0, noise), known])
         exact = settings.physics == "exact"
         network = train(
             source.rows(unheld),
@@ -99,27 +106,46 @@ class DataDrivenModel:
         learned._stretch(source.rows(~unheld), clock, seed)
         return learned
 
-    def estimate(
-        self, first: int, readings: FloatArray, contexts: FloatArray, clock: FloatArray
+    def infer(
+        self,
+        first: int,
+        readings: FloatArray,
+        contexts: FloatArray,
+        time: FloatArray,
+        laws: Sequence[ContextVariable],
     ) -> tuple[FloatArray, FloatArray]:
-        """Latent contexts of rows, each from its own readings, and their standard deviations.
+        """Latent contexts from a row on, and their standard deviations.
 
         Args:
-            first: number of the first row.
-            readings: float[n, channels], NaN where missing.
-            contexts: all contexts in the order of the model; latent ones are not looked at.
-            clock: of the rows [s].
+            first: number of the first row to infer.
+            readings: of all rows so far, float[rows, channels], NaN where missing.
+            contexts: all contexts of these rows; latent ones are not looked at.
+            time: of these rows [s].
+            laws: how each latent context moves.
 
         Returns:
-            float[n, latent] each.
+            float[rows - first, latent] each.
         """
-        rows, lead = len(readings), first % BLOCK
-        within = np.clip(np.arange(-lead, -(-(lead + rows) // BLOCK) * BLOCK - lead), 0, rows - 1)
-        blocks = within.reshape(-1, BLOCK)
-        parts = [self._estimate(readings[b], contexts[b], clock[b]) for b in blocks]
-        wanted = slice(lead, lead + rows)
-        value = np.concatenate([part[0] for part in parts])[wanted]
-        return value, np.concatenate([part[1] for part in parts])[wanted]
+        moving = [number for number, one in enumerate(laws) if one.law != "independent"]
+        several = self._several(0 if moving else first, readings, contexts)
+        own = several.rows(slice(first if moving else 0, None))
+        value, spread = own.best()
+        near = self._laplace(first, readings, contexts, value, time)
+        spread = np.maximum(spread, near) * self._factor
+        either = several.reversed if self._network.ways == 2 else None
+        for number in moving:
+            line = follow_law(
+                time,
+                several.value[:, :, number],
+                several.spread[:, :, number],
+                laws[number],
+                several.share,
+                either,
+            )
+            if laws[number].law == "linear":
+                line = self._arrived(readings, contexts, time, number, laws[number], line)
+            value[:, number], spread[:, number] = (part[first:] for part in line)
+        return value, spread
 
     def to_bytes(self) -> bytes:
         """Everything but the simulation."""
@@ -143,23 +169,81 @@ class DataDrivenModel:
             np.array(known["factor"], dtype=float),
         )
 
-    def _estimate(
-        self, readings: FloatArray, contexts: FloatArray, clock: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        variables = self._network.variables
+    def _several(self, first: int, readings: FloatArray, contexts: FloatArray) -> Candidates:
+        """What the network holds possible for rows from `first` on, each from its own readings."""
+        measured = contexts[:, self._network.variables.measured_columns]
         seen = np.where(self._faulty, np.nan, readings)
+        blocks = []
+        for number in range(first // BLOCK, -(-len(readings) // BLOCK)):
+            if number not in self._known:
+                rows = _block(number, len(readings))
+                found = self._network.candidates(seen[rows], measured[rows])
+                if (number + 1) * BLOCK > len(readings):
+                    blocks.append(found)
+                    break
+                self._known[number] = found
+            blocks.append(self._known[number])
+        lead = first % BLOCK
+        return joined(blocks).rows(slice(lead, lead + len(readings) - first))
+
+    def _arrived(
+        self,
+        readings: FloatArray,
+        contexts: FloatArray,
+        time: FloatArray,
+        number: int,
+        variable: ContextVariable,
+        line: tuple[FloatArray, FloatArray],
+    ) -> tuple[FloatArray, FloatArray]:
+        """The line of a latent context, or that it stays at an end of its range.
+
+        Rows without load tell a network nothing of where a train is, and a line through nothing
+        may well stand on the bridge. What the rows show decides.
+        """
+        chosen = np.unique(np.linspace(0, len(time) - 1, ROWS_COMPARED).astype(int))
+        column = self._network.variables.latent_columns[number]
+        seen = np.where(self._faulty, np.nan, readings)[chosen]
+        noise = self._noise[: seen.shape[1]]
+        low, high = variable.range
+        absent = np.full(len(time), (high - low) / np.sqrt(12))
+        lines = [line, *((np.full(len(time), end), absent) for end in (low, high))]
+        costs = []
+        for value, _ in lines:
+            table = contexts[chosen].copy()
+            table[:, column] = value[chosen]
+            off = (seen - self._simulation.readings(time[chosen], table)) / noise
+            costs.append(float(np.nanmean(np.log1p(off**2))))
+        return lines[int(np.argmin(costs))]
+
+    def _laplace(
+        self,
+        first: int,
+        readings: FloatArray,
+        contexts: FloatArray,
+        value: FloatArray,
+        clock: FloatArray,
+    ) -> FloatArray:
+        """Spread of rows from `first` on that the sensitivities of the sensors leave."""
+        variables = self._network.variables
         measured = contexts[:, variables.measured_columns]
-        value = self._network.infer(seen, measured)
-        spread = laplace_spread(
-            self._simulation.simulator,
-            variables,
-            measured,
-            value,
-            np.isfinite(seen),
-            self._noise,
-            clock,
-        )
-        return value, spread * self._factor
+        seen = np.isfinite(np.where(self._faulty, np.nan, readings))
+        whole = np.concatenate([np.zeros((first, value.shape[1])), value])
+        parts = []
+        for number in range(first // BLOCK, -(-len(readings) // BLOCK)):
+            rows = np.maximum(_block(number, len(readings)), first)
+            parts.append(
+                laplace_spread(
+                    self._simulation.simulator,
+                    variables,
+                    measured[rows],
+                    whole[rows],
+                    seen[rows],
+                    self._noise,
+                    clock[rows],
+                )
+            )
+        lead = first % BLOCK
+        return np.concatenate(parts)[lead : lead + len(value)]
 
     def _stretch(self, unseen: Samples, clock: float, seed: int) -> None:
         """Measure on simulations that no training saw how far the intervals must reach."""
@@ -173,8 +257,17 @@ class DataDrivenModel:
             unseen.measured.shape
         )
         contexts = self._network.variables.together(measured, unseen.latent)
-        value, spread = self.estimate(0, readings, contexts, np.full(len(unseen), clock))
+        alone = ContextVariable(unit="-", range=(0, 1))
+        laws = [alone] * unseen.latent.shape[1]
+        time = np.full(len(unseen), clock)
+        value, spread = self.infer(0, readings, contexts, time, laws)
         self._factor = covering_factor(value - unseen.latent, spread)
+        self._known.clear()
+
+
+def _block(number: int, rows: int) -> NDArray[np.int64]:
+    """Rows of a block; behind the last row it stands again."""
+    return np.minimum(np.arange(number * BLOCK, (number + 1) * BLOCK), rows - 1)
 
 
 def _physics(

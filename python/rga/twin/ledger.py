@@ -18,8 +18,6 @@ class Ledger:
         readings: float[rows, channels].
         measured: measured contexts, float[rows, measured].
         contexts, spread: all contexts and their standard deviations, float[rows, contexts].
-        estimates, doubts: what the network makes of each row alone, and its standard deviation,
-            float[rows, contexts]; NaN for contexts that it does not infer.
         simulated: float[rows, channels].
     """
 
@@ -28,14 +26,12 @@ class Ledger:
     measured: FloatArray
     contexts: FloatArray
     spread: FloatArray
-    estimates: FloatArray
-    doubts: FloatArray
     simulated: FloatArray
 
     @classmethod
     def empty(cls, channels: int, measured: int, contexts: int) -> "Ledger":
         """A ledger without rows."""
-        widths = (channels, measured, contexts, contexts, contexts, contexts, channels)
+        widths = (channels, measured, contexts, contexts, channels)
         return cls(np.zeros(0), *(np.zeros((0, width)) for width in widths))
 
     def __len__(self) -> int:
@@ -47,7 +43,7 @@ class Ledger:
         self.time = np.concatenate([self.time, packet.time])
         self.readings = np.concatenate([self.readings, packet.readings])
         self.measured = np.concatenate([self.measured, packet.contexts])
-        for name in ("contexts", "spread", "estimates", "doubts", "simulated"):
+        for name in ("contexts", "spread", "simulated"):
             table = getattr(self, name)
             setattr(self, name, np.concatenate([table, np.full((rows, table.shape[1]), np.nan)]))
 

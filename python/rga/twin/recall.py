@@ -69,7 +69,7 @@ def standing_of(view: View) -> Standing:
 
 
 def ledger_of(view: View, channels: int, measured: int, contexts: int) -> Ledger:
-    """The rows of a run; what the network makes of each row alone is left out."""
+    """The rows of a run."""
     ledger = Ledger.empty(channels, measured, contexts)
     seen = view.measured()
     rows = len(seen.rows)
@@ -77,7 +77,7 @@ def ledger_of(view: View, channels: int, measured: int, contexts: int) -> Ledger
         return ledger
     ledger.time, ledger.readings = seen.time, seen.readings
     ledger.measured = seen.contexts.reshape(rows, measured)
-    for name in ("contexts", "spread", "estimates", "doubts"):
+    for name in ("contexts", "spread"):
         setattr(ledger, name, np.full((rows, contexts), np.nan))
     ledger.simulated = np.full((rows, channels), np.nan)
     inferred, gaps = view.inferred(), view.gaps()

@@ -129,6 +129,7 @@ class Running:
         self._model, self._record, self._settings, self._seed = model, record, settings, seed
         self._progress = progress or (lambda stage, done: None)
         self._hardware = HardwareInterface(record, model)
+        self._pace = settings.pace(self._hardware.rows)
         station = self._hardware.station
         self._twin = DigitalTwin(model, station)
         self._archive = Archive(kept, model, self._twin.simulation)
@@ -137,7 +138,7 @@ class Running:
             exchange, self._archive, station, model, settings, seed, self._progress
         )
         self.analysis = RealityGapAnalysis(
-            exchange, self._archive, station, self.calibration, settings, self._label
+            exchange, self._archive, station, self.calibration, settings, self._pace, self._label
         )
         self._middleware = InProcess()
         self._middleware.subscribe(self._archive.receive)
@@ -180,7 +181,7 @@ class Running:
     @property
     def gap(self) -> float:
         """Standardised gap of the last packet; NaN where none was followed yet [-]."""
-        return self.calibration.gap(max(0, self.row - self._settings.packet), self.row)
+        return self.calibration.gap(max(0, self.row - self._pace.packet), self.row)
 
     def step(self) -> None:
         """Do what is next, and have it acknowledged by the repository."""
@@ -231,20 +232,27 @@ class Running:
         if stage == "recalibrate":
             analysis.recalibrate(self._all_arrived)
             return
-        first, rows = len(self.calibration.ledger), self._settings.packet
-        wanted = self._settings.first_rows(self._hardware.rows)
+        first, rows = len(self.calibration.ledger), self._pace.packet
         if stage == "gather":
-            rows = min(rows, wanted - first)
+            rows = min(rows, self._pace.calibration_rows - first)
         packet = self._hardware.packet(first, rows)
         if len(packet.time):
             self._middleware.publish(packet)
         if stage == "gather":
-            analysis.gather(wanted)
+            analysis.gather()
         else:
             analysis.watch(self._all_arrived)
 
     def _diagnose(self, closing: bool) -> None:
-        findings = self._ask_diagnosis()
+        try:
+            findings = self._ask_diagnosis()
+        except InputError as error:
+            if closing:
+                raise
+            with self._archive.step():
+                self.analysis.postpone(str(error))
+                self._checkpoint()
+            return
         if closing:
             self._closing = findings
         effects = beyond(self._model, findings.account.extended)

@@ -1,5 +1,6 @@
 """Settings of a run: the level of integration, and the figures that T1 and T2 go by."""
 
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -17,10 +18,11 @@ class Settings(BaseModel):
         level: A calibrates once; B also detects out-of-sync states and recalibrates (T1); C also
             stores novel contexts (T2).
         calibration_rows: rows of the first calibration; None: a third of the record, 200 at most.
-        packet: rows that arrive together.
+        packet: rows that arrive together; None: a 24th of the record.
         window, z, persistence: the Gaussian window of T1: rows, width of its bound in standard
             deviations, and how many of the last rows must exceed it.
-        settle: rows that are gathered after an alarm before a recalibration.
+        settle: rows that are gathered after an alarm before a recalibration; None: a twelfth of
+            the record.
         recovered: a recalibration has brought the gap down when the gap is below this multiple of
             what noise and the model's scatter, as of the first calibration, let expect.
         growth: the diagnosis is asked again when the record has grown by this factor.
@@ -34,13 +36,13 @@ class Settings(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
     level: Level = "C"
     calibration_rows: Count | None = None
-    packet: Count = 20
+    packet: Count | None = None
     window: Annotated[int, Field(ge=2)] = 100
     z: Annotated[float, Field(gt=0)] = 4.0
     persistence: tuple[Count, Count] = (4, 6)
-    settle: Count = 40
+    settle: Count | None = None
     recovered: Annotated[float, Field(gt=1)] = 1.8
-    growth: Annotated[float, Field(gt=1)] = 1.5
+    growth: Annotated[float, Field(gt=1)] = 2.0
     design_rows: Count = 4096
     repository_z: Annotated[float, Field(gt=0)] = 4.0
     distinct: Annotated[float, Field(gt=0)] | None = None
@@ -52,12 +54,23 @@ class Settings(BaseModel):
             raise ValueError(f"persistence {self.persistence}: more exceedances than rows")
         return self
 
-    def first_rows(self, rows: int) -> int:
-        """Rows of the first calibration on a record of so many rows.
+    def pace(self, rows: int) -> "Pace":
+        """What depends on the length of a record, in rows.
 
-        >>> Settings().first_rows(90)
-        30
+        >>> Settings().pace(480)
+        Pace(calibration_rows=160, packet=20, settle=40)
         """
-        if self.calibration_rows is not None:
-            return min(self.calibration_rows, rows)
-        return max(1, min(200, rows // 3))
+        return Pace(
+            min(self.calibration_rows or max(1, min(200, rows // 3)), rows),
+            self.packet or max(1, rows // 24),
+            self.settle or max(1, rows // 12),
+        )
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Rows of the first calibration, of a packet, and between an alarm and a recalibration."""
+
+    calibration_rows: int
+    packet: int
+    settle: int

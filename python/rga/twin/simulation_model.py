@@ -58,9 +58,7 @@ class SimulationModel:
         kept = len(past_time) if self._remembers else min(1, len(past_time))
         clock = np.concatenate([past_time[len(past_time) - kept :], query.time])
         contexts = np.concatenate([past[len(past) - kept :], query.contexts])
-        table = dict(zip(self.model.context, contexts.T, strict=True))
-        readings = self.simulator.predict({**table, "time": clock})
-        simulated = (readings - self.zero(clock, contexts))[kept:]
+        simulated = self.readings(clock, contexts)[kept:]
         last = dict(zip(self.model.context, query.contexts[-1].tolist(), strict=True))
         return R5(
             row=query.row,
@@ -71,6 +69,17 @@ class SimulationModel:
             sha256=sha256(simulated),
             simulated=simulated,
         )
+
+    def readings(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
+        """What the channels read at contexts of rows that follow one another.
+
+        Args:
+            clock: of the rows [s], float[n].
+            contexts: float[n, contexts].
+        """
+        table = dict(zip(self.model.context, contexts.T, strict=True))
+        readings = self.simulator.predict({**table, "time": clock})
+        return np.asarray(readings - self.zero(clock, contexts))
 
     def zero(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
         """Mean of the channels over the rows that the logger took for unloaded, float[channels].
