@@ -85,7 +85,7 @@ class RealityGapAnalysis:
         calibration.follow(0, standing.row)
         self.synchrony.begin_again(calibration.ledger.gaps)
         standing.share = calibration.scatter_share(0, standing.row)
-        words = f"calibrated on {standing.row} rows; the model is off by {standing.share:.1%}"
+        words = f"calibrated on {standing.row} rows, scatter of the model {standing.share:.1%}"
         self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
         standing.stage = "watch"
 
@@ -126,7 +126,9 @@ class RealityGapAnalysis:
         after = calibration.gap(*recent)
         recovered = calibration.gap(*recent, standing.share) <= settings.recovered
         done = "recalibrated" if calibration.learned is not None else "all contexts are measured"
-        ended = "the gap is down" if recovered else "the gap stays, the model is in doubt"
+        ended = "the gap stays, the model is in doubt"
+        if recovered:
+            ended = "the gap is what noise and scatter let expect"
         words = f"{done}, rows {recent[0]} to {recent[1] - 1}: {ended}"
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
         if settings.level == "C" and recovered:

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from rga.model.parameter import FloatArray
 
 #: largest share by which a calibrated model is taken to be off
-LARGEST = 0.3
+LARGEST = 0.05
 
 
 def scatter_share(gaps: FloatArray, simulated: FloatArray, noise: FloatArray) -> float:

@@ -26,6 +26,7 @@ from rga.twin.versions import beyond, written
 
 Progress = Callable[[str, float], None]
 FILE = "twin.sqlite"
+WRITTEN = ("findings.json", "model.json", "report.html")
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def run(
     """Calibrate a twin on a record, watch its gap, recalibrate, diagnose, and report.
 
     The repository in the directory keeps everything: a run that was interrupted goes on from it
-    and ends in the same findings.
+    and ends in the same findings, and one that had ended is not done again.
 
     Args:
         model: the structure with its effects and sensors.
@@ -92,6 +93,8 @@ def run(
         Repository.open(repository or directory / FILE) as kept,
     ):
         running = Running(model, record, kept.run(identity), settings, seed, progress)
+        if running.stage == "done" and all((directory / name).exists() for name in WRITTEN):
+            return Outcome(running.stored_findings(), running.history())
         while running.stage not in ("report", "done"):
             running.step()
             if watch is not None:
@@ -200,6 +203,10 @@ class Running:
         if self._closing is None:
             self._closing = self._ask_diagnosis()
         return self._closing
+
+    def stored_findings(self) -> Findings:
+        """The same as the repository keeps them, without the account."""
+        return Findings.model_validate_json(self._archive.run.findings()[-1].findings)
 
     def history(self) -> History:
         """What the run left behind so far."""

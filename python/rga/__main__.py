@@ -1,0 +1,5 @@
+"""`python -m rga` is `rga`."""
+
+from rga.cli import main
+
+main()

@@ -1,0 +1,307 @@
+"""Runs of the twin on a short stream: the story, its repetition, its interruption, its past."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rga
+from rga.errors import InputError
+from rga.twin import Outcome, Settings, rollback
+from rga.twin.recall import log_of
+from rga.twin.repository import Repository
+from rga.twin.running import Running
+
+Stream = Callable[..., Path]
+#: `RGA_TEST_KILLS=200` makes the test of killed runs as long as the acceptance wants it
+KILLS = int(os.environ.get("RGA_TEST_KILLS", "8"))
+
+
+def run(folder: Path, directory: Path, *, seed: int = 0, **more: Any) -> Outcome:
+    model = rga.load_model(folder / "model.json")
+    record = rga.load_record(folder / "record.csv", model)
+    wanted = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+    settings = Settings.model_validate(wanted | more.pop("settings", {}))
+    return rga.run(model, record, directory, settings=settings, seed=seed, **more)
+
+
+def told(outcome: Outcome) -> list[tuple[str, int, float | None, float | None]]:
+    return [(e.kind, e.row, e.gap_before, e.gap_after) for e in outcome.history.events]
+
+
+@pytest.fixture(scope="module")
+def stream(small_stream: Stream) -> Path:
+    return small_stream()
+
+
+@pytest.fixture(scope="module")
+def lived(stream: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Outcome]:
+    """A finished run and its directory."""
+    directory = tmp_path_factory.mktemp("lived")
+    return directory, run(stream, directory)
+
+
+def test_the_story_of_a_stream(lived: tuple[Path, Outcome]) -> None:
+    """Calibration, a novel context, an alarm, a recalibration that fails, a cause, a version."""
+    directory, outcome = lived
+    kinds = [event.kind for event in outcome.history.events]
+    first = {kind: kinds.index(kind) for kind in kinds}
+    order = ["calibration", "novel context", "alarm", "recalibration", "diagnosis", "version"]
+    assert sorted(order, key=first.__getitem__) == order
+    by_kind = {e.kind: e for e in reversed(outcome.history.events)}
+    assert 60 <= by_kind["novel context"].row < 90
+    assert 105 <= by_kind["alarm"].row < 115
+    version = by_kind["version"]
+    assert version.gap_before is not None
+    assert version.gap_after is not None
+    assert version.gap_after < 0.1 * version.gap_before
+    causes = [cause.effect for cause in outcome.findings.causes]
+    assert [(c["kind"], c["support"], c["dof"]) for c in causes] == [
+        ("support_settlement", "east", "uz")
+    ]
+    low, high = causes[0]["displacement"]["ci90"]
+    assert low <= -0.002 <= high
+    for name in ("findings.json", "model.json", "report.html", "twin.sqlite"):
+        assert (directory / name).exists()
+    extended = rga.load_model(directory / "model.json")
+    assert any(effect.kind == "support_settlement" for effect in extended.effects.values())
+
+
+def test_contexts_are_inferred_within_their_intervals(lived: tuple[Path, Outcome]) -> None:
+    history = lived[1].history
+    days = np.arange(150) / 24
+    east = 25 + 10 * np.cos(2 * days) + 4  # plus a draw of 0 to 8
+    off = history.inferred[:100, history.contexts.index("east load")] - east[:100]
+    assert np.sqrt((off**2).mean()) < 4
+    assert (history.spread[:100] < 5).all()
+
+
+def test_the_null_twin_stays_as_it_is(small_stream: Stream, tmp_path: Path) -> None:
+    """The same stream with no drift and nothing hidden: nothing may be found."""
+    outcome = run(small_stream(drifts=False, sinks=False), tmp_path)
+    assert outcome.findings.verdict == "nothing_wrong"
+    assert outcome.findings.causes == []
+    assert len(outcome.history.versions) == 1
+    assert not any(e.kind == "novel context" for e in outcome.history.events)
+
+
+def test_a_drift_alone_is_no_cause(small_stream: Stream, tmp_path: Path) -> None:
+    outcome = run(small_stream(sinks=False), tmp_path)
+    assert outcome.findings.causes == []
+    assert len(outcome.history.versions) == 1
+
+
+def test_the_same_seed_gives_the_same(
+    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+) -> None:
+    again = run(stream, tmp_path)
+    assert told(again) == told(lived[1])
+    np.testing.assert_array_equal(again.history.inferred, lived[1].history.inferred)
+    found, expected = (
+        json.loads((folder / "findings.json").read_text(encoding="utf-8"))
+        for folder in (tmp_path, lived[0])
+    )
+    assert found == expected
+
+
+class _Stop(Exception):
+    pass
+
+
+def test_interrupted_after_every_step_it_ends_the_same(
+    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+) -> None:
+    def stop(running: Running) -> None:
+        raise _Stop
+
+    for _ in range(200):
+        try:
+            outcome = run(stream, tmp_path, watch=stop)
+        except _Stop:
+            continue
+        break
+    assert told(outcome) == told(lived[1])
+    np.testing.assert_array_equal(outcome.history.inferred, lived[1].history.inferred)
+    np.testing.assert_array_equal(outcome.history.gaps, lived[1].history.gaps)
+    expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
+    assert (tmp_path / "findings.json").read_text(encoding="utf-8") == expected
+
+
+def test_a_run_that_is_done_is_not_done_again(stream: Path, lived: tuple[Path, Outcome]) -> None:
+    directory, first = lived
+    with Repository.open(directory, read_only=True) as kept:
+        steps = kept.runs()[0].steps
+    steps_seen: list[int] = []
+    again = run(stream, directory, watch=lambda running: steps_seen.append(running.row))
+    assert steps_seen == []
+    assert again.findings.model_dump() == first.findings.model_dump()
+    with Repository.open(directory, read_only=True) as kept:
+        assert kept.runs()[0].steps == steps
+
+
+def test_killed_at_random_it_loses_nothing_and_ends_the_same(
+    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+) -> None:
+    """Every acknowledged step is there after a kill, and each resume ends in the same findings."""
+    draw = random.Random(5)
+    command = [sys.executable, "-m", "rga", "run", stream / "model.json", stream / "record.csv"]
+    command += ["--settings", stream / "settings.json", "-o"]
+    expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
+    kills, directories, waiting = 0, 0, 12.0
+    while kills < KILLS:
+        directory = tmp_path / f"run {directories}"
+        directories += 1
+        acknowledged = 0
+        for _ in range(100):
+            begun = time.monotonic()
+            process = subprocess.Popen(
+                [*map(str, command), str(directory)], stdout=subprocess.DEVNULL, env=_quiet()
+            )
+            try:
+                process.wait(draw.uniform(0.0, waiting))
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGKILL)
+                process.wait()
+                kills += 1
+            else:
+                assert process.returncode == 0
+                break
+            acknowledged = _kept(directory, acknowledged)
+            # What starts slowly here would never get on: grant it a little more each time.
+            waiting = max(waiting, 1.2 * (time.monotonic() - begun))
+        assert (directory / "findings.json").read_text(encoding="utf-8") == expected
+        with rga.Twin.open(directory) as twin:
+            assert told_of(twin) == told(lived[1])
+
+
+def _kept(directory: Path, acknowledged: int) -> int:
+    """Steps in the repository: never fewer than before, each with a standing."""
+    if not (directory / "twin.sqlite").exists():
+        return acknowledged
+    steps = 0
+    # Killed before the tables were there, it is no repository yet.
+    with suppress(InputError), Repository.open(directory, read_only=True) as kept:
+        runs = kept.runs()
+        steps = runs[0].steps if runs else 0
+        if steps:
+            log_of(runs[0])
+            assert runs[0].kept("standing") is not None
+    assert steps >= acknowledged
+    return steps
+
+
+def _quiet() -> dict[str, str]:
+    return {**os.environ, "OMP_NUM_THREADS": "1"}
+
+
+def told_of(twin: rga.Twin) -> list[tuple[str, int, float | None, float | None]]:
+    return [(e.kind, e.row, e.gap_before, e.gap_after) for e in twin.history().events]
+
+
+def test_the_log_tells_the_sequence_of_the_paper(lived: tuple[Path, Outcome]) -> None:
+    with rga.Twin.open(lived[0]) as twin:
+        log = twin.log()
+    kinds = [kinds for _, kinds, _ in log]
+    assert kinds[:5] == ["Q1 R1", "Q2 R2", "Q3 R3", "Q4 R4", "Q5 R5"]
+    update = kinds.index("Q1 R1", 1)
+    assert kinds[update : update + 5] == ["Q1 R1", "Q2 R2", "Q3 R3", "Q4 R4", "Q5 R5"]
+    rows = [row for row, _, _ in log]
+    assert rows == sorted(rows)
+
+
+def test_the_past_stands_as_it_was(lived: tuple[Path, Outcome]) -> None:
+    with rga.Twin.open(lived[0]) as twin:
+        early = twin.as_of(row=79)
+        assert (early.version, early.state.row) == (1, 79)
+        assert twin.version > 1
+        assert len(early.history().events) < len(twin.history().events)
+        assert twin.as_of(time=600.0 * 79).context == early.context
+
+
+def test_a_repository_that_was_tampered_with_is_told(stream: Path, tmp_path: Path) -> None:
+    import sqlalchemy
+
+    run(stream, tmp_path, settings={"level": "A"})
+    engine = sqlalchemy.create_engine(f"sqlite:///{tmp_path / 'twin.sqlite'}")
+    with engine.begin() as connection:
+        connection.execute(sqlalchemy.text("UPDATE gap SET simulated = gaps"))
+    engine.dispose()
+    answered = pytest.raises(InputError, match="does not hold what the twin answered")
+    with answered, rga.Twin.open(tmp_path):
+        pass
+
+
+@pytest.mark.parametrize(("level", "kinds"), [("A", set()), ("B", {"alarm", "recalibration"})])
+def test_levels_of_integration(stream: Path, tmp_path: Path, level: str, kinds: set[str]) -> None:
+    outcome = run(stream, tmp_path, settings={"level": level})
+    found = {event.kind for event in outcome.history.events}
+    assert found - {"calibration", "diagnosis", "version"} == kinds
+    assert [cause.effect["kind"] for cause in outcome.findings.causes] == ["support_settlement"]
+
+
+def test_rollback_puts_an_earlier_version_in_force(stream: Path, tmp_path: Path) -> None:
+    run(stream, tmp_path, settings={"level": "B"})
+    with rga.Twin.open(tmp_path) as twin:
+        assert twin.version > 1
+    rollback(tmp_path, 1)
+    with rga.Twin.open(tmp_path) as twin:
+        assert twin.version == 1
+        assert twin.model.effects.keys() == twin.given.effects.keys()
+        assert twin.history().events[-1].kind == "rollback"
+    with pytest.raises(InputError, match="no version 9"):
+        rollback(tmp_path, 9)
+
+
+def test_whatif_answers_from_where_the_twin_stands(lived: tuple[Path, Outcome]) -> None:
+    with rga.Twin.open(lived[0]) as twin:
+        answer = twin.whatif({"west load": 60.0})
+        assert answer.contexts["east load"] == twin.context["east load"]
+        far = twin.whatif({"west load": 400.0})
+    assert answer.after_ci90 is not None
+    low, high = answer.after_ci90.T
+    assert (low <= answer.after + 1e-9).all()
+    assert (answer.after <= high + 1e-9).all()
+    # The settlement that the twin found is not sure, and moves the middle of the span.
+    assert high[1] - low[1] > 0
+    assert answer.warnings == []
+    assert any("outside its range" in warning for warning in far.warnings)
+    assert any("no simulated or stored context" in warning for warning in far.warnings)
+
+
+def test_postgresql_serves_as_well(
+    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+) -> None:
+    url = os.environ.get("RGA_TEST_POSTGRES")
+    if not url:
+        pytest.skip("RGA_TEST_POSTGRES names no server")
+    outcome = run(stream, tmp_path, seed=random.SystemRandom().randrange(2**31), repository=url)
+    assert not (tmp_path / "twin.sqlite").exists()
+    assert [c.effect["kind"] for c in outcome.findings.causes] == ["support_settlement"]
+
+
+def test_a_record_with_all_contexts_measured_needs_no_network(stream: Path, tmp_path: Path) -> None:
+    """Nothing is latent: contexts go as they are measured, and the gap is watched all the same."""
+    import polars as pl
+
+    table = pl.read_csv(stream / "record.csv")
+    days = np.arange(150) / 24
+    loads = {"west load": np.full(150, 30.0), "east load": 29 + 10 * np.cos(2 * days)}
+    table.with_columns(**{name: pl.Series(values) for name, values in loads.items()}).write_csv(
+        tmp_path / "record.csv"
+    )
+    model = rga.load_model(stream / "model.json")
+    record = rga.load_record(tmp_path / "record.csv", model)
+    wanted = json.loads((stream / "settings.json").read_text(encoding="utf-8"))
+    outcome = rga.run(model, record, tmp_path / "out", settings=Settings.model_validate(wanted))
+    assert outcome.history.contexts == ()
+    assert np.isfinite(outcome.history.gaps).all()
