@@ -10,9 +10,9 @@ help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
 
 run: fresh = .venv
-run: wheel  ## build and install rga in a fresh environment, and diagnose a generated bridge
+run: wheel  ## build and install rga in a fresh environment, and run the twin of the case study
 	$(RUN)/python -m pip install --quiet dist/rga-*.whl
-	$(RUN)/python examples/generated_bridge.py
+	$(RUN)/python examples/case_study.py
 
 test: fresh = .venv-test
 test: export PYO3_PYTHON = $(abspath $(TEST)/python)

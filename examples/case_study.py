@@ -43,5 +43,5 @@ def what_was_hidden(stream: Case) -> list[str]:
 
 
 if __name__ == "__main__":
-    chosen = int(sys.argv[1]) if len(sys.argv) > 1 else 4
+    chosen = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     run(chosen, Path("runs") / f"case-study-{chosen}")

@@ -5,7 +5,6 @@
 The record comes from physics of its own (rga.benchmark.truth); the diagnosis sees only the files.
 """
 
-import json
 import sys
 from pathlib import Path
 
@@ -20,12 +19,13 @@ def run(seed: int, folder: Path) -> None:
     case.write(folder)
     print(f"A {case.truth['bridge']} bridge, an effect hidden by seed {seed}; files in {folder}.")
     record = folder / "record.csv"
-    main(["run", str(folder / "model.json"), str(record), "-o", str(folder / "findings")])
-    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
-    hidden = {"kind": truth["kind"], **truth["place"]}
-    if truth["parameter"] is not None:
-        hidden[truth["parameter"]] = truth["value"]
-    print(f"What was hidden: {effect_words(hidden)}.")
+    try:
+        main(["diagnose", str(folder / "model.json"), str(record), "-o", str(folder / "findings")])
+    finally:  # a command leaves with its exit code
+        hidden = {"kind": case.truth["kind"], **case.truth["place"]}
+        if case.truth["parameter"] is not None:
+            hidden[case.truth["parameter"]] = case.truth["value"]
+        print(f"What was hidden: {effect_words(hidden)}.")
 
 
 if __name__ == "__main__":

@@ -178,20 +178,19 @@ class Nothing:
         return "Nothing is wrong."
 
 
-@pytest.mark.parametrize("command", ["run", "diagnose"])
 def test_diagnosis_is_written_and_said(
-    command: str, tmp_path: Path, model_file: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, model_file: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("rga.diagnosis.diagnose", Nothing)
     record, target = tmp_path / "record.csv", tmp_path / "out"
     record.write_text("time,D1,S1,temperature\n0,1,2,50\n1,1,2,3\n", encoding="utf-8")
-    said = rga(command, model_file, record, "-o", target, "--seed", 7)
+    said = rga("diagnose", model_file, record, "-o", target, "--seed", 7)
     assert said.code == 0
     assert said.out.startswith("Nothing is wrong.\n")
     assert said.err.startswith("warning: temperature lies outside its range")
     findings = json.loads((target / "findings.json").read_text(encoding="utf-8"))
     assert findings == {"verdict": "nothing_wrong", "seed": 7, "rows": 2}
-    printed = rga(command, model_file, record, "-o", target, "--seed", 8, "--json")
+    printed = rga("diagnose", model_file, record, "-o", target, "--seed", 8, "--json")
     assert json.loads(printed.out)["seed"] == 8
 
 

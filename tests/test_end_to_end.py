@@ -31,6 +31,8 @@ def test_files_in_findings_out(case: Path, rga: Callable[..., Any]) -> None:
         "findings.json",
         "model.json",
         "report.html",
+        "twin.sqlite",
+        "twin.sqlite.lock",
     ]
     text = (out / "findings.json").read_text(encoding="utf-8")
     findings = Findings.model_validate_json(text)

@@ -48,12 +48,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     Raises:
         InputError: too few rows, or no channel that works.
     """
-    if len(record.time) < LEAST_ROWS:
-        raise InputError(
-            f"the record has {len(record.time)} rows",
-            "record",
-            f"a diagnosis needs {LEAST_ROWS} at least",
-        )
+    check_length(record)
     simulator = Simulator(model)
     data = _data(model, record)
     stuck = find_faults(
@@ -85,6 +80,16 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         warnings.append(f"{int(spikes.sum())} lone spikes were taken as missing readings")
         data = replace(data, observed=data.observed & ~spikes)
     return Prepared(data, record.rows(chosen), chosen, [*stuck, *broken], warnings)
+
+
+def check_length(record: Record) -> None:
+    """Refuse a record that is too short for a diagnosis (InputError)."""
+    if len(record) < LEAST_ROWS:
+        raise InputError(
+            f"the record has {len(record)} rows",
+            "record",
+            f"a diagnosis needs {LEAST_ROWS} at least",
+        )
 
 
 def _data(model: Model, record: Record) -> Data:

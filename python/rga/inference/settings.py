@@ -10,6 +10,7 @@ class TrainingSettings:
 
     Attributes:
         alpha, beta, gamma: weights of the domain, context and physics losses [-].
+        fine_gamma: weight of the physics loss in a fine-tuning, which is about few rows [-].
         physics: what the physics loss compares with: the frozen network trained on the source,
             the simulator itself, or nothing.
         steps, learning_rate: of a first training.
@@ -27,6 +28,7 @@ class TrainingSettings:
     alpha: float = 0.02
     beta: float = 1.0
     gamma: float = 0.005
+    fine_gamma: float = 0.5
     physics: Literal["reduced", "exact"] | None = "reduced"
     steps: int = 2500
     learning_rate: float = 3e-3

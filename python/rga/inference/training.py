@@ -80,7 +80,8 @@ def train(
     if start is not None and start.variables != variables:
         remedy = "train a network from the beginning"
         raise InputError("the earlier network is of other variables", "training", remedy)
-    guided = settings.physics is not None and settings.gamma > 0 and len(target) > 0
+    gamma = settings.gamma if start is None else settings.fine_gamma
+    guided = settings.physics is not None and gamma > 0 and len(target) > 0
     if guided and physics is None:
         physics = pretrain(source, variables, settings, seed=seed)
     with one_thread():
@@ -129,6 +130,7 @@ class _Training:
             self.network.thaw()
         self.wanted = self.network.standard(torch.from_numpy(latent))
         self.fresh = start is None
+        self.gamma = settings.gamma if self.fresh else settings.fine_gamma
         self.discriminator = DomainDiscriminator(self.network.features, settings.width // 2)
         initialise(self.discriminator, self.generator)
 
@@ -193,7 +195,7 @@ class _Training:
             crossed = nn.functional.binary_cross_entropy_with_logits(logits, domain)
             loss = loss + EVERY * settings.alpha * crossed
         if physics is not None:
-            weight = EVERY * settings.gamma * strength
+            weight = EVERY * self.gamma * strength
             loss = loss + weight * self._physics_loss(physics, real, real_features)
         return loss
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from threadpoolctl import threadpool_limits
 
 from rga.diagnosis import Findings, diagnose
+from rga.diagnosis.prepare import check_length
 from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record
@@ -83,8 +84,8 @@ def run(
         InputError: the model cannot represent what the calibration needs, the record is too
             short, or the repository cannot be used.
     """
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
+    check_length(record)
+    directory = made(Path(directory))
     settings = settings or Settings()
     digest = model.sha256 or written(model)[1]
     identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
@@ -103,6 +104,22 @@ def run(
         outcome.write(directory)
         running.end()
     return outcome
+
+
+def made(directory: Path) -> Path:
+    """The directory, made where it is missing.
+
+    Raises:
+        InputError: it cannot be.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = "it is a file" if directory.is_file() else (error.strerror or "refused").lower()
+        raise InputError(
+            f"the output cannot be written, {reason}", str(directory), "give another directory"
+        ) from None
+    return directory
 
 
 class Running:
