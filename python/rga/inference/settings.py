@@ -1,11 +1,16 @@
 """How a network is trained."""
 
-from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Weight = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Rate = Annotated[float, Field(gt=0, lt=1)]
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
+Share = Annotated[float, Field(ge=0, lt=1)]
 
 
-@dataclass(frozen=True)
-class TrainingSettings:
+class TrainingSettings(BaseModel):
     """Weights of the losses, sizes and steps.
 
     Attributes:
@@ -25,22 +30,23 @@ class TrainingSettings:
             that the physics loss allows for, as a share of a sensor's spread [-].
     """
 
-    alpha: float = 0.02
-    beta: float = 1.0
-    gamma: float = 0.005
-    fine_gamma: float = 0.5
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    alpha: Weight = 0.02
+    beta: Weight = 1.0
+    gamma: Weight = 0.005
+    fine_gamma: Weight = 0.5
     physics: Literal["reduced", "exact"] | None = "reduced"
-    steps: int = 2500
-    learning_rate: float = 3e-3
-    fine_steps: int = 500
-    fine_learning_rate: float = 1e-3
-    reduced_steps: int = 2000
-    reduced_width: int = 96
-    batch: int = 128
-    target_batch: int = 48
-    width: int = 96
-    features: int = 32
-    modes: int = 6
-    dropout: float = 0.02
-    faults: float = 0.002
-    gain: float = 0.03
+    steps: Count = 2500
+    learning_rate: Rate = 3e-3
+    fine_steps: Count = 500
+    fine_learning_rate: Rate = 1e-3
+    reduced_steps: Count = 2000
+    reduced_width: Count = 96
+    batch: Count = 128
+    target_batch: Count = 48
+    width: Count = 96
+    features: Count = 32
+    modes: Count = 6
+    dropout: Share = 0.02
+    faults: Share = 0.002
+    gain: Share = 0.03
