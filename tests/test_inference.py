@@ -24,7 +24,7 @@ from rga.simulation import Simulator
 SETTINGS = TrainingSettings(
     steps=600, learning_rate=6e-3, reduced_steps=400, fine_steps=60, width=32, features=12
 )
-FEW = dataclasses.replace(SETTINGS, steps=30, reduced_steps=30, fine_steps=20)
+FEW = SETTINGS.model_copy(update={"steps": 30, "reduced_steps": 30, "fine_steps": 20})
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def learn(
 @pytest.fixture(scope="module")
 def trained(forwards: Model) -> ContextNetwork:
     # The noise of these rows is known; readiness for gains and faults would cost accuracy.
-    exact = dataclasses.replace(SETTINGS, steps=1000, gain=0.0, faults=0.0)
+    exact = SETTINGS.model_copy(update={"steps": 1000, "gain": 0.0, "faults": 0.0})
     return learn(forwards, exact, 2048)
 
 
@@ -218,7 +218,9 @@ def test_bytes_bring_back_the_same_network(forwards: Model, trained: ContextNetw
 def test_the_reduced_simulator_stays_as_it_is(forwards: Model) -> None:
     variables = Variables.of(forwards, LATENT)
     source = design(forwards, 1024, latent=LATENT, seed=1).samples(variables)
-    reduced = pretrain(source, variables, dataclasses.replace(SETTINGS, reduced_steps=1500), seed=7)
+    reduced = pretrain(
+        source, variables, SETTINGS.model_copy(update={"reduced_steps": 1500}), seed=7
+    )
     fresh = design(forwards, 256, latent=LATENT, seed=8)
     error = reduced(torch.from_numpy(fresh.contexts))[0].numpy() - fresh.readings
     moved = fresh.readings.std(axis=0) > 1e-6
@@ -233,12 +235,12 @@ def test_the_reduced_simulator_stays_as_it_is(forwards: Model) -> None:
     assert not reduced.training
     assert not any(weight.requires_grad for weight in reduced.parameters())
     # It did take part.
-    alone = learn(forwards, dataclasses.replace(FEW, physics=None))
+    alone = learn(forwards, FEW.model_copy(update={"physics": None}))
     assert with_it.to_bytes() != alone.to_bytes()
 
 
 def test_exact_physics_and_fine_tuning(forwards: Model, trained: ContextNetwork) -> None:
-    exact = dataclasses.replace(FEW, physics="exact", gamma=0.05)
+    exact = FEW.model_copy(update={"physics": "exact", "gamma": 0.05})
     simulator = Simulator(forwards).as_torch()
     tuned = learn(forwards, exact, physics=simulator, start=trained)
     assert tuned.to_bytes() != trained.to_bytes()
