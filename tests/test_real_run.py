@@ -1,0 +1,37 @@
+"""The twin on the measured crossing: the train's position by the network, alarm and diagnosis."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rga
+from rga.twin import Settings
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "rdso45m"
+RECORD = Path(__file__).parents[2] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
+
+
+def test_the_crossing_ends_in_the_verdict_of_the_diagnosis(tmp_path: Path) -> None:
+    if not RECORD.exists():
+        pytest.skip("the measured record is not part of this project")
+    model = rga.load_model(EXAMPLE / "model.json")
+    record = rga.load_record(RECORD, model, EXAMPLE / "import.toml")
+    outcome = rga.run(model, record, tmp_path, settings=Settings(level="B"))
+    findings, history = outcome.findings, outcome.history
+    assert findings.verdict == "partial"
+    causes = [cause.effect for cause in findings.causes]
+    assert [cause["kind"] for cause in causes] == ["sensor_fault", "floor_participation"]
+    assert (causes[0]["sensor"], causes[1]["group"]) == ("S33", "bottom chord")
+
+    # The diagnosis finds the line of the train by a search of its own: the network must agree.
+    line = findings.contexts["train"]
+    rate = line["rate [m/s]"]
+    chosen = np.flatnonzero(np.isin(record.time, findings.account.record.time))
+    position = line["at the first analysed row [m]"] + rate * (record.time - record.time[chosen[0]])
+    inferred = history.inferred[:, 0]
+    crossing = chosen[len(chosen) // 3 :]
+    assert np.median(np.abs(inferred - position)[crossing]) < 8.0
+    first = next(event for event in history.events if event.kind == "alarm")
+    assert -5.0 < position[first.row] < 10.0
+    assert "diagnosis" in {event.kind for event in history.events}
