@@ -180,7 +180,6 @@ def test_killed_at_random_it_loses_nothing_and_ends_the_same(
         assert (directory / "findings.json").read_text(encoding="utf-8") == expected
         with rga.Twin.open(directory) as twin:
             assert told_of(twin) == told(lived[1])
-    print(f"{kills} kills in {directories} runs")
 
 
 def _kept(directory: Path, acknowledged: int) -> int:
