@@ -11,9 +11,7 @@ from rga.inference import TrainingSettings
 from rga.twin import Outcome, Settings
 
 ROWS = 240
-SETTINGS = Settings(
-    design_rows=2048, training=TrainingSettings(steps=1200, reduced_steps=1000, fine_steps=300)
-)
+SETTINGS = Settings(design_rows=2048, training=TrainingSettings(steps=1200, reduced_steps=1000))
 
 
 def run(folder: Path, **what: Any) -> tuple[Outcome, dict[str, Any]]:

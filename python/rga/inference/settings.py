@@ -18,6 +18,7 @@ class TrainingSettings(BaseModel):
         fine_gamma: weight of the physics loss in a fine-tuning, which is about few rows [-].
         physics: what the physics loss compares with: the frozen network trained on the source,
             the simulator itself, or nothing.
+        fine_physics: the same in a fine-tuning, whose rows may lie beyond all of the source.
         steps, learning_rate: of a first training.
         fine_steps, fine_learning_rate: of a fine-tuning.
         reduced_steps, reduced_width: of the reduced-order simulator.
@@ -36,10 +37,11 @@ class TrainingSettings(BaseModel):
     gamma: Weight = 0.005
     fine_gamma: Weight = 0.5
     physics: Literal["reduced", "exact"] | None = "reduced"
+    fine_physics: Literal["reduced", "exact"] | None = "exact"
     steps: Count = 2500
     learning_rate: Rate = 3e-3
-    fine_steps: Count = 500
-    fine_learning_rate: Rate = 1e-3
+    fine_steps: Count = 120
+    fine_learning_rate: Rate = 2e-3
     reduced_steps: Count = 2000
     reduced_width: Count = 96
     batch: Count = 128

@@ -75,13 +75,14 @@ def train(
         raise InputError(
             f"there are {len(noise)} noise levels", "training", "give one a sensor and context"
         )
-    if settings.physics == "exact" and physics is None:
+    kind = settings.physics if start is None else settings.fine_physics
+    if kind == "exact" and physics is None:
         raise InputError("the exact physics are missing", "training", "give Simulator.as_torch()")
     if start is not None and start.variables != variables:
         remedy = "train a network from the beginning"
         raise InputError("the earlier network is of other variables", "training", remedy)
     gamma = settings.gamma if start is None else settings.fine_gamma
-    guided = settings.physics is not None and gamma > 0 and len(target) > 0
+    guided = kind is not None and gamma > 0 and len(target) > 0
     if guided and physics is None:
         physics = pretrain(source, variables, settings, seed=seed)
     with one_thread():

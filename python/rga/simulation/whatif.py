@@ -72,8 +72,8 @@ def whatif(
             )
     middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
     contexts = {**middle, **(base or {}), **settings}
-    # At the same time on both sides, so that only what was set makes a difference.
-    start = {"time": settings["time"]} if "time" in settings else {}
+    # Without a base both sides stand at the same time: only what was set makes a difference.
+    start = {"time": settings["time"]} if "time" in settings and base is None else {}
     first = {**middle, **(base or {}), **start}
     changed = model.extended(dict(add or {}))
     before = Simulator(model).predict(first)[0]

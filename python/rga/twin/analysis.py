@@ -223,8 +223,9 @@ class RealityGapAnalysis:
     def _change_version(self, **change: Any) -> None:
         """Q1 with an update or a rollback; an update that makes the gap rise is taken back."""
         standing, calibration = self.standing, self._calibration
-        since = standing.row if standing.alarm is None else standing.alarm
-        recent = (max(0, min(since, standing.row - 2 * self._pace.settle)), standing.row)
+        # Rows before the alarm may stand under another structure than the one that is in force now.
+        since = standing.row - 2 * self._pace.settle if standing.alarm is None else standing.alarm
+        recent = (max(0, since), standing.row)
         before, old = calibration.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.ledger.copy()
         answer = self._ask_twin(**change)

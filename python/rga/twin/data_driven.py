@@ -6,13 +6,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
+from torch import Tensor, nn
 
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
 from rga.inference.candidates import Candidates, joined
 from rga.inference.law import follow_law
 from rga.inference.posterior import covering_factor, laplace_spread
-from rga.model import ContextVariable
+from rga.inference.ways import EitherWay
+from rga.model import ContextVariable, Model
 from rga.model.parameter import FloatArray
 from rga.twin.messages import R4
 from rga.twin.simulation_model import SimulationModel, broken
@@ -90,7 +91,15 @@ class DataDrivenModel:
         told[:, columns] = data.real_contexts
         known = [model.context[name].noise or 0.0 for name in variables.measured]
         level = np.concatenate([np.where(np.isnan(noise), 1.0, noise), known])
-        exact = settings.physics == "exact"
+        kind = settings.physics if start is None else settings.fine_physics
+        if kind == "exact" and _slow(model, latent):
+            kind = "reduced"
+            settings = settings.model_copy(update={"physics": kind, "fine_physics": kind})
+        physics: nn.Module | None = None
+        if kind == "exact":
+            physics = _Exact(simulation, faulty, clock)
+            if data.falling.any():
+                physics = EitherWay(physics, variables.latent_columns[0])
         network = train(
             source.rows(unheld),
             Samples(np.where(faulty, np.nan, data.real), told[:, variables.measured_columns]),
@@ -98,7 +107,7 @@ class DataDrivenModel:
             variables=variables,
             noise=level,
             seed=seed,
-            physics=_physics(simulation, faulty, clock) if exact else None,
+            physics=physics,
             start=None if start is None else start._network,
             progress=progress,
         )
@@ -270,17 +279,26 @@ def _block(number: int, rows: int) -> NDArray[np.int64]:
     return np.minimum(np.arange(number * BLOCK, (number + 1) * BLOCK), rows - 1)
 
 
-def _physics(
-    simulation: SimulationModel, faulty: NDArray[np.bool_], clock: float
-) -> Callable[[Tensor], Tensor]:
+def _slow(model: Model, latent: tuple[str, ...]) -> bool:
+    """Whether every row has a structure of its own: then a simulation takes a solve a row."""
+    structural = (effect for effect in model.effects.values() if effect.structural)
+    return any(effect.drivers() & set(latent) for effect in structural)
+
+
+class _Exact(nn.Module):
     """The exact simulation as the physics loss takes it: contexts in, readings out."""
-    layer = simulation.simulator.as_torch()
 
-    def read(contexts: Tensor) -> Tensor:
+    def __init__(
+        self, simulation: SimulationModel, faulty: NDArray[np.bool_], clock: float
+    ) -> None:
+        super().__init__()
+        self._layer = simulation.simulator.as_torch()
+        self._simulation, self._clock = simulation, clock
+        self._faulty = torch.from_numpy(faulty)
+
+    def forward(self, contexts: Tensor) -> Tensor:
         found = contexts.detach().numpy()
-        time = np.full(len(found), clock)
-        zero = torch.from_numpy(simulation.zero(time[:1], found[:1]))
-        readings: Tensor = layer(contexts, time) - zero
-        return torch.where(torch.from_numpy(faulty), 0.0, readings)
-
-    return read
+        time = np.full(len(found), self._clock)
+        zero = torch.from_numpy(self._simulation.zero(time[:1], found[:1]))
+        readings: Tensor = self._layer(contexts, time) - zero
+        return torch.where(self._faulty, 0.0, readings)

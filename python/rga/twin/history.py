@@ -66,7 +66,8 @@ class History:
         level: level of integration.
         calibration_rows: rows that the first calibration used.
         contexts: names of the contexts that were inferred.
-        inferred: float[rows, contexts] in their units, NaN where nothing was inferred.
+        inferred: what the twin inferred at the time, float[rows, contexts] in their units, NaN
+            where nothing was inferred.
         spread: posterior standard deviation of each, the same shape.
         simulated: what the twin simulated at the time, float[rows, sensors], NaN where it did not.
         gaps: squared differences of measured and simulated, float[rows, sensors] [unit squared];

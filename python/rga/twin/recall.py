@@ -11,7 +11,7 @@ from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin.digital_twin import State, follow
 from rga.twin.hardware import Station
-from rga.twin.history import History, Version
+from rga.twin.history import Event, History, Version
 from rga.twin.ledger import Ledger
 from rga.twin.messages import R5, Query, Response, read_message, sha256
 from rga.twin.repository import View
@@ -62,14 +62,22 @@ def log_of(view: View) -> list[Query | Response]:
         ) from error
 
 
+def story_of(view: View) -> list[Query | Response | Event]:
+    """Messages and events in the order in which they passed (see `log_of`)."""
+    messages = iter(log_of(view))
+    return [one if isinstance(one, Event) else next(messages) for one in view.story()]
+
+
 def standing_of(view: View) -> Standing:
     """Where a run stands."""
     kept = view.kept("standing")
     return Standing() if kept is None else Standing.model_validate_json(kept)
 
 
-def ledger_of(view: View, channels: int, measured: int, contexts: int) -> Ledger:
-    """The rows of a run."""
+def ledger_of(
+    view: View, channels: int, measured: int, contexts: int, at_the_time: bool = False
+) -> Ledger:
+    """The rows of a run, with what was inferred and simulated last, or at the time."""
     ledger = Ledger.empty(channels, measured, contexts)
     seen = view.measured()
     rows = len(seen.rows)
@@ -80,7 +88,7 @@ def ledger_of(view: View, channels: int, measured: int, contexts: int) -> Ledger
     for name in ("contexts", "spread"):
         setattr(ledger, name, np.full((rows, contexts), np.nan))
     ledger.simulated = np.full((rows, channels), np.nan)
-    inferred, gaps = view.inferred(), view.gaps()
+    inferred, gaps = view.inferred(at_the_time=at_the_time), view.gaps(at_the_time=at_the_time)
     if len(inferred.rows):
         ledger.contexts[inferred.rows] = inferred.contexts
         ledger.spread[inferred.rows] = inferred.spread
@@ -124,7 +132,13 @@ def history_of(view: View) -> History:
     """What a run left behind so far, or had left behind as of a time."""
     standing, station, model = standing_of(view), station_of(view), given_model(view)
     record = record_of(view)
-    ledger = ledger_of(view, len(station.channels), len(station.measured), len(model.context))
+    ledger = ledger_of(
+        view,
+        len(station.channels),
+        len(station.measured),
+        len(model.context),
+        at_the_time=True,
+    )
     state = replay(view, station.channels)
     latent = [list(model.context).index(name) for name in state.latent]
     stated = [model.sensors[name].noise for name in station.channels]

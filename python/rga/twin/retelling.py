@@ -1,16 +1,18 @@
 """The log of queries and responses in words."""
 
 from collections.abc import Iterator, Sequence
-from itertools import groupby
 
+from rga.twin.history import Event
 from rga.twin.messages import Q1, Q2, Q3, Q4, Q5, R1, R2, R4, Query, Response
 
 Message = Query | Response
 Pair = tuple[Message, Message]
+#: the tasks of the paper that events belong to
+TASKS = {"alarm": "T1 alarm", "recalibration": "T1 recalibration", "novel context": "T2 stored"}
 
 
-def retold(messages: Sequence[Message]) -> Iterator[tuple[int, str, str]]:
-    """Row, kinds and words of each exchange; packets that follow one another share a line.
+def retold(messages: Sequence[Message | Event]) -> Iterator[tuple[int, str, str]]:
+    """Row, kinds and words of each exchange and event; packets in a row share a line.
 
     >>> from rga.twin.messages import Box, Q2, R2
     >>> box = Box(low=(0.0,), high=(1.0,))
@@ -18,17 +20,26 @@ def retold(messages: Sequence[Message]) -> Iterator[tuple[int, str, str]]:
     >>> next(retold(log))
     (0, 'Q2 R2', '9 simulations of version 1 wanted: 2 held, 7 missing')
     """
-    pairs = list(zip(messages[::2], messages[1::2], strict=True))
-    runs: list[list[Pair]] = []
-    for _, group in groupby(pairs, key=lambda pair: isinstance(pair[0], Q5)):
-        for pair in group:
-            if runs and _continues(runs[-1][-1][0], pair[0]):
-                runs[-1].append(pair)
+    runs: list[list[Pair] | Event] = []
+    query: Message | None = None
+    for one in messages:
+        if isinstance(one, Event):
+            runs.append(one)
+        elif query is None:
+            query = one
+        else:
+            last = runs[-1] if runs else None
+            if isinstance(last, list) and _continues(last[-1][0], query):
+                last.append((query, one))
             else:
-                runs.append([pair])
+                runs.append([(query, one)])
+            query = None
     for run in runs:
-        query, response = run[0]
-        yield query.row, f"{query.kind} {response.kind}", _words(run)
+        if isinstance(run, Event):
+            yield run.row, TASKS.get(run.kind, run.kind), run.words
+        else:
+            first, response = run[0]
+            yield first.row, f"{first.kind} {response.kind}", _words(run)
 
 
 def _continues(before: Message, query: Message) -> bool:

@@ -89,12 +89,18 @@ def run(
     settings = settings or Settings()
     digest = model.sha256 or written(model)[1]
     identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
+    if repository is not None and "://" not in repository:
+        raise InputError(
+            f"{repository!r} is no URL of a database",
+            "the repository",
+            "write postgresql://user@host/database, or leave it out",
+        )
     with (
         threadpool_limits(1),
         Repository.open(repository or directory / FILE) as kept,
     ):
         running = Running(model, record, kept.run(identity), settings, seed, progress)
-        if running.stage == "done" and all((directory / name).exists() for name in WRITTEN):
+        if running.stage == "done" and running.is_written(directory):
             return Outcome(running.stored_findings(), running.history())
         while running.stage not in ("report", "done"):
             running.step()
@@ -224,6 +230,13 @@ class Running:
     def stored_findings(self) -> Findings:
         """The same as the repository keeps them, without the account."""
         return Findings.model_validate_json(self._archive.run.findings()[-1].findings)
+
+    def is_written(self, directory: Path) -> bool:
+        """Whether the files in a directory are those of this run, and not of another."""
+        path = directory / "findings.json"
+        if not all((directory / name).exists() for name in WRITTEN):
+            return False
+        return path.read_text(encoding="utf-8") == self.stored_findings().to_json() + "\n"
 
     def history(self) -> History:
         """What the run left behind so far."""

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from rga.inference.settings import TrainingSettings
 
 Level = Literal["A", "B", "C"]
-Count = Annotated[int, Field(ge=1)]
+Count = Annotated[int, Field(ge=1, strict=True)]
 
 
 class Settings(BaseModel):
@@ -38,13 +38,13 @@ class Settings(BaseModel):
     calibration_rows: Count | None = None
     packet: Count | None = None
     window: Annotated[int, Field(ge=2)] = 100
-    z: Annotated[float, Field(gt=0)] = 4.0
+    z: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 4.0
     persistence: tuple[Count, Count] = (4, 6)
     settle: Count | None = None
-    recovered: Annotated[float, Field(gt=1)] = 1.8
-    growth: Annotated[float, Field(gt=1)] = 2.0
-    design_rows: Count = 4096
-    repository_z: Annotated[float, Field(gt=0)] = 4.0
+    recovered: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.8
+    growth: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 2.0
+    design_rows: Annotated[int, Field(ge=128, le=10_000_000)] = 4096
+    repository_z: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 4.0
     distinct: Annotated[float, Field(gt=0)] | None = None
     training: TrainingSettings = TrainingSettings()
 

@@ -18,11 +18,11 @@ from rga.twin.messages import Q1
 from rga.twin.recall import (
     given_model,
     history_of,
-    log_of,
     record_of,
     replay,
     standing_of,
     station_of,
+    story_of,
 )
 from rga.twin.repository import Repository, View
 from rga.twin.retelling import retold
@@ -47,16 +47,13 @@ class Twin:
     @classmethod
     @contextmanager
     def open(cls, place: str | Path) -> Iterator[Self]:
-        """The twin of the latest run in a run's directory, its file, or a database by URL.
+        """The twin of the run last acted on in a run's directory, its file, or a database by URL.
 
         Raises:
             InputError: there is no repository, or nothing has run in it.
         """
         with Repository.open(place, read_only=True) as repository:
-            runs = repository.runs()
-            if not runs:
-                raise InputError("nothing has run here", str(place), "begin with rga run")
-            yield cls(runs[-1], place)
+            yield cls(_latest(repository, place), place)
 
     def as_of(self, *, row: int | None = None, time: float | None = None) -> "Twin":
         """The twin as it stood when the record had reached a row, or a time since its start [s]."""
@@ -90,8 +87,8 @@ class Twin:
         return history_of(self._view)
 
     def log(self) -> list[tuple[int, str, str]]:
-        """Row, kinds and words of each exchange of query and response."""
-        return list(retold(log_of(self._view)))
+        """Row, kinds and words of each exchange of query and response, and of each event."""
+        return list(retold(story_of(self._view)))
 
     def whatif(
         self, settings: Mapping[str, float], add: Mapping[str, Effect] | None = None
@@ -129,17 +126,23 @@ class Twin:
         return float(np.linalg.norm(steps, axis=1).min())
 
 
+def _latest(repository: Repository, place: str | Path) -> View:
+    runs = repository.runs()
+    if not runs:
+        raise InputError("nothing has run here", str(place), "begin with rga run")
+    return max(runs, key=lambda view: view.acknowledged_at)
+
+
 def rollback(place: str | Path, version: int) -> Twin:
     """Put an earlier model version in force again: a query Q1, and the twin's response.
 
     Raises:
         InputError: there is no such version, or the repository is in use.
     """
+    with Repository.open(place, read_only=True) as repository:
+        identity = _latest(repository, place).identity
     with Repository.open(place) as repository:
-        views = repository.runs()
-        if not views:
-            raise InputError("nothing has run here", str(place), "begin with rga run")
-        kept = repository.run(views[-1].identity)
+        kept = repository.run(identity)
         station, given = station_of(kept), given_model(kept)
         digital = DigitalTwin(given, station)
         digital.state = replay(kept, station.channels)

@@ -49,9 +49,15 @@ class Source:
             return connection.execute(statement).one_or_none()
 
     def rows(
-        self, table: Table, names: Sequence[str], first: int, end: int | None, version: int | None
+        self,
+        table: Table,
+        names: Sequence[str],
+        first: int,
+        end: int | None,
+        version: int | None,
+        at_the_time: bool = False,
     ) -> tuple[Rows, list[FloatArray], Sequence[Row[Any]]]:
-        """Rows from `first` to before `end` as they were stored last.
+        """Rows from `first` to before `end` as they were stored last, or first (`at_the_time`).
 
         Returns:
             The rows int[n], an array float[n, width] for each name, and the packet of each row.
@@ -67,9 +73,9 @@ class Source:
             np.arange(packet.first_row, packet.first_row + packet.length) for packet in packets
         ]
         stored = np.concatenate(spans) if spans else np.zeros(0, dtype=np.int64)
-        rows, place = np.unique(stored[::-1], return_index=True)
+        rows, place = np.unique(stored if at_the_time else stored[::-1], return_index=True)
         inside = (rows >= first) & (rows < (np.inf if end is None else end))
-        chosen = len(stored) - 1 - place[inside]
+        chosen = place[inside] if at_the_time else len(stored) - 1 - place[inside]
         owner = np.repeat(np.arange(len(packets)), [packet.length for packet in packets])[chosen]
         arrays = [joined(packets, name)[chosen] for name in names]
         return rows[inside], arrays, [packets[index] for index in owner]

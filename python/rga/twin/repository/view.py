@@ -72,6 +72,12 @@ class View:
         return self._source.scalar(tables.step, func.max(tables.step.c.number)) or 0
 
     @property
+    def acknowledged_at(self) -> str:
+        """Wall clock at the last step, UTC, as ISO 8601 text; that of the beginning before it."""
+        last = self._source.scalar(tables.step, func.max(tables.step.c.written_at))
+        return str(last or self.begun_at.isoformat())
+
+    @property
     def row(self) -> int:
         """Last row of the record that a step was about; -1 where there is none."""
         row = self._source.scalar(tables.step, func.max(tables.step.c.row))
@@ -85,18 +91,32 @@ class View:
         return Measured(rows, time.reshape(-1), readings, contexts)
 
     def inferred(
-        self, first: int = 0, end: int | None = None, version: int | None = None
+        self,
+        first: int = 0,
+        end: int | None = None,
+        version: int | None = None,
+        at_the_time: bool = False,
     ) -> Inferred:
-        """Inferred contexts of rows."""
+        """Inferred contexts of rows: what was stored last, or first (`at_the_time`)."""
         names = ("contexts", "spread")
-        rows, arrays, packets = self._source.rows(tables.inferred, names, first, end, version)
+        rows, arrays, packets = self._source.rows(
+            tables.inferred, names, first, end, version, at_the_time
+        )
         contexts, spread = arrays
         return Inferred(rows, contexts, spread, _versions(packets))
 
-    def gaps(self, first: int = 0, end: int | None = None, version: int | None = None) -> Gaps:
-        """What was simulated for rows, and their gaps."""
+    def gaps(
+        self,
+        first: int = 0,
+        end: int | None = None,
+        version: int | None = None,
+        at_the_time: bool = False,
+    ) -> Gaps:
+        """What was simulated for rows, and their gaps: as stored last, or first (`at_the_time`)."""
         names = ("simulated", "gaps")
-        rows, arrays, packets = self._source.rows(tables.gap, names, first, end, version)
+        rows, arrays, packets = self._source.rows(
+            tables.gap, names, first, end, version, at_the_time
+        )
         simulated, gaps = arrays
         return Gaps(rows, simulated, gaps, _versions(packets))
 
@@ -184,10 +204,21 @@ class View:
             if kind in (None, entry.kind)
         )
 
+    def story(self) -> tuple[Message | Event, ...]:
+        """Messages and events together, in the order in which they were stored."""
+        told = zip(self._source.entries(tables.message), self.messages(), strict=True)
+        happened = zip(self._source.entries(tables.event), self.events(), strict=True)
+        both: list[tuple[Row[Any], Message | Event]] = [*told, *happened]
+        return tuple(what for entry, what in sorted(both, key=lambda one: _place(one[0])))
+
     def kept(self, name: str) -> bytes | None:
         """What was kept last under a name; None where nothing was."""
         entry = self._source.last(tables.kept, tables.kept.c.name == name)
         return None if entry is None else bytes(entry.data)
+
+
+def _place(entry: Row[Any]) -> tuple[int, int]:
+    return entry.step, entry.ordinal
 
 
 def _conditions(version: int | None, origin: Origin | None) -> list[ColumnElement[bool]]:
