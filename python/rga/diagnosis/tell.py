@@ -328,7 +328,7 @@ def _onset_interval(
         return None
     moments, chances = onset_chances(found.problem, found.base, found.fit, number)
     below = np.cumsum(chances)
-    # What is seen first on a row began after the row before it, which may lie a held-out block back.
+    # What shows first on a row began after the row before it, maybe a held-out block back.
     first = moments[max(0, int(np.searchsorted(below, 0.05)) - 1)]
     last = moments[min(int(np.searchsorted(below, 0.95)), len(moments) - 1)]
     early, late = (record.time_label(float(moment) - record.origin) for moment in (first, last))
