@@ -155,6 +155,12 @@ class _Training:
             optimiser.step()
             if progress is not None:
                 progress((step + 1) / steps)
+        if not all(torch.isfinite(weight).all() for weight in modules.parameters()):
+            raise InputError(
+                "the training of the networks diverged",
+                "settings of the training",
+                "take smaller weights or learning rates",
+            )
         self.network.freeze()
         return self.network
 

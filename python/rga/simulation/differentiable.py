@@ -69,5 +69,6 @@ class _Simulation(torch.autograd.Function):
     @staticmethod
     @torch.autograd.function.once_differentiable
     def backward(ctx: Any, *gradients: Tensor) -> tuple[Tensor, None, None]:
-        jacobian = torch.from_numpy(ctx.simulator.jacobian(ctx.table))
+        # A faulty sensor says nothing; its derivative must not spoil the others' sum.
+        jacobian = torch.from_numpy(np.nan_to_num(ctx.simulator.jacobian(ctx.table)))
         return torch.einsum("ts,tsc->tc", gradients[0].double(), jacobian), None, None
