@@ -20,7 +20,6 @@ from rga.simulation import Simulator
 MOST_ROWS = 800
 LEAST_ROWS = 12
 FEW_ROWS = 60
-ZERO_ROWS = 8
 
 
 @dataclass(frozen=True)
@@ -98,10 +97,7 @@ def _data(model: Model, record: Record) -> Data:
     # A row whose context is missing cannot be simulated: its readings are left aside.
     told = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
     complete = np.all(told, axis=0) if told else np.ones(len(record.time), dtype=bool)
-    leading = np.zeros(0, dtype=np.int64)
-    if record.zero is not None:
-        first, last = np.searchsorted(record.time, record.zero)
-        leading = np.unique(np.linspace(first, max(first, last - 1), ZERO_ROWS).astype(int))
+    leading = record.zero_rows()
     return Data(
         sensors=tuple(record.sensors),
         columns=[order[name] for name in record.sensors],

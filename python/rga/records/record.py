@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rga.model.effect import seconds
 
 FloatArray = NDArray[np.float64]
+ZERO_ROWS = 8
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,13 @@ class Record:
             whole_ms = moment.microsecond and moment.microsecond % 1000 == 0
             return moment.isoformat(timespec="milliseconds" if whole_ms else "auto")
         return round(self.start + float(elapsed), 9)
+
+    def zero_rows(self) -> NDArray[np.int64]:
+        """Some of the rows whose mean was taken off every channel; none where nothing was."""
+        if self.zero is None:
+            return np.zeros(0, dtype=np.int64)
+        first, end = np.searchsorted(self.time, self.zero)
+        return np.unique(np.linspace(first, max(first, end - 1), ZERO_ROWS).astype(np.int64))
 
     def rows(self, chosen: NDArray[np.bool_] | slice) -> "Record":
         """The chosen rows; time still counts from the first row of the file."""

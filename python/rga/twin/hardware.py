@@ -12,8 +12,6 @@ from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 
-ZERO_ROWS = 8
-
 
 @dataclass(frozen=True)
 class Packet:
@@ -87,10 +85,7 @@ class HardwareInterface:
     def __init__(self, record: Record, model: Model) -> None:
         self._record = record
         measured = tuple(name for name in model.context if name in record.contexts)
-        leading = np.zeros(0, dtype=np.int64)
-        if record.zero is not None:
-            first, end = np.searchsorted(record.time, record.zero)
-            leading = np.unique(np.linspace(first, max(first, end - 1), ZERO_ROWS).astype(int))
+        leading = record.zero_rows()
         zero = {name: record.contexts[name][leading] for name in measured}
         zero["time"] = record.origin + record.time[leading]
         self.station = Station(
