@@ -181,7 +181,7 @@ def _everywhere(full: Data, part: Problem) -> Data:
     whole = replace(full, belief=full.belief.with_values(changes))
     for _ in range(ROUNDS if belief.latent else 0):
         inferred = relaxed(pose(part.simulator, whole, factors=part.factors)).belief.table
-        latent = {name: inferred[name] for name in belief.latent}
+        latent = {name: column for name, column in inferred.items() if name in belief.latent}
         whole = replace(whole, belief=whole.belief.with_values(latent))
     return whole
 

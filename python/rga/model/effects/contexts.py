@@ -66,8 +66,9 @@ class ClockLag(Effect):
         if self.sensor is not None:
             return
         clock = contexts["time"]
-        for name in contexts.keys() - {"time"}:
-            contexts[name] = np.interp(clock - values["time"], clock, contexts[name])
+        for name, column in contexts.items():
+            if name != "time":
+                contexts[name] = np.interp(clock - values["time"], clock, column)
 
     def change_readings(self, readings: Readings, values: Values) -> None:
         if self.sensor is not None:

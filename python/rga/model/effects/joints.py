@@ -78,7 +78,7 @@ class RigidEndZone(Effect):
 def _flexural_stiffness(model: Model, groups: list[str]) -> float:
     """Mean EI/L of the truss members of some groups [N m]; 0 where one has no second moment."""
     found = []
-    for name in {name for group in groups for name in model.groups[group]}:
+    for name in dict.fromkeys(name for group in groups for name in model.groups[group]):
         member, section = model.members[name], model.sections[model.members[name].section]
         ends = [np.array(model.nodes[node]) for node in member.nodes]
         if member.kind == "truss":
