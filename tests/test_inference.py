@@ -13,6 +13,7 @@ from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, 
 from rga.inference.design import Design, design
 from rga.inference.law import follow_law
 from rga.inference.networks import Encoder
+from rga.inference.polish import polish_line
 from rga.inference.posterior import covering_factor, laplace_spread
 from rga.inference.reduced import pretrain
 from rga.inference.reversal import reverse_gradient
@@ -344,6 +345,32 @@ def test_nothing_known_leaves_the_prior() -> None:
         value, spread = follow_law(time, np.full(5, 40.0), blind, variable)
         assert value == pytest.approx(np.zeros(5))
         assert spread == pytest.approx(blind)
+
+
+def test_a_line_is_polished_though_the_model_is_wrong() -> None:
+    """Sensors that are off by 10 % for as long as the load is there; a start in another valley."""
+    time = np.linspace(0.0, 40.0, 200)
+    places = np.linspace(3.0, 37.0, 12)
+    wagons = np.arange(0.0, 30.0, 6.0)
+
+    def influence(position: Any) -> Any:
+        axles = np.asarray(position)[:, None, None] - wagons
+        return 100 * np.exp(-(((axles - places[:, None]) / 3.0) ** 2)).sum(2)
+
+    covered = []
+    for seed in range(40):
+        draw = np.random.default_rng(seed)
+        truth = -20.0 + 2.0 * time
+        seen = influence(truth) * (1 + 0.1 * draw.standard_normal(12))
+        seen += draw.standard_normal(seen.shape)
+        start = truth + draw.uniform(-6, 6) + draw.uniform(-0.2, 0.2) * (time - 20)
+        found, covariance = polish_line(
+            influence, seen, np.ones(12), time, start, (-200.0, 200.0), (-5.0, 5.0)
+        )
+        off = (found - [truth.mean(), 2.0]) / np.sqrt(np.diag(covariance))
+        assert abs(found[0] - truth.mean()) < 1.0
+        covered.append(np.abs(off) < norm.ppf(0.95))
+    assert (np.mean(covered, axis=0) >= 0.75).all()
 
 
 def test_weak_estimates_of_a_constant_add_up() -> None:

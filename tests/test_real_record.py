@@ -56,6 +56,16 @@ def test_the_floor_and_not_a_bearing(findings: rga.Findings) -> None:
     assert all(c.separated_by for c in structural)
 
 
+def test_half_a_crossing_says_the_same() -> None:
+    """What hangs on the train's place must not be taken for something that begins on the way."""
+    model = rga.load_model(EXAMPLE / "model.json")
+    findings = rga.diagnose(model, rga.load_record(RECORD, model).rows(slice(0, 5548)))
+    kinds = {cause.effect["kind"] for cause in findings.causes} - {"sensor_fault"}
+    assert kinds
+    assert kinds <= FLOOR
+    assert any("onsets were not looked for" in warning for warning in findings.warnings)
+
+
 def test_explanations_are_judged_on_unseen_channels(findings: rga.Findings) -> None:
     by_kinds = {tuple(e["kind"] for e in one.effects): one for one in findings.explanations}
     nothing = by_kinds[()]

@@ -54,6 +54,11 @@ class Belief:
         return bool(self.lines or self.latent)
 
     @property
+    def passing(self) -> tuple[str, ...]:
+        """Contexts that go through their range once: what hangs on them looks like an onset."""
+        return tuple(name for name, (_, slope) in self.lines.items() if slope > 0)
+
+    @property
     def middle(self) -> float:
         """Time about which lines are written [s]."""
         return float(self.table["time"].mean())

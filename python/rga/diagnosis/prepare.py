@@ -72,6 +72,11 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     warnings = list(record.warnings)
     if chosen.sum() < FEW_ROWS:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
+    if passing := data.belief.passing:
+        warnings.append(
+            f"onsets were not looked for: {', '.join(passing)} passes once, and what depends on it "
+            "cannot be told from what begins on the way"
+        )
     silent = int((~data.observed.any(1)).sum())
     if silent:
         warnings.append(f"{silent} rows without a context or without any reading were left aside")

@@ -52,7 +52,8 @@ def screen(
         problem: gives residual and covariance.
         simulator: the simulation to which the candidates are added.
         candidates: hypotheses without onset.
-        onsets: whether to try onsets too, at moments spread over the record.
+        onsets: whether to try onsets too, at moments spread over the record; not where time and
+            the place of a load are one.
         progress: told the share that is done.
     """
     data = problem.data
@@ -60,6 +61,7 @@ def screen(
     base = data.read(simulator, response)
     residual = problem.residual(base)
     weighted = problem.covariance.inverse_times(residual)
+    onsets = onsets and not data.belief.passing
     best: dict[int, Prospect] = {}
     waiting: list[tuple[int, tuple[float, ...], float | None, FloatArray]] = []
 

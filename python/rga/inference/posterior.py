@@ -10,6 +10,8 @@ from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 LEVEL = 0.9
+#: a channel further off than this, in spreads of its row, is broken and says nothing of the model
+BROKEN = 10.0
 
 
 def laplace_spread(
@@ -93,3 +95,29 @@ def covering_factor(errors: FloatArray, spreads: FloatArray, level: float = LEVE
         raise InputError(f"{rows} rows are too few", "calibration of intervals", remedy)
     ratio = np.sort(np.abs(errors) / spreads, axis=0)[rank - 1]
     return np.asarray(ratio / norm.ppf(0.5 + level / 2))
+
+
+def birge_ratio(gaps: FloatArray, noise: FloatArray) -> FloatArray:
+    """Factor on the spreads of a row whose gap its noise does not explain (Birge, 1932).
+
+    A model that is wrong pulls its contexts along; how far, the gap that stays tells. One broken
+    channel is not held against a row, as the networks learned to pass it over.
+
+    Args:
+        gaps: squared differences of measured and simulated, float[rows, channels], NaN where
+            missing.
+        noise: standard deviation of each channel's noise, NaN for one that is not looked at.
+
+    Returns:
+        float[rows], 1 or more.
+
+    >>> birge_ratio(np.array([[1.0, 0.5], [4.0, 4.0], [np.nan, np.nan]]), np.ones(2))
+    array([1., 2., 1.])
+    """
+    scaled = gaps / noise**2
+    rows = np.isfinite(scaled).any(axis=1)
+    own = scaled[rows]
+    usual = np.maximum(np.nanmedian(own, axis=1, keepdims=True), 1.0)
+    ratio = np.ones(len(gaps))
+    ratio[rows] = np.sqrt(np.maximum(np.nanmean(np.minimum(own, BROKEN**2 * usual), axis=1), 1.0))
+    return ratio

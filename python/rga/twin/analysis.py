@@ -4,6 +4,7 @@ It reaches the twin and the repository through queries alone. Each public method
 step of a run.
 """
 
+from bisect import bisect_left
 from collections.abc import Callable
 from typing import Any
 
@@ -223,9 +224,7 @@ class RealityGapAnalysis:
     def _change_version(self, **change: Any) -> None:
         """Q1 with an update or a rollback; an update that makes the gap rise is taken back."""
         standing, calibration = self.standing, self._calibration
-        # Rows before the alarm may stand under another structure than the one that is in force now.
-        since = standing.row - 2 * self._pace.settle if standing.alarm is None else standing.alarm
-        recent = (max(0, since), standing.row)
+        recent = (self._under_the_same(change.get("effects", {})), standing.row)
         before, old = calibration.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.ledger.copy()
         answer = self._ask_twin(**change)
@@ -236,6 +235,7 @@ class RealityGapAnalysis:
         self._design()
         calibration.learn([recent], afresh=True)
         calibration.follow(*recent)
+        standing.changed = standing.row
         after = calibration.gap(*recent)
         words = f"version {answer.version} of the model is in force"
         self._event("version", standing.row - 1, words, before=before, after=after)
@@ -246,6 +246,16 @@ class RealityGapAnalysis:
             words = f"the gap rose: version {old} is in force again"
             self._event("rollback", standing.row - 1, words, before=after, after=before)
         self._begin_again()
+
+    def _under_the_same(self, effects: Effects) -> int:
+        """First of the latest rows that stand under the structure that is in force now."""
+        standing = self.standing
+        if standing.alarm is not None:
+            return standing.alarm
+        rows = range(standing.row)
+        onsets = [one["onset"] for one in effects.values() if one.get("onset") is not None]
+        begun = [bisect_left(rows, onset, key=self._label) for onset in onsets]
+        return min(max([standing.changed, *begun]), max(0, standing.row - self._pace.settle))
 
     def _design(self) -> None:
         """The design phase of the version in force: simulations over the ranges of the contexts."""

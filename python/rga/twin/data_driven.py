@@ -11,7 +11,8 @@ from torch import Tensor, nn
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
 from rga.inference.candidates import Candidates, joined
 from rga.inference.law import follow_law
-from rga.inference.posterior import covering_factor, laplace_spread
+from rga.inference.polish import polish_line
+from rga.inference.posterior import birge_ratio, covering_factor, laplace_spread
 from rga.inference.ways import EitherWay
 from rga.model import ContextVariable, Model
 from rga.model.parameter import FloatArray
@@ -136,24 +137,29 @@ class DataDrivenModel:
             float[rows - first, latent] each.
         """
         moving = [number for number, one in enumerate(laws) if one.law != "independent"]
+        alone = [number for number, one in enumerate(laws) if one.law == "independent"]
         several = self._several(0 if moving else first, readings, contexts)
-        own = several.rows(slice(first if moving else 0, None))
-        value, spread = own.best()
-        near = self._laplace(first, readings, contexts, value, time)
-        spread = np.maximum(spread, near) * self._factor
-        either = several.reversed if self._network.ways == 2 else None
-        for number in moving:
-            line = follow_law(
-                time,
-                several.value[:, :, number],
-                several.spread[:, :, number],
-                laws[number],
-                several.share,
-                either,
-            )
-            if laws[number].law == "linear":
-                line = self._arrived(readings, contexts, time, number, laws[number], line)
-            value[:, number], spread[:, number] = (part[first:] for part in line)
+        value, spread = several.rows(slice(first if moving else 0, None)).best()
+        if moving:
+            either = several.reversed if self._network.ways == 2 else None
+            likely = contexts.copy()
+            likely[:, self._network.variables.latent_columns] = several.best()[0]
+            for number in moving:
+                line = follow_law(
+                    time,
+                    several.value[:, :, number],
+                    several.spread[:, :, number],
+                    laws[number],
+                    several.share,
+                    either,
+                )
+                if laws[number].law == "linear":
+                    line = self._arrived(readings, likely, time, number, laws[number], line)
+                value[:, number], spread[:, number] = (part[first:] for part in line)
+        if alone:
+            near = self._laplace(first, readings, contexts, value, time)
+            wider = np.maximum(spread, near) * self._factor
+            spread[:, alone] = wider[:, alone]
         return value, spread
 
     def to_bytes(self) -> bytes:
@@ -204,7 +210,7 @@ class DataDrivenModel:
         variable: ContextVariable,
         line: tuple[FloatArray, FloatArray],
     ) -> tuple[FloatArray, FloatArray]:
-        """The line of a latent context, or that it stays at an end of its range.
+        """The line of a context where the simulation follows it best, or an end of its range.
 
         Rows without load tell a network nothing of where a train is, and a line through nothing
         may well stand on the bridge. What the rows show decides.
@@ -214,15 +220,29 @@ class DataDrivenModel:
         seen = np.where(self._faulty, np.nan, readings)[chosen]
         noise = self._noise[: seen.shape[1]]
         low, high = variable.range
-        absent = np.full(len(time), (high - low) / np.sqrt(12))
-        lines = [line, *((np.full(len(time), end), absent) for end in (low, high))]
-        costs = []
-        for value, _ in lines:
+
+        def read(value: FloatArray) -> FloatArray:
             table = contexts[chosen].copy()
-            table[:, column] = value[chosen]
-            off = (seen - self._simulation.readings(time[chosen], table)) / noise
-            costs.append(float(np.nanmean(np.log1p(off**2))))
-        return lines[int(np.argmin(costs))]
+            table[:, column] = value
+            return self._simulation.readings(time[chosen], table)
+
+        unknown = np.full(len(time), (high - low) / np.sqrt(12))
+        lines = [(np.full(len(time), end), unknown) for end in variable.range]
+        lines.append(line)
+        if variable.rate is not None and len(chosen) > 2:
+            found, covariance = polish_line(
+                read, seen, noise, time[chosen], line[0][chosen], variable.range, variable.rate
+            )
+            basis = np.column_stack([np.ones(len(time)), time - time[chosen].mean()])
+            spread = np.sqrt(np.einsum("ni,ij,nj->n", basis, covariance, basis))
+            lines.append((basis @ found, spread))
+        # A line has two numbers to fit with: it must be worth more than that (Schwarz, 1978).
+        costs = [0.0, 0.0, *[np.log(np.isfinite(seen).sum())] * (len(lines) - 2)]
+        for number, (value, _) in enumerate(lines):
+            off = (seen - read(value[chosen])) / noise
+            costs[number] += float(np.nansum(np.log1p(off**2)))
+        value, spread = lines[int(np.argmin(costs))]
+        return value, np.minimum(spread, unknown)
 
     def _laplace(
         self,
@@ -232,25 +252,29 @@ class DataDrivenModel:
         value: FloatArray,
         clock: FloatArray,
     ) -> FloatArray:
-        """Spread of rows from `first` on that the sensitivities of the sensors leave."""
+        """Spread of rows from `first` on that the sensors leave, by their sensitivity and gap."""
         variables = self._network.variables
+        noise = self._noise[: readings.shape[1]]
         measured = contexts[:, variables.measured_columns]
         seen = np.isfinite(np.where(self._faulty, np.nan, readings))
         whole = np.concatenate([np.zeros((first, value.shape[1])), value])
         parts = []
         for number in range(first // BLOCK, -(-len(readings) // BLOCK)):
             rows = np.maximum(_block(number, len(readings)), first)
-            parts.append(
-                laplace_spread(
-                    self._simulation.simulator,
-                    variables,
-                    measured[rows],
-                    whole[rows],
-                    seen[rows],
-                    self._noise,
-                    clock[rows],
-                )
+            spread = laplace_spread(
+                self._simulation.simulator,
+                variables,
+                measured[rows],
+                whole[rows],
+                seen[rows],
+                self._noise,
+                clock[rows],
             )
+            simulated = self._simulation.readings(
+                clock[rows], variables.together(measured[rows], whole[rows])
+            )
+            gaps = np.where(seen[rows], (readings[rows] - simulated) ** 2, np.nan)
+            parts.append(spread * birge_ratio(gaps, noise)[:, None])
         lead = first % BLOCK
         return np.concatenate(parts)[lead : lead + len(value)]
 

@@ -22,6 +22,7 @@ class Standing(BaseModel):
         share: by which the model was off on the rows of the first calibration [-].
         distinct: least distance of a novel context, in shares of the ranges.
         diagnosed: rows of the last diagnosis.
+        changed: rows when the version last changed.
         doubted: whether a recalibration did not bring the gap down and nothing has explained it.
     """
 
@@ -34,4 +35,5 @@ class Standing(BaseModel):
     share: float = 0.0
     distinct: float = 0.0
     diagnosed: int | None = None
+    changed: int = 0
     doubted: bool = False
