@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "Condensed",
     "GaussianWindow",
     "InvalidInput",
     "NotConverged",
+    "Refactored",
+    "UnstableSample",
     "UnstableStructure",
     "respond",
     "slide",
@@ -26,6 +29,14 @@ class UnstableStructure(ArithmeticError):
     """Its direction: 0..5 for ux uy uz rx ry rz."""
     direction: list[float]
     """The motion of that node, six numbers of norm 1."""
+    row: int
+    """Of `Refactored`: the row of the sample."""
+
+class UnstableSample(ArithmeticError):
+    """The stiffnesses of a sample leave no stable structure."""
+
+    row: int
+    """The row of the sample."""
 
 class NotConverged(ArithmeticError):
     """Friction forces did not settle."""
@@ -48,6 +59,57 @@ def slide(
     mu: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Coulomb friction forces [rows, bearings] of bearings through time."""
+
+@final
+class Condensed:
+    """Samples of a structure of which few stiffnesses vary; `help(Condensed)` tells the arrays."""
+
+    def __new__(
+        cls,
+        loaded: NDArray[np.float64],
+        driven: NDArray[np.float64],
+        stiffness: NDArray[np.float64],
+        influence: NDArray[np.float64],
+    ) -> Self: ...
+    def respond(
+        self,
+        coefficients: NDArray[np.float64],
+        changes: NDArray[np.float64],
+        threads: int = 1,
+        out: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """Outputs [n, o] of n samples."""
+
+    def differentiate(
+        self,
+        coefficients: NDArray[np.float64],
+        changes: NDArray[np.float64],
+        count: int,
+        loads: NDArray[np.int64],
+        coefficient_rates: NDArray[np.float64],
+        terms: NDArray[np.int64],
+        change_rates: NDArray[np.float64],
+        threads: int = 1,
+    ) -> NDArray[np.float64]:
+        """Derivatives [n, count, o] along directions."""
+
+@final
+class Refactored:
+    """Samples of a structure of which every stiffness may vary; `help(Refactored)` tells more."""
+
+    def __new__(
+        cls,
+        structure: dict[str, NDArray[Any]],
+        loads: dict[str, NDArray[Any]],
+        outputs: dict[str, NDArray[Any]],
+    ) -> Self: ...
+    def respond(
+        self,
+        factors: NDArray[np.float64],
+        coefficients: NDArray[np.float64],
+        threads: int = 1,
+    ) -> NDArray[np.float64]:
+        """Outputs [n, outputs] of n samples; 0 as a factor removes a member or spring."""
 
 @final
 class GaussianWindow:

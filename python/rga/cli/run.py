@@ -1,5 +1,7 @@
 """`rga run`: the main job."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -63,7 +65,7 @@ def run(
     from rga.twin import run as run_twin
 
     quiet = json == "-"
-    with shown_progress() as progress:
+    with shown_progress() as progress, _interruption_told():
         outcome = run_twin(
             structure,
             measured,
@@ -79,6 +81,15 @@ def run(
     if not quiet:
         typer.echo(outcome.findings.sentence())
         typer.echo(f"The report is {output / 'report.html'}.")
+
+
+@contextmanager
+def _interruption_told() -> Iterator[None]:
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo("\nInterrupted; the same command goes on where the run stands.", err=True)
+        raise
 
 
 class _News:

@@ -11,6 +11,8 @@ from rga.model.parameter import FloatArray
 NEAR, SCANNED = 0.025, 11
 #: rows with less than this share of the greatest change show no load
 LOADED = 0.05
+#: sensors that are at least taken to be left to disagree, beside two that set the line
+FEWEST = 0.1
 #: passes that measure anew how far each sensor is off, and steps of a pass
 PASSES, STEPS = 3, 15
 
@@ -82,10 +84,15 @@ def polish_line(
         found = fit.x
     # least_squares gives derivatives as its loss weighs them, and residuals as they are.
     weighed = fit.fun * (1.0 + fit.fun**2) ** 0.25
-    pull = np.einsum("rsp,rs->sp", fit.jac.reshape(*seen.shape, 2), weighed.reshape(seen.shape))
+    jacobian = fit.jac.reshape(*seen.shape, 2)
+    pull = np.einsum("rsp,rs->sp", jacobian, weighed.reshape(seen.shape))
     normal = fit.jac.T @ fit.jac + np.diag(12.0 / width**2)
     inverse = np.linalg.inv(normal)
-    covariance = inverse @ (pull.T @ pull + normal) @ inverse
+    # Sensors that hardly see the load yet do not count: what is left after two are used up.
+    leverage = np.einsum("rsp,pq,rsq->s", jacobian, inverse, jacobian)
+    seeing = leverage.sum() ** 2 / max((leverage**2).sum(), 1e-300)
+    few = seeing / max(seeing - 2.0, FEWEST)
+    covariance = inverse @ (few * pull.T @ pull + normal) @ inverse
     per_time = np.array([1.0, 1.0 / half])
     return found * per_time, covariance * np.outer(per_time, per_time)
 

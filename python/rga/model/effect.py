@@ -64,8 +64,8 @@ class Effect(BaseModel):
     @field_validator("onset", "end")
     @classmethod
     def _a_time(cls, moment: float | str | None) -> float | str | None:
-        if moment is not None and not np.isfinite(seconds(moment)):
-            raise ValueError(f"{moment!r} is no time: give seconds or ISO 8601")
+        if moment is not None:
+            check_moment(moment)
         return moment
 
     @model_validator(mode="after")
@@ -179,6 +179,16 @@ def blend(value: FloatArray, neutral: float, weight: FloatArray) -> FloatArray:
         with np.errstate(divide="ignore"):
             return value / weight
     return neutral + weight * (value - neutral)
+
+
+def check_moment(moment: float | str) -> None:
+    """ValueError where this is no time that `seconds` reads."""
+    try:
+        known = bool(np.isfinite(seconds(moment)))
+    except (ValueError, OverflowError):
+        known = False
+    if not known:
+        raise ValueError(f"{moment!r} is no time: give seconds or ISO 8601")
 
 
 def seconds(moment: float | str) -> float:

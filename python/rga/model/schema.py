@@ -16,7 +16,7 @@ from pydantic import (
 )
 
 from rga.errors import InputError
-from rga.model.effect import Effect
+from rga.model.effect import Effect, check_moment
 from rga.model.parameter import Number
 from rga.model.units import UNITS
 
@@ -151,6 +151,15 @@ class Sensor(Part):
     noise: Positive | None = None
     groups: list[str] = []
 
+    @field_validator("zero")
+    @classmethod
+    def _times(
+        cls, zero: tuple[float | str, float | str] | None
+    ) -> tuple[float | str, float | str] | None:
+        for moment in zero or ():
+            check_moment(moment)
+        return zero
+
     @model_validator(mode="after")
     def _complete(self) -> "Sensor":
         if self.unit not in UNITS[self.kind]:
@@ -219,8 +228,9 @@ class Model(Part):
         for name, support in self.supports.items():
             self._known("nodes", support.node, f"supports.{name}.node")
         for number, spring in enumerate(self.springs):
-            for node in filter(None, (spring.node, spring.to)):
-                self._known("nodes", node, f"springs[{number}]")
+            for end in (spring.node, spring.to):
+                if end is not None:
+                    self._known("nodes", end, f"springs[{number}]")
         for number, tie in enumerate(self.ties):
             for node in tie.nodes:
                 self._known("nodes", node, f"ties[{number}]")
@@ -231,8 +241,9 @@ class Model(Part):
         for name, sensor in self.sensors.items():
             if sensor.member is not None:
                 self._known("members", sensor.member, f"sensors.{name}.member")
-            for node in filter(None, (sensor.node, sensor.relative_to)):
-                self._known("nodes", node, f"sensors.{name}")
+            for place in (sensor.node, sensor.relative_to):
+                if place is not None:
+                    self._known("nodes", place, f"sensors.{name}")
         for name, effect in self.effects.items():
             self.check_effect(effect, f"effects.{name}")
         return self
@@ -257,6 +268,8 @@ class Model(Part):
             named = getattr(effect, field)
             if named is None or mark.of not in tables:
                 continue
+            if not named:
+                raise ValueError(f"{where}.{field}: names no {mark.of}; name one of the model")
             for one in [named] if isinstance(named, str) else named:
                 if one not in tables[mark.of]:
                     raise ValueError(f"{where}.{field}: there is no {mark.of} {one!r} in the model")
@@ -301,7 +314,7 @@ def read_effect(effect: Any, name: str) -> Effect:
     if isinstance(effect, Effect):
         return effect
     kind = effect.get("kind") if isinstance(effect, dict) else None
-    if kind not in Effect.vocabulary:
+    if not isinstance(kind, str) or kind not in Effect.vocabulary:
         raise ValueError(
             f"effects.{name}.kind: {kind!r} is no kind of effect; known are "
             + ", ".join(sorted(Effect.vocabulary))

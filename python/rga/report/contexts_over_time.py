@@ -77,6 +77,12 @@ def _panel(axes: Axes, history: History, column: int, time: TimeAxis) -> None:
     if ends is not None:
         axes.axhspan(*ends, color=FAINT, alpha=0.4, lw=0, zorder=0)
     low, high = values - Z90 * spread, values + Z90 * spread
+    if ends is not None:
+        # What the range rules out is no part of an interval, unless the value itself is outside.
+        low, high = (
+            np.maximum(low, np.minimum(ends[0], values)),
+            np.minimum(high, np.maximum(ends[1], values)),
+        )
     if _smooth(values):
         rows = thinned(values, MOST_POINTS)
         axes.fill_between(

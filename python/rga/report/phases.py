@@ -14,12 +14,12 @@ from rga.report.labels import marker_offset, marker_row, place_labels
 from rga.report.places import Spot, spots
 from rga.report.projection import View, views
 from rga.report.quantities import number
-from rga.report.run_gap import Phase, mean, phases, standardised
+from rga.report.run_gap import Phase, mean, phases, standardised, usual
 from rga.report.svg import INK, STEEL, inline, label, style
 from rga.twin.history import History
 
 WIDTH, COLUMNS = 10.0, 2
-TITLE, BELOW, ABOVE, KEY = 0.24, 0.6, 0.34, 0.7  # inches
+TITLE, BELOW, ABOVE, KEY = 0.24, 0.6, 0.55, 0.7  # inches
 #: sensors that are named in each phase, if their gap is worth it
 NAMED, WORTH_NAMING = 3, 3.0
 
@@ -78,7 +78,7 @@ def draw_phases(history: History) -> Markup | None:
 
 def _title(phase: Phase, gaps: FloatArray) -> str:
     rows = phase.last - phase.first
-    gap = number(float(mean(gaps[phase.first : phase.last])), 2)
+    gap = number(usual(mean(gaps[phase.first : phase.last], axis=1)), 2)
     return f"{phase.title}: gap {gap} over {rows} row{'s' if rows > 1 else ''}"
 
 

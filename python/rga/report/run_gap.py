@@ -12,6 +12,8 @@ from rga.twin.history import Event, History
 #: events after which the twin simulates otherwise than before
 CHANGES = ("recalibration", "version", "rollback")
 MOST_PHASES = 6
+#: rows below which a phase shows nothing
+LEAST = 3
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,12 @@ def mean(values: FloatArray, axis: int | None = None) -> FloatArray:
     count = finite.sum(axis=axis)
     total = np.where(finite, values, 0.0).sum(axis=axis)
     return np.asarray(np.where(count > 0, total / np.maximum(count, 1), np.nan))
+
+
+def usual(by_row: FloatArray) -> float:
+    """Median of what is finite, as the events tell a gap; NaN where nothing is."""
+    known = by_row[np.isfinite(by_row)]
+    return float(np.median(known)) if len(known) else float("nan")
 
 
 def window(history: History) -> int:
@@ -101,7 +109,7 @@ def phases(history: History) -> list[Phase]:
     end = max(found[-1].last, total - length)
     if end < total:
         found.append(Phase("At the end", end, total))
-    found = [phase for phase in found if phase.last > phase.first]
+    found = [phase for phase in found if phase.last - phase.first >= LEAST] or found[:1]
     if len(found) > MOST_PHASES:
         chosen = np.linspace(0, len(found) - 1, MOST_PHASES).round().astype(int)
         found = [found[number] for number in chosen]

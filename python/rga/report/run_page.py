@@ -13,7 +13,7 @@ from rga.report.growth import draw_growth
 from rga.report.page import page
 from rga.report.phases import draw_phases
 from rga.report.quantities import DASH, fixed, number
-from rga.report.run_gap import mean, phases, smoothed, standardised
+from rga.report.run_gap import mean, phases, smoothed, standardised, usual
 from rga.report.time_axis import when
 from rga.report.timeline import draw_timeline
 from rga.twin.history import Event, History
@@ -88,7 +88,7 @@ def lived(history: History) -> str:
 
 def _gap_words(history: History, by_row: FloatArray) -> str:
     looked_at = phases(history)
-    ends = [number(float(mean(by_row[p.first : p.last]))) for p in (looked_at[0], looked_at[-1])]
+    ends = [number(usual(by_row[p.first : p.last])) for p in (looked_at[0], looked_at[-1])]
     if len(looked_at) == 1:
         return f"The gap was {ends[0]}."
     line = smoothed(history, by_row)

@@ -23,18 +23,23 @@ def respond(
     """
     try:
         return _core.respond(structure.arrays, patterns(structure, loads), outputs)
-    except _core.UnstableStructure as error:
-        names = list(structure.nodes)
-        node = names[error.node] if error.node < len(names) else f"of the floor beside {names[0]}"
-        raise UnstableStructureError(
-            f"the structure can move: node {node!r} in {DOFS[error.dof]} meets no resistance",
-            "members and supports",
-            "add a member, a support or a stiffness there, or hold the plane",
-        ) from None
-    except _core.InvalidInput as error:
-        raise InputError(
-            str(error), "the structure as it reaches the solver", "mend that value"
-        ) from None
+    except (_core.UnstableStructure, _core.InvalidInput) as error:
+        raise refused(structure, error) from None
+
+
+def refused(
+    structure: Structure, error: _core.UnstableStructure | _core.InvalidInput
+) -> InputError:
+    """What the core refuses, in the names of the model."""
+    if isinstance(error, _core.InvalidInput):
+        return InputError(str(error), "the structure as it reaches the solver", "mend that value")
+    names = list(structure.nodes)
+    node = names[error.node] if error.node < len(names) else f"of the floor beside {names[0]}"
+    return UnstableStructureError(
+        f"the structure can move: node {node!r} in {DOFS[error.dof]} meets no resistance",
+        "members and supports",
+        "add a member, a support or a stiffness there, or hold the plane",
+    )
 
 
 def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +12,10 @@ from rga.model.effect import Effect, Values, seconds
 from rga.model.parameter import FloatArray
 from rga.model.readings import Readings
 from rga.model.schema import Model
-from rga.model.structure import Load, Structure, build_structure
-from rga.simulation.friction import respond_with_friction
-from rga.simulation.response import respond
+from rga.model.structure import IntArray, Load, Structure, build_structure
+from rga.simulation.condensation import Condensation
+from rga.simulation.plan import Plan, Request, answer
+from rga.simulation.sensitivity import jacobian
 
 if TYPE_CHECKING:
     from rga.simulation.differentiable import DifferentiableSimulator
@@ -28,11 +29,13 @@ class Response:
         contexts: the contexts, float[rows] each.
         values: parameters of every effect, by name, float[rows] each.
         quantities: what each sensor is to read, float[rows, sensors] in the sensors' units.
+        plan: the path that led there.
     """
 
     contexts: Values
     values: dict[str, Values]
     quantities: FloatArray
+    plan: Plan
 
 
 class Simulator:
@@ -40,7 +43,8 @@ class Simulator:
 
     The response is linear in the loads, so one solve for every load pattern serves all rows that
     share a structure: y = Q R with the coefficients Q[rows, patterns] and the responses
-    R[patterns, sensors]. Rows whose structural parameters differ are solved apart.
+    R[patterns, sensors]. Where a few stiffnesses differ they are condensed; other rows whose
+    structural parameters differ are solved apart (`Plan`).
 
     Args:
         model: the structure with its effects and sensors.
@@ -49,6 +53,7 @@ class Simulator:
     def __init__(self, model: Model, _structure: Structure | None = None) -> None:
         self.model = model
         self._structure = build_structure(model) if _structure is None else _structure
+        self._prepared: dict[bytes, Condensation] = {}
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects."""
@@ -73,7 +78,20 @@ class Simulator:
             InputError: a context is missing, not finite, or of another length.
             UnstableStructureError: the structure can move; names node and direction.
         """
-        return self.read(self.respond(contexts))
+        # What overflows is told below, with its row.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            response = self.respond(contexts)
+            shown = self.read(response)
+        # A faulty sensor shows NaN of a sound structure.
+        lost = np.argwhere(~np.isfinite(response.quantities) | np.isinf(shown))
+        if len(lost):
+            row, column = lost[0]
+            raise InputError(
+                f"sensor {list(self.model.sensors)[column]!r} would read no finite number",
+                f"contexts, row {row + 1}",
+                "check the sizes of contexts and effects",
+            )
+        return shown
 
     def respond(self, contexts: Mapping[str, ArrayLike]) -> Response:
         """The response of the structure, before any sensor reads it.
@@ -82,9 +100,13 @@ class Simulator:
             contexts: as for `predict`, with the same errors.
         """
         table = self._table(contexts)
-        values = self._values(table)
-        quantities = self._respond(values, len(table["time"])) * self._structure.per_si
-        return Response(table, values, quantities)
+        values = self.resolve(table)
+        plan, quantities = answer(self.request(values, len(table["time"])))
+        return Response(table, values, quantities * self._structure.per_si, plan)
+
+    def plan(self, contexts: Mapping[str, ArrayLike]) -> Plan:
+        """The path that `predict` takes for these contexts: the cheapest exact one."""
+        return self.respond(contexts).plan
 
     def read(self, response: Response) -> FloatArray:
         """What the sensors show of a response, float[rows, sensors] in their units.
@@ -115,7 +137,7 @@ class Simulator:
             float[rows, patterns].
         """
         table = self._table(contexts)
-        loads = self._loads(self._structure, self._values(table))
+        loads = self._loads(self._structure, self.resolve(table))
         none = np.zeros((len(table["time"]), 0))
         return np.column_stack([none, *(load.coefficient for load in loads)])
 
@@ -126,19 +148,10 @@ class Simulator:
             contexts: as for `predict`.
 
         Returns:
-            float[rows, sensors, contexts], by central differences over 1e-4 of each range.
+            float[rows, sensors, contexts]; exact where loads and a few stiffnesses follow the
+            contexts, by central differences over 1e-4 of each range elsewhere.
         """
-        table = self._table(contexts)
-        columns = []
-        for name, variable in self.model.context.items():
-            step = 1e-4 * (variable.range[1] - variable.range[0])
-            ahead = self.predict({**table, name: table[name] + step})
-            behind = self.predict({**table, name: table[name] - step})
-            columns.append((ahead - behind) / (2 * step))
-        rows = len(table["time"])
-        if not columns:
-            return np.zeros((rows, len(self.model.sensors), 0))
-        return np.stack(columns, axis=2)
+        return jacobian(self, self._table(contexts))
 
     def as_torch(self, time: ArrayLike | None = None) -> "DifferentiableSimulator":
         """The simulation as a torch module: contexts in the order of the model in, sensors out.
@@ -182,8 +195,12 @@ class Simulator:
             table[name] = np.broadcast_to(column, rows)
         return table
 
-    def _values(self, measured: Values) -> dict[str, Values]:
-        """Parameters of all effects, row by row, as the true contexts and the effects make them."""
+    def resolve(self, measured: Values) -> dict[str, Values]:
+        """Parameters of all effects, row by row, as the true contexts and the effects make them.
+
+        Args:
+            measured: contexts and time, float[rows] each.
+        """
         effects, rows = self.model.effects, len(measured["time"])
         true = dict(measured)
         for effect in effects.values():
@@ -193,33 +210,38 @@ class Simulator:
             effect.change_values(values, values[name], measured["time"])
         return values
 
-    def _respond(self, values: dict[str, Values], rows: int) -> FloatArray:
+    def request(self, values: dict[str, Values], rows: int) -> Request:
+        """What parameters of all effects ask of the structure.
+
+        Args:
+            values: of the parameters, as `resolve` gives them.
+            rows: how many there are.
+        """
         effects = self.model.effects
         structural = [name for name, effect in effects.items() if effect.structural]
         parameters = [(name, key) for name in structural for key in values[name]]
-        table = (
-            np.column_stack([values[n][k] for n, k in parameters])
-            if parameters
-            else np.zeros((rows, 0))
-        )
-        states, state_of_row = np.unique(table, axis=0, return_inverse=True)
-        if not parameters:
-            states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
-        out = np.empty((rows, len(self.model.sensors)))
-        for number, state in enumerate(states):
-            chosen = np.flatnonzero(state_of_row.ravel() == number)
-            structure = self._structure
-            if structural:
-                structure = structure.copy()
-                for name in structural:
-                    own = {key: state[k] for k, (of, key) in enumerate(parameters) if of == name}
-                    effects[name].change_structure(structure, own)
+        states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
+        if parameters:
+            table = np.column_stack([values[name][key] for name, key in parameters])
+            states, state_of_row = np.unique(table, axis=0, return_inverse=True)
+
+        def change(state: FloatArray) -> Structure:
+            if not structural:
+                return self._structure
+            structure = self._structure.copy()
+            for name in structural:
+                own = {key: state[k] for k, (of, key) in enumerate(parameters) if of == name}
+                effects[name].change_structure(structure, own)
+            return structure
+
+        def loads(structure: Structure, chosen: IntArray) -> list[Load]:
             of_rows = {
                 name: {key: column[chosen] for key, column in resolved.items()}
                 for name, resolved in values.items()
             }
-            out[chosen] = _rows(structure, self._loads(structure, of_rows), len(chosen))
-        return out
+            return self._loads(structure, of_rows)
+
+        return Request(states, state_of_row.ravel(), change, loads, self._prepared)
 
     def _loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
         effects = self.model.effects
@@ -247,12 +269,3 @@ def _numbers(name: str, value: ArrayLike) -> FloatArray:
     except (TypeError, ValueError):
         remedy = "give a number, or one a row"
         raise InputError(f"the context {name!r} holds no numbers", "contexts", remedy) from None
-
-
-def _rows(structure: Structure, loads: list[Load], rows: int) -> FloatArray:
-    if not loads:
-        return np.zeros((rows, len(structure.per_si)))
-    if structure.bearings:
-        return respond_with_friction(structure, loads)
-    coefficients: Any = np.column_stack([load.coefficient for load in loads])
-    return np.asarray(coefficients @ respond(structure, loads, structure.outputs))

@@ -17,6 +17,9 @@ from rga.simulation.simulator import Simulator
 #: draws behind an interval, and the half width of a 90 % interval in standard deviations
 DRAWS, HALF_WIDTH = 200, 1.6449
 
+#: ranges that a setting may lie away from its own
+FAR = 100
+
 
 @dataclass(frozen=True)
 class WhatIf:
@@ -69,6 +72,15 @@ def whatif(
                 f"there is no context variable {name!r}",
                 f"model {model.name!r}",
                 "it has " + (", ".join(model.context) or "none"),
+            )
+    for name, variable in model.context.items():
+        low, high = variable.range
+        far = FAR * (high - low)
+        if name in settings and not low - far <= settings[name] <= high + far:
+            raise InputError(
+                f"{name} = {settings[name]:g} is more than {FAR} times its range away from it",
+                f"model {model.name!r}",
+                f"give a value near {low:g}..{high:g} {variable.unit}",
             )
     middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
     contexts = {**middle, **(base or {}), **settings}

@@ -222,7 +222,7 @@ class RealityGapAnalysis:
             calibration.send(*recent)
 
     def _change_version(self, **change: Any) -> None:
-        """Q1 with an update or a rollback; an update that makes the gap rise is taken back."""
+        """Q1 with an update or a rollback; a gap that rises by a quarter takes an update back."""
         standing, calibration = self.standing, self._calibration
         recent = (self._under_the_same(change.get("effects", {})), standing.row)
         before, old = calibration.gap(*recent), self._exchange.twin.state.version

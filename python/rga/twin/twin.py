@@ -56,7 +56,18 @@ class Twin:
             yield cls(_latest(repository, place), place)
 
     def as_of(self, *, row: int | None = None, time: float | None = None) -> "Twin":
-        """The twin as it stood when the record had reached a row, or a time since its start [s]."""
+        """The twin as it stood when the record had reached a row, or a time since its start [s].
+
+        Raises:
+            InputError: a row or time before the record.
+        """
+        for name, value in (("row", row), ("time", time)):
+            if value is not None and not value >= 0:
+                raise InputError(
+                    f"the {name} {value:g} is none of the record",
+                    name,
+                    "give rows, or seconds since the first row, from 0 on",
+                )
         return Twin(self._view.as_of(row, time=time), self._place)
 
     @property

@@ -12,7 +12,8 @@ pub struct LowerTriangle {
     pub values: Vec<f64>,
 }
 
-type Entry = (usize, usize, f64);
+/// (row, column, value)
+pub type Entry = (usize, usize, f64);
 
 impl LowerTriangle {
     /// T' K T
@@ -31,7 +32,12 @@ impl LowerTriangle {
                 }
             }
         });
-        let entries = bucket(&entries, size, |entry| entry.0);
+        Self::from_entries(&entries, size)
+    }
+
+    /// Entries repeat; all diagonal ones are there.
+    pub fn from_entries(entries: &[Entry], size: usize) -> Self {
+        let entries = bucket(entries, size, |entry| entry.0);
         let entries = bucket(&entries, size, |entry| entry.1);
         let mut matrix = Self {
             first: Vec::with_capacity(size + 1),
@@ -59,6 +65,12 @@ impl LowerTriangle {
 
     pub fn size(&self) -> usize {
         self.first.len() - 1
+    }
+
+    /// Where the entry, which is there, stands in `values`.
+    pub fn place(&self, row: usize, column: usize) -> usize {
+        let (first, end) = (self.first[column], self.first[column + 1]);
+        first + self.rows[first..end].partition_point(|&other| other < row)
     }
 
     pub fn diagonal(&self) -> Vec<f64> {

@@ -24,6 +24,12 @@ pub enum Error {
         direction: [f64; 6],
     },
 
+    #[error("the stiffnesses of row {row} leave no stable structure; keep them above zero")]
+    UnstableSample { row: usize },
+
+    #[error("row {row}: {error}")]
+    Row { row: usize, error: Box<Error> },
+
     #[error(
         "friction at row {row} does not settle: reduce mu or the influence of friction on the \
          normal forces (normal_influence)"
@@ -34,5 +40,12 @@ pub enum Error {
 impl Error {
     pub fn invalid(message: impl Into<String>) -> Self {
         Self::InvalidInput(message.into())
+    }
+
+    pub fn of_row(self, row: usize) -> Self {
+        Self::Row {
+            row,
+            error: Box::new(self),
+        }
     }
 }

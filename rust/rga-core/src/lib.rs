@@ -6,8 +6,15 @@
 //! `connection`, `member`) and their fixed-end forces (`load`), supports and
 //! ties reduce the dofs (`constraint`), the reduced matrix is assembled
 //! (`model`, `reduction`, `assembly`) and factorised (`solve`, `stability`), and the outputs are
-//! read off the solution (`observe`). `respond` runs the steps;
-//! `friction` follows bearings through time.
+//! read off the balanced solution (`equilibrium`, `observe`). `respond` runs
+//! the steps; `friction` follows bearings through time.
+//!
+//! `refactor` repeats an analysis for samples of which every stiffness may
+//! vary: loads are combined (`combination`), the matrix is filled in place
+//! (`scatter`), and rows are shared among threads (`parallel`).
+//!
+//! `condensed` repeats an analysis for many samples of which few
+//! stiffnesses, or none, vary.
 //!
 //! `gaussian_window` stands on its own: it watches what sensors send.
 
@@ -16,9 +23,12 @@ mod axes;
 mod check;
 mod check_loads;
 mod check_structure;
+mod combination;
+mod condensed;
 mod connection;
 mod constraint;
 mod element;
+mod equilibrium;
 mod error;
 mod friction;
 mod gaussian_window;
@@ -27,13 +37,18 @@ mod load;
 mod member;
 mod model;
 mod observe;
+mod parallel;
 mod reduction;
+mod refactor;
 mod respond;
+mod scatter;
 mod solve;
 mod stability;
 
+pub use condensed::{Condensed, Directions};
 pub use error::{Error, Result};
 pub use friction::{Bearings, slide};
 pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
 pub use input::{Array, Loads, Outputs, Structure};
+pub use refactor::Refactored;
 pub use respond::respond;

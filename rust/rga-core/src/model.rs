@@ -13,6 +13,17 @@ pub struct Spring {
     pub stiffness: f64,
 }
 
+impl Spring {
+    pub fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
+        add(self.dof, self.dof, self.stiffness);
+        if let Some(other) = self.other {
+            add(other, other, self.stiffness);
+            add(self.dof, other, -self.stiffness);
+            add(other, self.dof, -self.stiffness);
+        }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub struct Model {
     pub members: Vec<Member>,
@@ -45,12 +56,18 @@ impl Model {
             member.for_each_stiffness(&mut add);
         }
         for spring in &self.springs {
-            add(spring.dof, spring.dof, spring.stiffness);
-            if let Some(other) = spring.other {
-                add(other, other, spring.stiffness);
-                add(spring.dof, other, -spring.stiffness);
-                add(other, spring.dof, -spring.stiffness);
-            }
+            spring.for_each_stiffness(&mut add);
+        }
+    }
+
+    /// Every stiffness of `base` times the factor of its member or spring.
+    pub fn scale(&mut self, base: &Self, factors: &[f64]) {
+        let (members, springs) = factors.split_at(self.members.len());
+        for ((member, base), &factor) in self.members.iter_mut().zip(&base.members).zip(members) {
+            member.scale(base, factor);
+        }
+        for ((spring, base), factor) in self.springs.iter_mut().zip(&base.springs).zip(springs) {
+            spring.stiffness = base.stiffness * factor;
         }
     }
 

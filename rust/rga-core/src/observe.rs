@@ -18,15 +18,15 @@ pub struct State<'a> {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Output<'a> {
+pub enum Output {
     /// Displacement or rotation of a node (first dof), relative to another.
-    Motion(usize, Option<usize>, &'a [f64]),
+    Motion(usize, Option<usize>, [f64; 3]),
     /// At (place in 0..1, y, z); total or mechanical.
-    Strain(usize, &'a [f64], bool),
+    Strain(usize, [f64; 3], bool),
     /// At a place in 0..1.
     AxialForce(usize, f64),
     /// Force or moment of supports on a node (first dof).
-    Reaction(usize, &'a [f64]),
+    Reaction(usize, [f64; 3]),
     /// Local end dof of a member.
     EndForce(usize, usize),
 }
@@ -34,7 +34,7 @@ enum Output<'a> {
 pub struct Observer<'a> {
     model: &'a Model,
     constraints: &'a Constraints,
-    outputs: Vec<Output<'a>>,
+    outputs: &'a [Output],
 }
 
 /// Axial force and bending moments EI (v'' + free curvature) of a section.
@@ -45,12 +45,11 @@ struct Section {
 }
 
 impl<'a> Observer<'a> {
-    pub fn new(model: &'a Model, constraints: &'a Constraints, outputs: &Outputs<'a>) -> Self {
-        let count = outputs.kind.len();
+    pub fn new(model: &'a Model, constraints: &'a Constraints, outputs: &'a [Output]) -> Self {
         Self {
             model,
             constraints,
-            outputs: (0..count).map(|at| read_output(outputs, at)).collect(),
+            outputs,
         }
     }
 
@@ -63,15 +62,15 @@ impl<'a> Observer<'a> {
         };
         let values = self.outputs.iter().map(|output| match *output {
             Output::Motion(first, reference, direction) => {
-                let own = along(&state.displacements, first, direction);
-                own - reference.map_or(0.0, |at| along(&state.displacements, at, direction))
+                let own = along(&state.displacements, first, &direction);
+                own - reference.map_or(0.0, |at| along(&state.displacements, at, &direction))
             }
-            Output::Strain(index, place, total) => self.strain(state, index, place, total),
+            Output::Strain(index, place, total) => self.strain(state, index, &place, total),
             Output::AxialForce(index, place) => {
                 let x = place * self.model.members[index].length;
                 self.section(state, index, x).axial
             }
-            Output::Reaction(first, direction) => along(&reactions, first, direction),
+            Output::Reaction(first, direction) => along(&reactions, first, &direction),
             Output::EndForce(index, dof) => self.end_forces(state, index)[dof],
         });
         results.extend(values);
@@ -150,10 +149,17 @@ impl Section {
     }
 }
 
-fn read_output<'a>(outputs: &Outputs<'a>, at: usize) -> Output<'a> {
+pub fn read_outputs(outputs: &Outputs) -> Vec<Output> {
+    (0..outputs.kind.len())
+        .map(|at| read_output(outputs, at))
+        .collect()
+}
+
+fn read_output(outputs: &Outputs, at: usize) -> Output {
     let index = outputs.index.at(at);
     let other = outputs.other[at];
-    let vector = outputs.vector.row(at);
+    let mut vector = [0.0; 3];
+    vector.copy_from_slice(outputs.vector.row(at));
     match outputs.kind[at] {
         kind @ (0 | 1) => {
             let first = 3 * kind as usize;

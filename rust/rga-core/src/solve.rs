@@ -1,5 +1,7 @@
 //! Sparse Cholesky factor of a scaled stiffness.
 
+use std::sync::Arc;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::simplicial::SimplicialLltRef;
@@ -14,39 +16,61 @@ use faer::{Conj, MatMut, Par, Side};
 use crate::assembly::LowerTriangle;
 use crate::error::{Error, Result};
 
-#[derive(Debug)]
 pub struct Factor {
-    symbolic: SymbolicCholesky<usize>,
+    symbolic: Arc<SymbolicCholesky<usize>>,
     values: Vec<f64>,
+    memory: MemBuffer,
 }
 
 impl Factor {
     /// Nothing where the matrix is not positive definite.
     pub fn new(matrix: &LowerTriangle) -> Result<Option<Self>> {
+        let mut factor = Self::analyse(matrix)?;
+        Ok(factor.refactor(matrix).then_some(factor))
+    }
+
+    /// The symbolic analysis alone, which holds for all matrices of one
+    /// pattern; `refactor` must follow.
+    pub fn analyse(matrix: &LowerTriangle) -> Result<Self> {
         let size = matrix.size();
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(size, size, &matrix.first, None, &matrix.rows);
         let symbolic = factorize_symbolic_cholesky(
-            pattern,
+            pattern(matrix),
             Side::Lower,
             SymmetricOrdering::Amd,
             CholeskySymbolicParams::default(),
         )
         .map_err(|_| too_large(size))?;
-        let mut values = vec![0.0; symbolic.len_val()];
+        Self::over(Arc::new(symbolic))
+    }
+
+    /// Another factor that shares the symbolic analysis; `refactor` must
+    /// follow.
+    pub fn another(&self) -> Result<Self> {
+        Self::over(Arc::clone(&self.symbolic))
+    }
+
+    fn over(symbolic: Arc<SymbolicCholesky<usize>>) -> Result<Self> {
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(size))?;
-        let done = symbolic.factorize_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern, &matrix.values),
+        let memory = MemBuffer::try_new(scratch).map_err(|_| too_large(symbolic.nrows()))?;
+        Ok(Self {
+            values: vec![0.0; symbolic.len_val()],
+            symbolic,
+            memory,
+        })
+    }
+
+    /// False where the matrix is not positive definite.
+    pub fn refactor(&mut self, matrix: &LowerTriangle) -> bool {
+        let done = self.symbolic.factorize_numeric_llt(
+            &mut self.values,
+            SparseColMatRef::new(pattern(matrix), &matrix.values),
             Side::Lower,
             LltRegularization::default(),
             Par::Seq,
-            MemStack::new(&mut memory),
+            MemStack::new(&mut self.memory),
             Default::default(),
         );
-        let definite = done.is_ok();
-        Ok(definite.then_some(Self { symbolic, values }))
+        done.is_ok()
     }
 
     pub fn smallest_pivot(&self) -> f64 {
@@ -87,6 +111,11 @@ impl Factor {
         );
         Ok(())
     }
+}
+
+fn pattern(matrix: &LowerTriangle) -> SymbolicSparseColMatRef<'_, usize> {
+    let size = matrix.size();
+    SymbolicSparseColMatRef::new_checked(size, size, &matrix.first, None, &matrix.rows)
 }
 
 fn too_large(size: usize) -> Error {

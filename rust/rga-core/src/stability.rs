@@ -24,7 +24,6 @@ const AS_LARGE: f64 = 1.0 - 1e-6;
 
 /// K of the unknowns, scaled to unit diagonal and factorised. Scaling makes
 /// the pivots dimensionless: translations and rotations compare.
-#[derive(Debug)]
 pub struct Solver {
     matrix: LowerTriangle,
     scale: Vec<f64>,
@@ -33,17 +32,43 @@ pub struct Solver {
 
 impl Solver {
     pub fn new(model: &Model, reduction: &Reduction) -> Result<Self> {
-        let mut matrix = LowerTriangle::assemble(model, reduction);
-        let scale = scaling(&matrix, reduction, model.dofs);
-        matrix.scale(&scale);
-        match Factor::new(&matrix)? {
-            Some(factor) if factor.smallest_pivot() >= SMALLEST_PIVOT => Ok(Self {
-                matrix,
-                scale,
-                factor,
-            }),
-            _ => Err(name_mechanism(matrix, &scale, model, reduction)),
+        let mut solver = Self::analyse(LowerTriangle::assemble(model, reduction))?;
+        if solver.factorise(model, reduction) {
+            Ok(solver)
+        } else {
+            Err(solver.unstable(model, reduction))
         }
+    }
+
+    /// The symbolic analysis alone; `factorise` must follow.
+    pub fn analyse(matrix: LowerTriangle) -> Result<Self> {
+        Ok(Self {
+            scale: vec![1.0; matrix.size()],
+            factor: Factor::analyse(&matrix)?,
+            matrix,
+        })
+    }
+
+    /// Another solver that shares the symbolic analysis; values and
+    /// `factorise` must follow.
+    pub fn another(&self) -> Result<Self> {
+        Ok(Self {
+            matrix: self.matrix.clone(),
+            scale: self.scale.clone(),
+            factor: self.factor.another()?,
+        })
+    }
+
+    /// Those of K; `factorise` must follow.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.matrix.values
+    }
+
+    /// Scales K and factorises it; false where something moves freely.
+    pub fn factorise(&mut self, model: &Model, reduction: &Reduction) -> bool {
+        self.scale = scaling(&self.matrix, reduction, model.dofs);
+        self.matrix.scale(&self.scale);
+        self.factor.refactor(&self.matrix) && self.factor.smallest_pivot() >= SMALLEST_PIVOT
     }
 
     /// Solves in place for right-hand sides one behind the other.
@@ -84,7 +109,7 @@ impl Solver {
             .sqrt()
     }
 
-    /// The error for a solution whose residual stays large.
+    /// The error for K that does not factorise, or leaves a large residual.
     pub fn unstable(&self, model: &Model, reduction: &Reduction) -> Error {
         name_mechanism(self.matrix.clone(), &self.scale, model, reduction)
     }

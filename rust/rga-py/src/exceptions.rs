@@ -17,7 +17,14 @@ create_exception!(
     PyArithmeticError,
     "Part of the structure can move freely.\n\n\
      node, dof (0..5 for ux uy uz rx ry rz): what moves most.\n\
-     direction: the motion of that node, six numbers of norm 1."
+     direction: the motion of that node, six numbers of norm 1.\n\
+     row: of `Refactored`, the row of the sample."
+);
+create_exception!(
+    rga._core,
+    UnstableSample,
+    PyArithmeticError,
+    "The stiffnesses of a sample leave no stable structure.\n\nrow: of the sample."
 );
 create_exception!(
     rga._core,
@@ -28,6 +35,10 @@ create_exception!(
 
 pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
     let message = error.to_string();
+    raised(py, error, message)
+}
+
+fn raised(py: Python<'_>, error: Error, message: String) -> PyErr {
     match error {
         Error::InvalidInput(_) => InvalidInput::new_err(message),
         Error::UnstableStructure {
@@ -41,6 +52,16 @@ pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
                 .setattr("node", node)
                 .and_then(|()| value.setattr("dof", dof))
                 .and_then(|()| value.setattr("direction", direction.to_vec()));
+            set.err().unwrap_or(raised)
+        }
+        Error::UnstableSample { row } => {
+            let raised = UnstableSample::new_err(message);
+            let set = raised.value(py).setattr("row", row);
+            set.err().unwrap_or(raised)
+        }
+        Error::Row { row, error } => {
+            let raised = raised(py, *error, message);
+            let set = raised.value(py).setattr("row", row);
             set.err().unwrap_or(raised)
         }
         Error::NotConverged { row } => {

@@ -3,18 +3,11 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rga_core::{Bearings, Loads, Outputs, Structure};
+use rga_core::Bearings;
 
 use crate::arrays::Held;
 use crate::exceptions::to_python;
-
-/// `let view = Kind { field: dict["key"], ... }`, named `name` in messages.
-macro_rules! read {
-    ($view:ident = $kind:ident from $dict:ident { $($field:ident: $key:literal),* $(,)? }) => {
-        $(let $field = Held::entry($dict, stringify!($dict), $key)?;)*
-        let $view = $kind { $($field: $field.view()),* };
-    };
-}
+use crate::read::{read, read_problem};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
@@ -72,50 +65,7 @@ pub fn respond<'py>(
     loads: &Bound<'py, PyDict>,
     outputs: &Bound<'py, PyDict>,
 ) -> PyResult<Matrix<'py>> {
-    read!(model = Structure from structure {
-        coordinates: "coordinates",
-        ends: "ends",
-        frame: "frame",
-        young: "E",
-        shear: "G",
-        area: "A",
-        iy: "Iy",
-        iz: "Iz",
-        torsion: "J",
-        shear_area_y: "Asy",
-        shear_area_z: "Asz",
-        local_y: "local_y",
-        connection: "connection",
-        rigid_end: "rigid_end",
-        fixed: "fixed",
-        inclined_node: "inclined_node",
-        inclined_direction: "inclined_direction",
-        spring_node: "spring_node",
-        spring_dof: "spring_dof",
-        spring_stiffness: "spring_stiffness",
-        tie_node: "tie_node",
-        tie_dof: "tie_dof",
-    });
-    read!(patterns = Loads from loads {
-        forces: "forces",
-        strain: "strain",
-        prescribed: "prescribed",
-        prescribed_inclined: "prescribed_inclined",
-        member_pattern: "member_pattern",
-        member_index: "member_index",
-        member_axis: "member_axis",
-        member_from: "member_from",
-        member_to: "member_to",
-        member_start: "member_start",
-        member_end: "member_end",
-    });
-    read!(wanted = Outputs from outputs {
-        kind: "kind",
-        index: "index",
-        other: "other",
-        vector: "vector",
-        total: "total",
-    });
+    read_problem!(model, patterns, wanted from structure, loads, outputs);
     let results = py
         .detach(|| rga_core::respond(&model, &patterns, &wanted))
         .map_err(|error| to_python(py, error))?;

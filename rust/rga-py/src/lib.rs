@@ -1,9 +1,12 @@
 //! Python binding of the finite-element core: converts and documents.
 
 mod arrays;
+mod condensed;
 mod exceptions;
 mod functions;
 mod gaussian_window;
+mod read;
+mod refactor;
 
 use pyo3::prelude::*;
 
@@ -17,7 +20,13 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
         py.get_type::<exceptions::UnstableStructure>(),
     )?;
     module.add("NotConverged", py.get_type::<exceptions::NotConverged>())?;
+    module.add(
+        "UnstableSample",
+        py.get_type::<exceptions::UnstableSample>(),
+    )?;
+    module.add_class::<condensed::Condensed>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
+    module.add_class::<refactor::Refactored>()?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::slide, module)?)
 }

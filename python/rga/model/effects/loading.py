@@ -31,6 +31,9 @@ class LoadScale(Effect):
     effect: Effects
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
 
+    def check(self, model: Model) -> None:
+        _check_target(self, self.effect, model, "factor")
+
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from together(model, list(load_names(model)))
@@ -53,6 +56,9 @@ class LoadPosition(Effect):
     kind: Literal["load_position"] = "load_position"
     effect: Effects
     offset: Annotated[Value, Parameter("m", 0.0)] = 0.0
+
+    def check(self, model: Model) -> None:
+        _check_target(self, self.effect, model, "position")
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -181,6 +187,16 @@ def line_forces(
             share = unit * structure.lengths[member] / 2
             forces[int(node)] = forces.get(int(node), np.zeros(6)) + share
     return forces
+
+
+def _check_target(effect: Effect, named: str | list[str], model: Model, parameter: str) -> None:
+    """Refuse an effect on others that lack the parameter that it changes (ValueError)."""
+    for name in [named] if isinstance(named, str) else named:
+        if parameter not in model.effects[name].parameters():
+            raise ValueError(
+                f"{effect.kind} acts on the {parameter} of a load, which {name!r} "
+                f"({model.effects[name].kind}) has not"
+            )
 
 
 def load_names(model: Model) -> Iterator[str]:

@@ -1,6 +1,8 @@
 //! Small structures for the tests: owned arrays, lent to the core.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub mod samples;
+
 use rga_core::{Array, Loads, Outputs, Result, Structure, respond};
 
 pub const E: f64 = 2.1e11;
@@ -93,6 +95,15 @@ impl Case {
     }
 
     pub fn solve(&self, outputs: &[Output]) -> Result<Vec<f64>> {
+        self.lend(outputs, respond)
+    }
+
+    /// What `work` makes of the case.
+    pub fn lend<T>(
+        &self,
+        outputs: &[Output],
+        work: impl FnOnce(&Structure, &Loads, &Outputs) -> T,
+    ) -> T {
         let (n, m) = (self.nodes.len(), self.ends.len());
         let (k, s, t) = (self.inclined.len(), self.springs.len(), self.ties.len());
         let (q, o) = (self.member_loads.len(), outputs.len());
@@ -183,7 +194,7 @@ impl Case {
             vector: Array::new(&vector, &shape_o_3),
             total: Array::new(&total, &per_output),
         };
-        respond(&structure, &loads, &outputs)
+        work(&structure, &loads, &outputs)
     }
 }
 

@@ -1,0 +1,229 @@
+//! Samples of a structure of which few stiffnesses vary (C2), or none (C1).
+//!
+//! A term that varies, a truss member or a spring of stiffness k + d and elongation v, adds the
+//! pseudo-force w = d v to the structure as it is. With G the elongations under unit pseudo-forces
+//! and H = 1 / G, the elongations follow from the condensed stiffness,
+//!
+//!   (H + diag(d)) v = H V q,    y = Y q - C w,
+//!
+//! with load coefficients q, outputs y, and the responses Y, V, C of the structure as it is to
+//! unit loads and unit pseudo-forces (Woodbury's identity, written as a condensation). The cost
+//! does not depend on the size of the structure.
+
+mod kernel;
+mod sensitivity;
+
+use std::ops::Range;
+use std::sync::Mutex;
+
+use pulp::Arch;
+
+use crate::error::{Error, Result};
+use kernel::Kernel;
+pub use sensitivity::Directions;
+use sensitivity::SensitivityKernel;
+
+/// Rows that one thread takes at a time.
+const CHUNK: usize = 2048;
+
+/// p load patterns, r terms that vary, o outputs.
+#[derive(Debug, Clone)]
+pub struct Condensed {
+    pub patterns: usize,
+    pub terms: usize,
+    pub outputs: usize,
+    /// `[p, o]` outputs under unit loads, Y transposed.
+    loaded: Vec<f64>,
+    /// `[p, r]` H V transposed.
+    driven: Vec<f64>,
+    /// `[r, r]` H, symmetric.
+    stiffness: Vec<f64>,
+    /// `[r, o]` outputs under unit pseudo-forces, C transposed.
+    influence: Vec<f64>,
+}
+
+impl Condensed {
+    /// Arrays as the fields tell them.
+    pub fn new(
+        shape: [usize; 3],
+        loaded: &[f64],
+        driven: &[f64],
+        stiffness: &[f64],
+        influence: &[f64],
+    ) -> Result<Self> {
+        let [patterns, terms, outputs] = shape;
+        for (name, values, length) in [
+            ("loaded", loaded, patterns * outputs),
+            ("driven", driven, patterns * terms),
+            ("stiffness", stiffness, terms * terms),
+            ("influence", influence, terms * outputs),
+        ] {
+            check(name, values, length)?;
+            finite(name, values, 1, 0..length)?;
+        }
+        Ok(Self {
+            patterns,
+            terms,
+            outputs,
+            loaded: loaded.to_vec(),
+            driven: driven.to_vec(),
+            stiffness: stiffness.to_vec(),
+            influence: influence.to_vec(),
+        })
+    }
+
+    /// Outputs of n samples, written to `results` `[n, o]`.
+    ///
+    /// `coefficients` is q `[n, p]`, `changes` is d `[n, r]` in the units of the stiffness.
+    pub fn respond(
+        &self,
+        coefficients: &[f64],
+        changes: &[f64],
+        results: &mut [f64],
+        threads: usize,
+    ) -> Result<()> {
+        let rows = results.len() / self.outputs.max(1);
+        self.check(coefficients, changes, rows)?;
+        let arch = Arch::new();
+        in_chunks(results, self.outputs, threads, |from, to, results| {
+            finite("coefficients", coefficients, self.patterns, from..to)?;
+            finite("changes", changes, self.terms, from..to)?;
+            arch.dispatch(Kernel {
+                condensed: self,
+                coefficients: &coefficients[from * self.patterns..to * self.patterns],
+                changes: &changes[from * self.terms..to * self.terms],
+                results,
+            })
+            .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
+        })
+    }
+
+    /// Derivatives of the outputs of n samples along c directions, written to `results`
+    /// `[n, c, o]`.
+    ///
+    /// `coefficient_rates` and `change_rates` hold, row by row, the derivatives of the entries of
+    /// q and d that the directions name.
+    pub fn differentiate(
+        &self,
+        coefficients: &[f64],
+        changes: &[f64],
+        directions: &Directions,
+        rates: (&[f64], &[f64]),
+        results: &mut [f64],
+        threads: usize,
+    ) -> Result<()> {
+        directions.check(self)?;
+        let width = self.outputs * directions.count;
+        let rows = results.len() / width.max(1);
+        self.check(coefficients, changes, rows)?;
+        let [of_loads, of_changes] = [directions.loads.len(), directions.changes.len()];
+        check("coefficient_rates", rates.0, rows * of_loads)?;
+        check("change_rates", rates.1, rows * of_changes)?;
+        let arch = Arch::new();
+        in_chunks(results, width, threads, |from, to, results| {
+            finite("coefficients", coefficients, self.patterns, from..to)?;
+            finite("changes", changes, self.terms, from..to)?;
+            finite("coefficient_rates", rates.0, of_loads, from..to)?;
+            finite("change_rates", rates.1, of_changes, from..to)?;
+            arch.dispatch(SensitivityKernel {
+                condensed: self,
+                directions,
+                coefficients: &coefficients[from * self.patterns..to * self.patterns],
+                changes: &changes[from * self.terms..to * self.terms],
+                coefficient_rates: &rates.0[from * of_loads..to * of_loads],
+                change_rates: &rates.1[from * of_changes..to * of_changes],
+                results,
+            })
+            .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
+        })
+    }
+
+    fn check(&self, coefficients: &[f64], changes: &[f64], rows: usize) -> Result<()> {
+        check("coefficients", coefficients, rows * self.patterns)?;
+        check("changes", changes, rows * self.terms)
+    }
+}
+
+/// Runs `work(from, to, results)` over chunks of rows. What a chunk holds does not depend on the
+/// number of threads, and neither do the results.
+fn in_chunks(
+    results: &mut [f64],
+    width: usize,
+    threads: usize,
+    work: impl Fn(usize, usize, &mut [f64]) -> Result<()> + Sync,
+) -> Result<()> {
+    if results.is_empty() {
+        return Ok(());
+    }
+    let parts: Vec<_> = results.chunks_mut(CHUNK * width).enumerate().collect();
+    let threads = threads.clamp(1, parts.len());
+    let waiting = Mutex::new(parts.into_iter());
+    let failed = Mutex::new(None::<(usize, Error)>);
+    let labour = || {
+        while let Some((number, part)) = lock(&waiting).next() {
+            let from = number * CHUNK;
+            if let Err(error) = work(from, from + part.len() / width, part) {
+                let mut first = lock(&failed);
+                if first.as_ref().is_none_or(|(before, _)| number < *before) {
+                    *first = Some((number, error));
+                }
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(labour);
+        }
+        labour();
+    });
+    match failed
+        .into_inner()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
+    {
+        Some((_, error)) => Err(error),
+        None => Ok(()),
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+fn check(name: &str, values: &[f64], length: usize) -> Result<()> {
+    if values.len() != length {
+        return Err(Error::invalid(format!(
+            "{name} holds {} numbers where {length} are needed",
+            values.len()
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses rows with a number that is not finite. A product with zero shows one, many at a time.
+fn finite(name: &str, values: &[f64], width: usize, rows: Range<usize>) -> Result<()> {
+    const MANY: usize = 16;
+    let part = &values[rows.start * width..rows.end * width];
+    let mut sums = [0.0; MANY];
+    let blocks = part.chunks_exact(MANY);
+    let rest = blocks.remainder();
+    for block in blocks {
+        for (sum, value) in sums.iter_mut().zip(block) {
+            *sum += value * 0.0;
+        }
+    }
+    if sums.iter().sum::<f64>() == 0.0 && rest.iter().all(|value| value.is_finite()) {
+        return Ok(());
+    }
+    let at = part
+        .iter()
+        .position(|value| !value.is_finite())
+        .unwrap_or_default();
+    Err(Error::invalid(format!(
+        "{name} holds {} at row {}, column {}",
+        part[at],
+        rows.start + at / width,
+        at % width
+    )))
+}

@@ -1,0 +1,145 @@
+//! Derivatives of condensed samples along directions, one sample a SIMD lane.
+//!
+//!   (H + diag(d)) dv = H V dq - diag(dd) v,    dy = Y dq - C (d dv + dd v)
+
+use pulp::{Simd, WithSimd};
+
+use super::Condensed;
+use super::kernel::{PACK, Pack, Samples, add_product, gather, scatter, take_product};
+use crate::error::{Error, Result};
+
+/// Which entries of q and d change along each direction.
+#[derive(Debug, Clone)]
+pub struct Directions {
+    pub count: usize,
+    /// (direction, pattern)
+    pub loads: Vec<(usize, usize)>,
+    /// (direction, term)
+    pub changes: Vec<(usize, usize)>,
+}
+
+impl Directions {
+    pub fn check(&self, condensed: &Condensed) -> Result<()> {
+        for (name, entries, end) in [
+            ("loads", &self.loads, condensed.patterns),
+            ("changes", &self.changes, condensed.terms),
+        ] {
+            let outside =
+                |&&(direction, entry): &&(usize, usize)| direction >= self.count || entry >= end;
+            if let Some((direction, entry)) = entries.iter().find(outside) {
+                return Err(Error::invalid(format!(
+                    "{name} of the directions name entry {entry} of direction {direction}, of \
+                     {end} entries and {} directions",
+                    self.count
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Derivatives `[n, c, o]` of rows; gives the first row whose structure is not stable.
+pub struct SensitivityKernel<'a> {
+    pub condensed: &'a Condensed,
+    pub directions: &'a Directions,
+    pub coefficients: &'a [f64],
+    pub changes: &'a [f64],
+    pub coefficient_rates: &'a [f64],
+    pub change_rates: &'a [f64],
+    pub results: &'a mut [f64],
+}
+
+/// What one direction changes, as places among all rates, and the rows of Y and H V for it.
+struct Direction {
+    loads: Vec<usize>,
+    /// (place among the rates, term)
+    changes: Vec<(usize, usize)>,
+    driven: Vec<f64>,
+    /// Of the loads, then C of all terms.
+    shown: Vec<f64>,
+}
+
+impl Direction {
+    fn new(number: usize, directions: &Directions, condensed: &Condensed) -> Self {
+        let Condensed { terms, outputs, .. } = *condensed;
+        let own = |entries: &[(usize, usize)]| -> Vec<(usize, usize)> {
+            let places = entries
+                .iter()
+                .enumerate()
+                .filter(|(_, entry)| entry.0 == number);
+            places.map(|(place, entry)| (place, entry.1)).collect()
+        };
+        let loads = own(&directions.loads);
+        let rows = |matrix: &[f64], width: usize| -> Vec<f64> {
+            let rows = loads
+                .iter()
+                .map(|(_, pattern)| &matrix[pattern * width..][..width]);
+            rows.flatten().copied().collect()
+        };
+        let mut shown = rows(&condensed.loaded, outputs);
+        shown.extend_from_slice(&condensed.influence);
+        Self {
+            driven: rows(&condensed.driven, terms),
+            shown,
+            loads: loads.iter().map(|(place, _)| *place).collect(),
+            changes: own(&directions.changes),
+        }
+    }
+}
+
+impl WithSimd for SensitivityKernel<'_> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Option<usize> {
+        let Condensed { terms, outputs, .. } = *self.condensed;
+        let directions: Vec<Direction> = (0..self.directions.count)
+            .map(|number| Direction::new(number, self.directions, self.condensed))
+            .collect();
+        let width = outputs * directions.len();
+        let many = PACK * S::F64_LANES;
+        let rows = self.results.len() / width;
+        let zero = [simd.splat_f64s(0.0); PACK];
+        let mut samples = Samples::new(simd, self.condensed);
+        let mut load_rates = vec![zero; self.directions.loads.len()];
+        let mut change_rates = vec![zero; self.directions.changes.len()];
+        let mut factors = Vec::new();
+        let mut shown = vec![zero; outputs];
+        for from in (0..rows).step_by(many) {
+            let present = many.min(rows - from);
+            samples.load(self.coefficients, self.changes, from, present);
+            if let Some(lane) = samples.solve(simd, present) {
+                return Some(from + lane);
+            }
+            gather::<S>(&mut load_rates, self.coefficient_rates, from, present);
+            gather::<S>(&mut change_rates, self.change_rates, from, present);
+            for (number, direction) in directions.iter().enumerate() {
+                factors.clear();
+                factors.extend(direction.loads.iter().map(|place| load_rates[*place]));
+                let loads = factors.len();
+                factors.resize(loads + terms, zero);
+                let (of_loads, pseudo) = factors.split_at_mut(loads);
+                add_product::<S>(simd, of_loads, &direction.driven, pseudo);
+                let of_changes = |pseudo: &mut [Pack<S>]| {
+                    for (place, term) in &direction.changes {
+                        let v = &samples.elongations[*term];
+                        take_product::<S>(simd, &change_rates[*place], v, &mut pseudo[*term]);
+                    }
+                };
+                of_changes(pseudo);
+                samples.substitute(simd, pseudo);
+                // Minus d dv, minus dd v.
+                for (w, d) in pseudo.iter_mut().zip(&samples.changes) {
+                    let dv = std::mem::replace(w, zero);
+                    take_product::<S>(simd, d, &dv, w);
+                }
+                of_changes(pseudo);
+                shown.fill(zero);
+                add_product::<S>(simd, &factors, &direction.shown, &mut shown);
+                let results = &mut self.results[from * width + number * outputs..];
+                scatter::<S>(&shown, results, width, present);
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,137 @@
+//! Samples by `Refactored`, and the same by `respond`.
+
+use rga_core::{Array, Loads, Refactored, Result, respond};
+
+use super::{Case, E, G, Output};
+
+/// Numbers in 0..1, the same in every run.
+pub struct Random(pub u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    pub fn many(&mut self, count: usize, low: f64, high: f64) -> Vec<f64> {
+        (0..count).map(|_| self.between(low, high)).collect()
+    }
+}
+
+/// `patterns` are one structure under several loads.
+pub fn refactored(patterns: &[Case], outputs: &[Output]) -> Result<Refactored> {
+    fn flat<T: Copy, const N: usize>(rows: impl Iterator<Item = [T; N]>) -> Vec<T> {
+        rows.flatten().collect()
+    }
+    let (p, n, m) = (
+        patterns.len(),
+        patterns[0].nodes.len(),
+        patterns[0].ends.len(),
+    );
+    let forces = flat(patterns.iter().flat_map(|case| case.forces.iter().copied()));
+    let strain = flat(patterns.iter().flat_map(|case| case.strain.iter().copied()));
+    let prescribed = flat(
+        patterns
+            .iter()
+            .flat_map(|case| case.prescribed.iter().copied()),
+    );
+    let inclined: Vec<f64> = (patterns.iter())
+        .flat_map(|case| case.inclined.iter().map(|support| support.2))
+        .collect();
+    let listed: Vec<_> = (patterns.iter().enumerate())
+        .flat_map(|(at, case)| case.member_loads.iter().map(move |load| (at as i64, *load)))
+        .collect();
+    let pattern: Vec<i64> = listed.iter().map(|load| load.0).collect();
+    let index: Vec<i64> = listed.iter().map(|load| load.1.0).collect();
+    let axis: Vec<i64> = listed.iter().map(|load| load.1.1).collect();
+    let from: Vec<f64> = listed.iter().map(|load| load.1.2).collect();
+    let to: Vec<f64> = listed.iter().map(|load| load.1.3).collect();
+    let start: Vec<f64> = listed.iter().map(|load| load.1.4).collect();
+    let end: Vec<f64> = listed.iter().map(|load| load.1.5).collect();
+    let (per_dof, per_member) = ([p, n, 6], [p, m, 3]);
+    let per_support = [p, patterns[0].inclined.len()];
+    let per_load = [listed.len()];
+    let loads = Loads {
+        forces: Array::new(&forces, &per_dof),
+        strain: Array::new(&strain, &per_member),
+        prescribed: Array::new(&prescribed, &per_dof),
+        prescribed_inclined: Array::new(&inclined, &per_support),
+        member_pattern: Array::new(&pattern, &per_load),
+        member_index: Array::new(&index, &per_load),
+        member_axis: Array::new(&axis, &per_load),
+        member_from: Array::new(&from, &per_load),
+        member_to: Array::new(&to, &per_load),
+        member_start: Array::new(&start, &per_load),
+        member_end: Array::new(&end, &per_load),
+    };
+    patterns[0].lend(outputs, |structure, _, outputs| {
+        Refactored::new(structure, &loads, outputs)
+    })
+}
+
+/// The same by `respond`, with scaled moduli and springs.
+pub fn expected(
+    patterns: &[Case],
+    outputs: &[Output],
+    factors: &[f64],
+    coefficients: &[f64],
+) -> Result<Vec<f64>> {
+    let mut sum = patterns[0].clone();
+    sum.member_loads.clear();
+    for (at, (case, factor)) in patterns.iter().zip(coefficients).enumerate() {
+        let keep = if at == 0 { 0.0 } else { 1.0 };
+        for (to, from) in [
+            (sum.forces.as_flattened_mut(), case.forces.as_flattened()),
+            (sum.strain.as_flattened_mut(), case.strain.as_flattened()),
+            (
+                sum.prescribed.as_flattened_mut(),
+                case.prescribed.as_flattened(),
+            ),
+        ] {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = keep * *to + factor * from;
+            }
+        }
+        for (to, from) in sum.inclined.iter_mut().zip(&case.inclined) {
+            to.2 = keep * to.2 + factor * from.2;
+        }
+        for &(member, axis, from, to, start, end) in &case.member_loads {
+            let load = (member, axis, from, to, start * factor, end * factor);
+            sum.member_loads.push(load);
+        }
+    }
+    let (members, springs) = factors.split_at(sum.ends.len());
+    for (spring, factor) in sum.springs.iter_mut().zip(springs) {
+        spring.2 *= factor;
+    }
+    let young: Vec<f64> = members.iter().map(|factor| E * factor).collect();
+    let shear: Vec<f64> = members.iter().map(|factor| G * factor).collect();
+    sum.lend(outputs, |structure, loads, outputs| {
+        let mut scaled = *structure;
+        scaled.young.values = &young;
+        scaled.shear.values = &shear;
+        respond(&scaled, loads, outputs)
+    })
+}
+
+pub fn run(
+    batch: &Refactored,
+    factors: &[f64],
+    coefficients: &[f64],
+    rows: usize,
+    threads: usize,
+) -> Result<Vec<f64>> {
+    let per_row = |values: &[f64]| [rows, values.len() / rows];
+    batch.respond(
+        Array::new(factors, &per_row(factors)),
+        Array::new(coefficients, &per_row(coefficients)),
+        threads,
+    )
+}

@@ -1,0 +1,61 @@
+//! The dicts that describe a problem, as views of the core.
+
+/// `let view = Kind { field: dict["key"], ... }`, named `name` in messages.
+macro_rules! read {
+    ($view:ident = $kind:ident from $dict:ident { $($field:ident: $key:literal),* $(,)? }) => {
+        $(let $field = crate::arrays::Held::entry($dict, stringify!($dict), $key)?;)*
+        let $view = rga_core::$kind { $($field: $field.view()),* };
+    };
+}
+
+/// The three views of a problem, from the dicts of `respond`.
+macro_rules! read_problem {
+    ($model:ident, $patterns:ident, $wanted:ident from $structure:ident, $loads:ident, $outputs:ident) => {
+        read!($model = Structure from $structure {
+            coordinates: "coordinates",
+            ends: "ends",
+            frame: "frame",
+            young: "E",
+            shear: "G",
+            area: "A",
+            iy: "Iy",
+            iz: "Iz",
+            torsion: "J",
+            shear_area_y: "Asy",
+            shear_area_z: "Asz",
+            local_y: "local_y",
+            connection: "connection",
+            rigid_end: "rigid_end",
+            fixed: "fixed",
+            inclined_node: "inclined_node",
+            inclined_direction: "inclined_direction",
+            spring_node: "spring_node",
+            spring_dof: "spring_dof",
+            spring_stiffness: "spring_stiffness",
+            tie_node: "tie_node",
+            tie_dof: "tie_dof",
+        });
+        read!($patterns = Loads from $loads {
+            forces: "forces",
+            strain: "strain",
+            prescribed: "prescribed",
+            prescribed_inclined: "prescribed_inclined",
+            member_pattern: "member_pattern",
+            member_index: "member_index",
+            member_axis: "member_axis",
+            member_from: "member_from",
+            member_to: "member_to",
+            member_start: "member_start",
+            member_end: "member_end",
+        });
+        read!($wanted = Outputs from $outputs {
+            kind: "kind",
+            index: "index",
+            other: "other",
+            vector: "vector",
+            total: "total",
+        });
+    };
+}
+
+pub(crate) use {read, read_problem};
