@@ -86,19 +86,59 @@ def test_dataset_in_chunks_is_the_same_sequence(
 ) -> None:
     model = load_model(model_file)
     done = []
-    write_dataset(model, 100, tmp_path / "whole.parquet", seed=3, noise=True)
+    write_dataset(model, 100, tmp_path / "whole.parquet", seed=3)
     monkeypatch.setattr("rga.simulation.dataset.CHUNK", 32)
-    write_dataset(
-        model,
-        100,
-        tmp_path / "parts.parquet",
-        seed=3,
-        noise=True,
-        progress=lambda _, share: done.append(share),
-    )
+    target = tmp_path / "parts.parquet"
+    write_dataset(model, 100, target, seed=3, progress=lambda _, share: done.append(share))
     whole, parts = (pl.read_parquet(tmp_path / f"{n}.parquet") for n in ("whole", "parts"))
-    np.testing.assert_allclose(parts.to_numpy(), whole.to_numpy(), rtol=1e-12, atol=1e-12)
-    assert done == [0.32, 0.64, 0.96, 1.0]
+    assert parts.equals(whole)
+    assert done == [0.25, 0.5, 0.75, 1.0]
+
+
+def test_a_dataset_goes_on_where_it_was_interrupted(
+    tmp_path: Path, model_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing is lost, nothing repeated, and another dataset does not take up its parts."""
+    monkeypatch.setattr("rga.simulation.dataset.CHUNK", 16)
+    model = load_model(model_file)
+    write_dataset(model, 100, tmp_path / "whole.parquet", seed=3, noise=True)
+    whole = pl.read_parquet(tmp_path / "whole.parquet")
+    target = tmp_path / "parts.parquet"
+
+    def stop_at(most: float, seed: int) -> None:
+        def progress(_: str, share: float) -> None:
+            if share > most:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt):
+            write_dataset(model, 100, target, seed=seed, noise=True, progress=progress)
+
+    for most, seed in ((0.2, 4), (0.1, 3), (0.4, 3)):
+        stop_at(most, seed)
+        assert not target.exists()
+    kept = {
+        file.name: file.stat().st_mtime_ns for file in (tmp_path / "parts.parquet.parts").iterdir()
+    }
+    assert len(kept) == 4
+    again: list[float] = []
+    write_dataset(
+        model, 100, target, seed=3, noise=True, progress=lambda _, share: again.append(share)
+    )
+    assert len(again) == 4
+    assert pl.read_parquet(target).equals(whole)
+    assert not (tmp_path / "parts.parquet.parts").exists()
+
+
+def test_a_dataset_does_not_depend_on_the_number_of_workers(
+    tmp_path: Path, model_file: Path, rga: Rga
+) -> None:
+    for workers in (1, 2):
+        output = tmp_path / f"{workers}.parquet"
+        size = ("-n", 40_000, "--noise", "--workers", workers)
+        assert rga("dataset", model_file, *size, "-o", output).code == 0
+    one, two = (pl.read_parquet(tmp_path / f"{n}.parquet") for n in (1, 2))
+    assert one.height == 40_000
+    assert one.equals(two)
 
 
 def test_noise_of_a_dataset_is_the_sensors(tmp_path: Path, model_file: Path) -> None:

@@ -9,12 +9,21 @@ from rga.cli.options import ModelFile, OutputFile, Seed
 Rows = Annotated[int, typer.Option("-n", min=1, help="Number of rows.")]
 Noise = Annotated[bool, typer.Option("--noise", help="Add the sensors' noise.")]
 
+Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes at work.")]
+
 
 def dataset(
-    model: ModelFile, rows: Rows, output: OutputFile, seed: Seed = 0, noise: Noise = False
+    model: ModelFile,
+    rows: Rows,
+    output: OutputFile,
+    seed: Seed = 0,
+    noise: Noise = False,
+    workers: Workers = 1,
 ) -> None:
-    """Draw contexts over their ranges and simulate the sensors (Parquet)."""
-    from rga.cli.output import whole_file
+    """Draw contexts over their ranges and simulate the sensors (Parquet).
+
+    What was interrupted goes on where it stood.
+    """
     from rga.cli.progress import shown_progress
     from rga.errors import InputError
     from rga.model import load_model
@@ -23,6 +32,8 @@ def dataset(
     if output.suffix.lower() != ".parquet":
         raise InputError("a dataset is a Parquet file", str(output), "name a .parquet file")
     structure = load_model(model)
-    with whole_file(output) as draft, shown_progress() as progress:
-        write_dataset(structure, rows, draft, seed=seed, noise=noise, progress=progress)
+    with shown_progress() as progress:
+        write_dataset(
+            structure, rows, output, seed=seed, noise=noise, workers=workers, progress=progress
+        )
     typer.echo(f"{rows} rows of {len(structure.sensors)} sensors are in {output}.")

@@ -1,19 +1,26 @@
 """Synthetic datasets: contexts drawn over their ranges, and what the sensors show."""
 
+import json
+import shutil
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from hashlib import sha256
 from importlib.metadata import version
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 import polars as pl
-from polars.io.plugins import register_io_source
 from scipy.stats import qmc
+from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
 from rga.model import Model
 from rga.simulation.simulator import Simulator
 
-CHUNK = 65_536
+#: rows of a part: a power of two keeps the sequence of the contexts balanced
+CHUNK = 16_384
 
 
 def write_dataset(
@@ -23,13 +30,16 @@ def write_dataset(
     *,
     seed: int = 0,
     noise: bool = False,
+    workers: int = 1,
     progress: Callable[[str, float], None] | None = None,
 ) -> None:
     """Write a Parquet file of contexts and the sensor values that they give.
 
-    The contexts follow a scrambled Sobol sequence over their ranges; memory holds one chunk of
-    65 536 rows. The columns are the context variables, then the sensors, in the units of the model;
-    seed, hash of the model and versions stand in the metadata of the file.
+    The contexts follow a scrambled Sobol sequence over their ranges. Parts of 16 384 rows are
+    written beside the file, in `NAME.parts`; a call that was interrupted goes on behind the last
+    whole part, and the file appears when all are there. Memory holds one part a worker. The columns
+    are the context variables, then the sensors, in the units of the model; seed, hash of the model
+    and versions stand in the metadata of the file.
 
     Args:
         model: the model to simulate.
@@ -37,6 +47,7 @@ def write_dataset(
         path: the Parquet file.
         seed: of the sequence and of the noise.
         noise: adds to every reading the noise that the model states for its sensor.
+        workers: processes at work; the file does not depend on it.
         progress: is called with the stage and the share done.
 
     Raises:
@@ -48,22 +59,7 @@ def write_dataset(
         raise InputError(
             "a dataset needs context variables and sensors", f"model {model.name!r}", "add them"
         )
-    failures: list[InputError] = []
-
-    def frames(*_: object) -> Iterator[pl.DataFrame]:
-        done = 0
-        try:
-            for frame in _chunks(model, rows, seed, noise):
-                yield frame
-                done += frame.height
-                if progress is not None:
-                    progress("simulating", done / rows)
-        except InputError as error:
-            failures.append(error)
-            raise
-
-    names = [*model.context, *model.sensors]
-    source = register_io_source(io_source=frames, schema=dict.fromkeys(names, pl.Float64()))
+    path = Path(path)
     metadata = {
         "seed": str(seed),
         "noise": str(noise).lower(),
@@ -71,28 +67,83 @@ def write_dataset(
         "model_sha256": model.sha256,
         **{f"version_{name}": version(name) for name in ("rga", "numpy", "scipy")},
     }
-    try:
-        source.sink_parquet(path, metadata=metadata, maintain_order=True)
-    except pl.exceptions.PolarsError:
-        # The writer wraps what the simulation raises.
-        if failures:
-            raise failures[0] from None
-        raise
+    parts = path.with_name(f"{path.name}.parts")
+    content = [repr(model), metadata, rows, CHUNK]
+    _begin(parts, sha256(json.dumps(content).encode()).hexdigest())
+    tasks = [
+        _Part(model, seed, noise, begin, min(CHUNK, rows - begin), parts / f"{begin:012}.parquet")
+        for begin in range(0, rows, CHUNK)
+    ]
+    waiting = [task for task in tasks if not task.file.exists()]
+    done = len(tasks) - len(waiting)
+    for number, _ in enumerate(_written(waiting, workers), start=done + 1):
+        if progress is not None:
+            progress("simulating", number / len(tasks))
+    draft = parts / "whole.parquet"
+    frames = pl.scan_parquet([task.file for task in tasks], low_memory=True)
+    frames.sink_parquet(draft, metadata=metadata, maintain_order=True)
+    draft.replace(path)
+    shutil.rmtree(parts)
 
 
-def _chunks(model: Model, rows: int, seed: int, noise: bool) -> Iterator[pl.DataFrame]:
-    simulator = Simulator(model)
-    low, high = np.array([variable.range for variable in model.context.values()]).T
-    sequence = qmc.Sobol(len(model.context), scramble=True, rng=seed)
-    spread = np.array([sensor.noise or 0.0 for sensor in model.sensors.values()])
-    generator = np.random.default_rng([seed, 1])
-    # A whole power of two is drawn for the balance of the sequence; the surplus is left out.
-    draw = min(CHUNK, 1 << (rows - 1).bit_length())
-    for begin in range(0, rows, CHUNK):
-        share = sequence.random(draw)[: rows - begin]
+@dataclass(frozen=True)
+class _Part:
+    """Rows of a dataset that are written together."""
+
+    model: Model
+    seed: int
+    noise: bool
+    begin: int
+    rows: int
+    file: Path
+
+    def write(self) -> None:
+        """Whole or not at all."""
+        draft = self.file.with_suffix(".draft")
+        with threadpool_limits(1):
+            self._frame().write_parquet(draft)
+        draft.replace(self.file)
+
+    def _frame(self) -> pl.DataFrame:
+        model = self.model
+        low, high = np.array([variable.range for variable in model.context.values()]).T
+        sequence = qmc.Sobol(len(model.context), scramble=True, rng=self.seed)
+        if self.begin:
+            sequence.fast_forward(self.begin)
+        # A whole power of two is drawn for the balance of the sequence; the surplus is left out.
+        share = sequence.random(1 << (self.rows - 1).bit_length())[: self.rows]
         contexts = dict(zip(model.context, (low + (high - low) * share).T, strict=True))
-        readings = simulator.predict(contexts)
-        if noise:
+        readings = Simulator(model).predict(contexts)
+        if self.noise:
+            spread = np.array([sensor.noise or 0.0 for sensor in model.sensors.values()])
+            generator = np.random.default_rng([self.seed, 1, self.begin])
             readings = readings + spread * generator.standard_normal(readings.shape)
-        columns = dict(zip(model.sensors, readings.T, strict=True))
-        yield pl.DataFrame({**contexts, **columns})
+        return pl.DataFrame({**contexts, **dict(zip(model.sensors, readings.T, strict=True))})
+
+
+def _written(parts: list[_Part], workers: int) -> Iterator[None]:
+    if workers == 1 or len(parts) < 2:
+        yield from map(_Part.write, parts)
+        return
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        try:
+            yield from pool.map(_Part.write, parts)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _begin(parts: Path, key: str) -> None:
+    """A directory for parts; those of another dataset are thrown away."""
+    told = parts / "dataset.json"
+    if told.exists() and told.read_text(encoding="utf-8") == key:
+        return
+    shutil.rmtree(parts, ignore_errors=True)
+    try:
+        parts.mkdir(parents=True)
+        told.write_text(key, encoding="utf-8")
+    except OSError as error:
+        reason = (error.strerror or "refused").lower()
+        raise InputError(
+            f"the dataset cannot be written, {reason}", str(parts), "give another place"
+        ) from None
