@@ -277,6 +277,7 @@ def contexts(rows: int, **fixed: float) -> dict[str, Any]:
         ({"loss": LOSS}, "C2", 4),
         ({"loss": LOSS, "bearing": BEARING}, "C2", 5),
         ({"loss": LOSS, "rigidity": RIGIDITY}, "C3", 0),
+        ({"loss": {**LOSS, "group": ["bottom", "rest"]}}, "C3", 0),
     ],
 )
 def test_the_cheapest_exact_path_is_taken(effects: dict[str, Any], path: str, terms: int) -> None:

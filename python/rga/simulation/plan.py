@@ -13,9 +13,13 @@ from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.friction import respond_with_friction
 from rga.simulation.response import patterns, refused, respond
-from rga.simulation.variation import variation
+from rga.simulation.variation import Variation, variation
 
 NOTHING: IntArray = np.zeros(0, np.int64)
+#: structures that are solved one by one, which costs less than to look for what varies
+APART = 4
+#: terms that vary, beyond which a factorisation of the whole structure is no dearer
+MOST_TERMS = 32
 #: condensed structures that a simulator keeps
 KEPT = 8
 Path = Literal["C1", "C2", "C3", "C4"]
@@ -101,16 +105,37 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
             return plan("C1"), whole.respond(coefficients(loads), np.zeros((len(rows), 0)))
         except _core.InvalidInput as error:
             raise refused(structure, error) from None
-    varied = variation(request.change, request.states)
-    if varied is not None:
+    varied = None
+    if len(request.states) > APART:
+        varied = variation(request.change, request.states)
+    if varied is None:
+        return plan("C3"), _each_state(request)
+    q, stiffness = coefficients(loads), varied.stiffness[request.state_of_row]
+    terms = stiffness.shape[1]
+    if terms <= MOST_TERMS:
         try:
             found = condensed(request.prepared, structure, loads, varied.members, varied.springs)
-            stiffness = varied.stiffness[request.state_of_row]
-            terms = stiffness.shape[1]
-            return plan("C2", terms), found.respond(coefficients(loads), stiffness)
+            return plan("C2", terms), found.respond(q, stiffness)
         except (DependentTerms, _core.UnstableSample, _core.InvalidInput):
-            pass  # the factorisation of each state decides, and names what is wrong
-    return plan("C3"), _each_state(request)
+            pass  # a factorisation of each sample decides, and names what is wrong
+    if not (varied.first > 0).all():
+        return plan("C3"), _each_state(request)
+    return plan("C3"), _refactored(varied, loads, q, stiffness)
+
+
+def _refactored(
+    varied: Variation, loads: list[Load], q: FloatArray, stiffness: FloatArray
+) -> FloatArray:
+    """One symbolic analysis, one factorisation a row."""
+    structure = varied.start
+    count = len(structure.arrays["ends"])
+    factors = np.ones((len(q), count + len(structure.arrays["spring_stiffness"])))
+    factors[:, np.append(varied.members, count + varied.springs)] = stiffness / varied.first
+    try:
+        whole = _core.Refactored(structure.arrays, patterns(structure, loads), structure.outputs)
+        return whole.respond(factors, q)
+    except (_core.UnstableStructure, _core.InvalidInput) as error:
+        raise refused(structure, error) from None
 
 
 def _each_state(request: Request) -> FloatArray:
@@ -124,10 +149,19 @@ def _each_state(request: Request) -> FloatArray:
         if structure.bearings:
             parts.append(respond_with_friction(structure, loads))
         else:
-            parts.append(coefficients(loads) @ respond(structure, loads, structure.outputs))
+            parts.append(_combined(respond(structure, loads, structure.outputs), loads))
     out = np.empty((len(order), parts[0].shape[1]))
     out[order] = np.concatenate(parts)
     return out
+
+
+def _combined(responses: FloatArray, loads: list[Load]) -> FloatArray:
+    """Responses to unit loads times their coefficients, with the same bits in any batch."""
+    patterns, outputs = responses.shape
+    nothing = np.zeros((0, outputs))
+    matrix = _core.Condensed(responses, np.zeros((patterns, 0)), np.zeros((0, 0)), nothing)
+    q = coefficients(loads)
+    return matrix.respond(q, np.zeros((len(q), 0)))
 
 
 def condensed(

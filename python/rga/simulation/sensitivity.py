@@ -15,7 +15,7 @@ import numpy as np
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.simulation.condensation import DependentTerms
-from rga.simulation.plan import NOTHING, Request, coefficients, condensed
+from rga.simulation.plan import MOST_TERMS, NOTHING, Request, coefficients, condensed
 from rga.simulation.variation import variation
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def _rates(middle: Request, sides: Sequence[Request]) -> FloatArray | None:
     stiffness = np.zeros((len(rows), 0))
     if len(states) > 1:
         varied = variation(middle.change, states)
-        if varied is None:
+        if varied is None or len(varied.first) > MOST_TERMS:
             return None
         members, springs, slope = varied.members, varied.springs, varied.slope
         stiffness = varied.stiffness[0] + (middle.of_rows - states[0]) @ slope

@@ -8,8 +8,6 @@ import numpy as np
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Structure
 
-#: terms that vary, beyond which a factorisation of the whole structure is no dearer
-MOST_TERMS = 32
 #: rows at which straightness is checked, beside the ends of each parameter
 CHECKED = 6
 #: properties of a truss member that only reach the answer through EA / L
@@ -23,6 +21,7 @@ class Variation:
     Attributes:
         start: the structure at the first state.
         members, springs: numbers of those that vary.
+        first: their stiffness at the first state, float[terms] [N/m or N m/rad].
         stiffness: of members, then springs, at each state, float[states, terms] [N/m].
         slope: of the stiffness by the parameters, float[parameters, terms].
     """
@@ -30,12 +29,13 @@ class Variation:
     start: Structure
     members: IntArray
     springs: IntArray
+    first: FloatArray
     stiffness: FloatArray
     slope: FloatArray
 
 
 def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> Variation | None:
-    """What varies between states, or None where it is more than a few straight stiffnesses.
+    """What varies between states, or None where it is more than straight stiffnesses.
 
     Args:
         change: makes the structure of a state.
@@ -65,9 +65,7 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
     terms = np.flatnonzero(slope.any(axis=0))
     count = len(start.arrays["ends"])
     members, springs = terms[terms < count], terms[terms >= count] - count
-    if len(terms) > MOST_TERMS or start.arrays["frame"][members].any():
-        return None
-    return Variation(start, members, springs, stiffness[:, terms], slope[:, terms])
+    return Variation(start, members, springs, first[terms], stiffness[:, terms], slope[:, terms])
 
 
 def _stiffness(structure: Structure) -> FloatArray:
