@@ -1,7 +1,7 @@
 """A structure as arrays: what effects change and what the core solves."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,22 @@ class Bearing:
     permanent_force: float
 
 
+@dataclass(frozen=True)
+class Law:
+    """A member or spring that carries nothing until its elongation leaves a range.
+
+    Attributes:
+        kind: `play` is idle within +-size, `tension` up to size.
+        member, spring: its number, one of the two.
+        size: [m].
+    """
+
+    kind: Literal["play", "tension"]
+    member: int | None
+    spring: int | None
+    size: float
+
+
 @dataclass
 class Structure:
     """The structure of a model as arrays in the form that the core takes.
@@ -58,6 +74,7 @@ class Structure:
         alpha: thermal expansion [1/K], float[members].
         host: number of the member whose temperature a member shares, int[members].
         bearings: bearings with friction.
+        laws: members and springs that carry nothing within some play.
     """
 
     nodes: dict[str, int]
@@ -72,6 +89,7 @@ class Structure:
     alpha: FloatArray
     host: IntArray
     bearings: list[Bearing]
+    laws: list[Law]
 
     def copy(self) -> "Structure":
         """An independent copy: effects change copies only."""
@@ -88,6 +106,7 @@ class Structure:
             self.alpha.copy(),
             self.host.copy(),
             list(self.bearings),
+            list(self.laws),
         )
 
     @property
@@ -182,6 +201,7 @@ def build_structure(model: Model) -> Structure:
         alpha=np.array([model.materials[m.material].alpha for m in model.members.values()]),
         host=np.arange(len(members)),
         bearings=[],
+        laws=[],
     )
 
 

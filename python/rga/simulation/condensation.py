@@ -31,6 +31,8 @@ class Condensation:
             float[patterns, terms].
         influence, unit: the same under unit pseudo-forces, float[terms, outputs] and
             float[terms, terms].
+        own: part of the influence that comes of what outputs on a term read of its own
+            pseudo-force, float[terms, outputs].
 
     Args:
         structure, loads, outputs: as `_core.respond` takes them; all patterns are kept.
@@ -65,16 +67,16 @@ class Condensation:
         )
         scale = np.concatenate([lengths, np.ones(len(springs))])
         elongations = found[:, count:] * scale
-        influence = found[patterns:, :count] + _own_readings(structure, outputs, members, springs)
+        self.own = _own_readings(structure, outputs, members, springs)
         unit = elongations[patterns:].copy()
         of_members = np.arange(len(members))
         # A unit initial force lengthens a free member by 1 / k, which its gauge does not read.
         unit[of_members, of_members] += 1.0 / self.stiffness[: len(members)]
         self.unit = (unit + unit.T) / 2
         self.loaded, self.stretched = found[:patterns, :count].copy(), elongations[:patterns]
-        self.influence = influence
+        self.influence = found[patterns:, :count] + self.own
         inverse = _inverse(self.unit)
-        self._core = _core.Condensed(self.loaded, self.stretched @ inverse, inverse, influence)
+        self._core = _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
 
     def respond(
         self,

@@ -8,10 +8,12 @@ from typing import Literal
 import numpy as np
 
 from rga import _core
+from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.friction import respond_with_friction
+from rga.simulation.laws import respond_with_laws, terms_of
 from rga.simulation.response import patterns, refused, respond
 from rga.simulation.variation import Variation, variation
 
@@ -27,7 +29,7 @@ WORDS: dict[Path, str] = {
     "C1": "one structure for all rows: a matrix times the coefficients of the loads",
     "C2": "few stiffnesses vary: condensed, one small solve a row",
     "C3": "the structure varies: one factorisation for each of its states",
-    "C4": "friction: row after row, as it has a memory",
+    "C4": "friction, play or slack: condensed, and solved row by row",
 }
 
 
@@ -97,7 +99,7 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
 
     if not loads or not sensors:
         return plan("C1"), np.zeros((len(rows), sensors))
-    if structure.bearings:
+    if structure.bearings or structure.laws:
         return plan("C4"), _each_state(request)
     if len(request.states) == 1:
         whole = condensed(request.prepared, structure, loads)
@@ -146,13 +148,32 @@ def _each_state(request: Request) -> FloatArray:
         chosen = order[starts[number] : starts[number + 1]]
         structure = request.change(state)
         loads = request.loads(structure, chosen)
-        if structure.bearings:
+        if structure.laws:
+            parts.append(_with_laws(request, structure, loads))
+        elif structure.bearings:
             parts.append(respond_with_friction(structure, loads))
         else:
             parts.append(_combined(respond(structure, loads, structure.outputs), loads))
     out = np.empty((len(order), parts[0].shape[1]))
     out[order] = np.concatenate(parts)
     return out
+
+
+def _with_laws(request: Request, structure: Structure, loads: list[Load]) -> FloatArray:
+    if structure.bearings:
+        raise InputError(
+            "friction and slack are not simulated together", "effects", "leave out one of them"
+        )
+    members, springs = terms_of(structure)
+    try:
+        linear = condensed(request.prepared, structure, loads, members, springs)
+    except DependentTerms:
+        raise InputError(
+            "play or slack at so many members leaves nothing that holds the structure",
+            "effects",
+            "name fewer members",
+        ) from None
+    return respond_with_laws(structure, linear, coefficients(loads))
 
 
 def _combined(responses: FloatArray, loads: list[Load]) -> FloatArray:

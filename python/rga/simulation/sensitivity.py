@@ -77,7 +77,7 @@ def _rates(middle: Request, sides: Sequence[Request]) -> FloatArray | None:
     states = np.unique(np.concatenate([one.states for one in (middle, *sides)]), axis=0)
     rows = np.arange(len(middle.state_of_row))
     start = middle.change(states[0])
-    if start.bearings:
+    if start.bearings or start.laws:
         return None
     loads = middle.loads(start, rows)
     if not loads:

@@ -76,7 +76,7 @@ def _stiffness(structure: Structure) -> FloatArray:
 
 
 def _only_stiffness_differs(one: Structure, other: Structure) -> bool:
-    if other.bearings or one.arrays.keys() != other.arrays.keys():
+    if other.bearings or other.laws or one.arrays.keys() != other.arrays.keys():
         return False
     bends = one.arrays["frame"]
     for name, array in one.arrays.items():
