@@ -14,11 +14,11 @@ mod kernel;
 mod sensitivity;
 
 use std::ops::Range;
-use std::sync::Mutex;
 
 use pulp::Arch;
 
 use crate::error::{Error, Result};
+use crate::parallel::in_chunks;
 use kernel::Kernel;
 pub use sensitivity::Directions;
 use sensitivity::SensitivityKernel;
@@ -85,17 +85,29 @@ impl Condensed {
         let rows = results.len() / self.outputs.max(1);
         self.check(coefficients, changes, rows)?;
         let arch = Arch::new();
-        in_chunks(results, self.outputs, threads, |from, to, results| {
-            finite("coefficients", coefficients, self.patterns, from..to)?;
-            finite("changes", changes, self.terms, from..to)?;
-            arch.dispatch(Kernel {
-                condensed: self,
-                coefficients: &coefficients[from * self.patterns..to * self.patterns],
-                changes: &changes[from * self.terms..to * self.terms],
-                results,
-            })
-            .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
-        })
+        let nothing = || Ok(());
+        in_chunks(
+            results,
+            self.outputs,
+            CHUNK,
+            threads,
+            nothing,
+            |(), rows, results| {
+                let Range {
+                    start: from,
+                    end: to,
+                } = rows;
+                finite("coefficients", coefficients, self.patterns, from..to)?;
+                finite("changes", changes, self.terms, from..to)?;
+                arch.dispatch(Kernel {
+                    condensed: self,
+                    coefficients: &coefficients[from * self.patterns..to * self.patterns],
+                    changes: &changes[from * self.terms..to * self.terms],
+                    results,
+                })
+                .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
+            },
+        )
     }
 
     /// Derivatives of the outputs of n samples along c directions, written to `results`
@@ -120,75 +132,40 @@ impl Condensed {
         check("coefficient_rates", rates.0, rows * of_loads)?;
         check("change_rates", rates.1, rows * of_changes)?;
         let arch = Arch::new();
-        in_chunks(results, width, threads, |from, to, results| {
-            finite("coefficients", coefficients, self.patterns, from..to)?;
-            finite("changes", changes, self.terms, from..to)?;
-            finite("coefficient_rates", rates.0, of_loads, from..to)?;
-            finite("change_rates", rates.1, of_changes, from..to)?;
-            arch.dispatch(SensitivityKernel {
-                condensed: self,
-                directions,
-                coefficients: &coefficients[from * self.patterns..to * self.patterns],
-                changes: &changes[from * self.terms..to * self.terms],
-                coefficient_rates: &rates.0[from * of_loads..to * of_loads],
-                change_rates: &rates.1[from * of_changes..to * of_changes],
-                results,
-            })
-            .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
-        })
+        let nothing = || Ok(());
+        in_chunks(
+            results,
+            width,
+            CHUNK,
+            threads,
+            nothing,
+            |(), rows, results| {
+                let Range {
+                    start: from,
+                    end: to,
+                } = rows;
+                finite("coefficients", coefficients, self.patterns, from..to)?;
+                finite("changes", changes, self.terms, from..to)?;
+                finite("coefficient_rates", rates.0, of_loads, from..to)?;
+                finite("change_rates", rates.1, of_changes, from..to)?;
+                arch.dispatch(SensitivityKernel {
+                    condensed: self,
+                    directions,
+                    coefficients: &coefficients[from * self.patterns..to * self.patterns],
+                    changes: &changes[from * self.terms..to * self.terms],
+                    coefficient_rates: &rates.0[from * of_loads..to * of_loads],
+                    change_rates: &rates.1[from * of_changes..to * of_changes],
+                    results,
+                })
+                .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
+            },
+        )
     }
 
     fn check(&self, coefficients: &[f64], changes: &[f64], rows: usize) -> Result<()> {
         check("coefficients", coefficients, rows * self.patterns)?;
         check("changes", changes, rows * self.terms)
     }
-}
-
-/// Runs `work(from, to, results)` over chunks of rows. What a chunk holds does not depend on the
-/// number of threads, and neither do the results.
-fn in_chunks(
-    results: &mut [f64],
-    width: usize,
-    threads: usize,
-    work: impl Fn(usize, usize, &mut [f64]) -> Result<()> + Sync,
-) -> Result<()> {
-    if results.is_empty() {
-        return Ok(());
-    }
-    let parts: Vec<_> = results.chunks_mut(CHUNK * width).enumerate().collect();
-    let threads = threads.clamp(1, parts.len());
-    let waiting = Mutex::new(parts.into_iter());
-    let failed = Mutex::new(None::<(usize, Error)>);
-    let labour = || {
-        while let Some((number, part)) = lock(&waiting).next() {
-            let from = number * CHUNK;
-            if let Err(error) = work(from, from + part.len() / width, part) {
-                let mut first = lock(&failed);
-                if first.as_ref().is_none_or(|(before, _)| number < *before) {
-                    *first = Some((number, error));
-                }
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(labour);
-        }
-        labour();
-    });
-    match failed
-        .into_inner()
-        .unwrap_or_else(|poisoned| poisoned.into_inner())
-    {
-        Some((_, error)) => Err(error),
-        None => Ok(()),
-    }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex
-        .lock()
-        .unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 fn check(name: &str, values: &[f64], length: usize) -> Result<()> {

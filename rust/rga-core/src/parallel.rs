@@ -1,67 +1,76 @@
 //! Rows of results, shared among threads.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::ops::Range;
+use std::sync::{Mutex, MutexGuard};
 use std::thread;
 
 use crate::error::{Error, Result};
 
-/// Rows that a thread takes at a time.
-const CHUNK: usize = 16;
-
-/// `work(scratch, row, results)` of every row, one behind the other, or the
-/// error of the first row that fails. Neither depends on the number of
-/// threads. Each thread works in a scratch of its own from `prepare`, which
-/// must not carry anything from row to row.
-pub fn for_each_row<S>(
-    rows: usize,
+/// Runs `work(scratch, rows, results)` over chunks of rows, `width` numbers a row.
+///
+/// What a chunk holds does not depend on the number of threads, and neither do the results; the
+/// error is that of the first chunk that fails. Each thread works in a scratch of its own from
+/// `prepare`, which must not carry anything from chunk to chunk.
+pub fn in_chunks<S>(
+    results: &mut [f64],
+    width: usize,
+    chunk: usize,
     threads: usize,
     prepare: impl Fn() -> Result<S> + Sync,
-    work: impl Fn(&mut S, usize, &mut Vec<f64>) -> Result<()> + Sync,
-) -> Result<Vec<f64>> {
+    work: impl Fn(&mut S, Range<usize>, &mut [f64]) -> Result<()> + Sync,
+) -> Result<()> {
     if threads == 0 {
         return Err(Error::invalid("threads must be 1 or more"));
     }
-    let chunks = rows.div_ceil(CHUNK);
-    let next = AtomicUsize::new(0);
-    let failed = AtomicBool::new(false);
-    // Chunks are taken in their order: when one fails, all before it are
-    // taken and come to their end.
-    let share = || -> Result<Vec<(usize, Result<Vec<f64>>)>> {
-        let mut scratch = prepare()?;
-        let mut done = Vec::new();
-        while !failed.load(Ordering::Relaxed) {
-            let chunk = next.fetch_add(1, Ordering::Relaxed);
-            if chunk >= chunks {
+    if results.is_empty() {
+        return Ok(());
+    }
+    let count = (results.len() / width).div_ceil(chunk);
+    let waiting = Mutex::new(results.chunks_mut(chunk * width).enumerate());
+    let failed = Mutex::new(None::<(usize, Error)>);
+    let labour = || {
+        let fail = |number: usize, error: Error| {
+            let mut first = lock(&failed);
+            if first.as_ref().is_none_or(|(before, _)| number < *before) {
+                *first = Some((number, error));
+            }
+        };
+        let mut scratch = match prepare() {
+            Ok(scratch) => scratch,
+            Err(error) => return fail(0, error),
+        };
+        // Chunks are taken in their order: when one fails, all before it are under way.
+        while lock(&failed).is_none() {
+            let Some((number, part)) = lock(&waiting).next() else {
+                break;
+            };
+            let from = number * chunk;
+            let rows = from..from + part.len() / width;
+            if let Err(error) = work(&mut scratch, rows, part) {
+                fail(number, error);
+            }
+        }
+    };
+    thread::scope(|scope| {
+        // Where the system has no more threads to give, fewer do the work.
+        for _ in 1..threads.min(count) {
+            if thread::Builder::new().spawn_scoped(scope, labour).is_err() {
                 break;
             }
-            let mut results = Vec::new();
-            let own = chunk * CHUNK..rows.min((chunk + 1) * CHUNK);
-            let outcome = own
-                .into_iter()
-                .try_for_each(|row| work(&mut scratch, row, &mut results));
-            failed.fetch_or(outcome.is_err(), Ordering::Relaxed);
-            done.push((chunk, outcome.map(|()| results)));
         }
-        Ok(done)
-    };
-    let mut done = thread::scope(|scope| {
-        // Where the system has no more threads to give, fewer do the work.
-        let others: Vec<_> = (1..threads.min(chunks))
-            .map_while(|_| thread::Builder::new().spawn_scoped(scope, share).ok())
-            .collect();
-        let mut done = share()?;
-        for other in others {
-            match other.join() {
-                Ok(more) => done.extend(more?),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        Ok(done)
-    })?;
-    done.sort_by_key(|&(chunk, _)| chunk);
-    let mut results = Vec::new();
-    for (_, chunk) in done {
-        results.extend(chunk?);
+        labour();
+    });
+    match failed.into_inner() {
+        Ok(None) => Ok(()),
+        Ok(Some((_, error))) => Err(error),
+        Err(poisoned) => poisoned
+            .into_inner()
+            .map_or(Ok(()), |(_, error)| Err(error)),
     }
-    Ok(results)
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
 }
