@@ -25,7 +25,7 @@ test: wheel  ## build and install rga in a fresh environment, and run every chec
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	$(TEST)/python -m mypy.stubtest rga._core
-	$(TEST)/python -m pytest tests --pyargs rga --numprocesses auto --dist loadfile
+	$(TEST)/python -m pytest tests --pyargs rga --numprocesses auto --dist worksteal
 
 # pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.
 wheel:

@@ -283,13 +283,13 @@ def test_junk_in_an_effect(other: dict[str, Any]) -> None:
     check_each_junk(model, [("effects", "other", *place) for place in places(other)])
 
 
-@settings(max_examples=500, derandomize=True, deadline=None)
+@settings(max_examples=250, derandomize=True, deadline=None)
 @given(damaged_models())
 def test_several_damages(model: dict[str, Any]) -> None:
     check(model)
 
 
-@settings(max_examples=300, derandomize=True, deadline=None)
+@settings(max_examples=120, derandomize=True, deadline=None)
 @given(damaged_texts())
 def test_damaged_texts(
     tmp_path_factory: pytest.TempPathFactory, damaged: tuple[str, bytes]

@@ -13,8 +13,7 @@ from rga.model.parameter import FloatArray
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import IntArray, Load, Structure, build_structure
-from rga.simulation.condensation import Condensation
-from rga.simulation.plan import Plan, Request, answer
+from rga.simulation.plan import Plan, Prepared, Request, answer
 from rga.simulation.sensitivity import jacobian
 
 if TYPE_CHECKING:
@@ -53,7 +52,7 @@ class Simulator:
     def __init__(self, model: Model, _structure: Structure | None = None) -> None:
         self.model = model
         self._structure = build_structure(model) if _structure is None else _structure
-        self._prepared: dict[bytes, Condensation] = {}
+        self._prepared: Prepared = []
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects."""
