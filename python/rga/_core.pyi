@@ -93,6 +93,15 @@ class Condensed:
     ) -> NDArray[np.float64]:
         """Derivatives [n, count, o] along directions."""
 
+    def pull_back(
+        self,
+        coefficients: NDArray[np.float64],
+        changes: NDArray[np.float64],
+        gradients: NDArray[np.float64],
+        threads: int = 1,
+    ) -> NDArray[np.float64]:
+        """Gradients [n, p + r] of outputs times gradients [n, o]: the adjoint."""
+
 @final
 class Refactored:
     """Samples of a structure of which every stiffness may vary; `help(Refactored)` tells more."""
@@ -109,7 +118,29 @@ class Refactored:
         coefficients: NDArray[np.float64],
         threads: int = 1,
     ) -> NDArray[np.float64]:
-        """Outputs [n, outputs] of n samples; 0 as a factor removes a member or spring."""
+        """Outputs [n, o] of n samples; 0 as a factor removes a member or spring."""
+
+    def differentiate(
+        self,
+        factors: NDArray[np.float64],
+        coefficients: NDArray[np.float64],
+        directions: int,
+        loads: NDArray[np.int64],
+        coefficient_rates: NDArray[np.float64],
+        elements: NDArray[np.int64],
+        factor_rates: NDArray[np.float64],
+        threads: int = 1,
+    ) -> NDArray[np.float64]:
+        """Derivatives [n, directions, o] along directions."""
+
+    def pull_back(
+        self,
+        factors: NDArray[np.float64],
+        coefficients: NDArray[np.float64],
+        gradients: NDArray[np.float64],
+        threads: int = 1,
+    ) -> NDArray[np.float64]:
+        """Gradients [n, p + elements] of outputs times gradients [n, o]: the adjoint."""
 
 @final
 class GaussianWindow:

@@ -78,6 +78,21 @@ impl LowerTriangle {
         starts.iter().map(|&start| self.values[start]).collect()
     }
 
+    /// K x, both triangles taken.
+    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        for column in 0..self.size() {
+            let own = self.first[column]..self.first[column + 1];
+            let mut sum = self.values[own.start] * x[column];
+            for at in own.start + 1..own.end {
+                product[self.rows[at]] += self.values[at] * x[column];
+                sum += self.values[at] * x[self.rows[at]];
+            }
+            product[column] += sum;
+        }
+        product
+    }
+
     /// S K S with diagonal S.
     pub fn scale(&mut self, scale: &[f64]) {
         for column in 0..self.size() {

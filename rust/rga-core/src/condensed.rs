@@ -10,6 +10,7 @@
 //! unit loads and unit pseudo-forces (Woodbury's identity, written as a condensation). The cost
 //! does not depend on the size of the structure.
 
+mod adjoint;
 mod kernel;
 mod sensitivity;
 
@@ -17,10 +18,11 @@ use std::ops::Range;
 
 use pulp::Arch;
 
+use crate::directions::Directions;
 use crate::error::{Error, Result};
 use crate::parallel::in_chunks;
+use adjoint::AdjointKernel;
 use kernel::Kernel;
-pub use sensitivity::Directions;
 use sensitivity::SensitivityKernel;
 
 /// Rows that one thread takes at a time.
@@ -82,32 +84,19 @@ impl Condensed {
         results: &mut [f64],
         threads: usize,
     ) -> Result<()> {
-        let rows = results.len() / self.outputs.max(1);
-        self.check(coefficients, changes, rows)?;
+        let given = [
+            ("coefficients", coefficients, self.patterns),
+            ("changes", changes, self.terms),
+        ];
         let arch = Arch::new();
-        let nothing = || Ok(());
-        in_chunks(
-            results,
-            self.outputs,
-            CHUNK,
-            threads,
-            nothing,
-            |(), rows, results| {
-                let Range {
-                    start: from,
-                    end: to,
-                } = rows;
-                finite("coefficients", coefficients, self.patterns, from..to)?;
-                finite("changes", changes, self.terms, from..to)?;
-                arch.dispatch(Kernel {
-                    condensed: self,
-                    coefficients: &coefficients[from * self.patterns..to * self.patterns],
-                    changes: &changes[from * self.terms..to * self.terms],
-                    results,
-                })
-                .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
-            },
-        )
+        in_parts(given, results, self.outputs, threads, |[q, d], results| {
+            arch.dispatch(Kernel {
+                condensed: self,
+                coefficients: q,
+                changes: d,
+                results,
+            })
+        })
     }
 
     /// Derivatives of the outputs of n samples along c directions, written to `results`
@@ -124,48 +113,90 @@ impl Condensed {
         results: &mut [f64],
         threads: usize,
     ) -> Result<()> {
-        directions.check(self)?;
+        directions.check(self.patterns, self.terms)?;
+        let given = [
+            ("coefficients", coefficients, self.patterns),
+            ("changes", changes, self.terms),
+            ("coefficient_rates", rates.0, directions.loads.len()),
+            ("change_rates", rates.1, directions.changes.len()),
+        ];
         let width = self.outputs * directions.count;
-        let rows = results.len() / width.max(1);
-        self.check(coefficients, changes, rows)?;
-        let [of_loads, of_changes] = [directions.loads.len(), directions.changes.len()];
-        check("coefficient_rates", rates.0, rows * of_loads)?;
-        check("change_rates", rates.1, rows * of_changes)?;
         let arch = Arch::new();
-        let nothing = || Ok(());
-        in_chunks(
+        in_parts(
+            given,
             results,
             width,
-            CHUNK,
             threads,
-            nothing,
-            |(), rows, results| {
-                let Range {
-                    start: from,
-                    end: to,
-                } = rows;
-                finite("coefficients", coefficients, self.patterns, from..to)?;
-                finite("changes", changes, self.terms, from..to)?;
-                finite("coefficient_rates", rates.0, of_loads, from..to)?;
-                finite("change_rates", rates.1, of_changes, from..to)?;
+            |[q, d, of_q, of_d], results| {
                 arch.dispatch(SensitivityKernel {
                     condensed: self,
                     directions,
-                    coefficients: &coefficients[from * self.patterns..to * self.patterns],
-                    changes: &changes[from * self.terms..to * self.terms],
-                    coefficient_rates: &rates.0[from * of_loads..to * of_loads],
-                    change_rates: &rates.1[from * of_changes..to * of_changes],
+                    coefficients: q,
+                    changes: d,
+                    coefficient_rates: of_q,
+                    change_rates: of_d,
                     results,
                 })
-                .map_or(Ok(()), |row| Err(Error::UnstableSample { row: from + row }))
             },
         )
     }
 
-    fn check(&self, coefficients: &[f64], changes: &[f64], rows: usize) -> Result<()> {
-        check("coefficients", coefficients, rows * self.patterns)?;
-        check("changes", changes, rows * self.terms)
+    /// Derivatives of the sum of the outputs times `gradients` `[n, o]`, by the coefficients and
+    /// then by the changes, written to `results` `[n, p + r]`: the adjoint of `respond`.
+    pub fn pull_back(
+        &self,
+        coefficients: &[f64],
+        changes: &[f64],
+        gradients: &[f64],
+        results: &mut [f64],
+        threads: usize,
+    ) -> Result<()> {
+        let given = [
+            ("coefficients", coefficients, self.patterns),
+            ("changes", changes, self.terms),
+            ("gradients", gradients, self.outputs),
+        ];
+        let width = self.patterns + self.terms;
+        let arch = Arch::new();
+        in_parts(given, results, width, threads, |[q, d, g], results| {
+            arch.dispatch(AdjointKernel {
+                condensed: self,
+                coefficients: q,
+                changes: d,
+                gradients: g,
+                results,
+            })
+        })
     }
+}
+
+/// Checks `given` arrays, (name, values, width) each, and has `work` fill `width` numbers a row;
+/// it gives the first of its rows that is not stable.
+fn in_parts<const N: usize>(
+    given: [(&str, &[f64], usize); N],
+    results: &mut [f64],
+    width: usize,
+    threads: usize,
+    work: impl Fn([&[f64]; N], &mut [f64]) -> Option<usize> + Sync,
+) -> Result<()> {
+    let rows = results.len() / width.max(1);
+    for (name, values, own) in given {
+        check(name, values, rows * own)?;
+    }
+    let nothing = || Ok(());
+    let part = |(): &mut (), rows: Range<usize>, results: &mut [f64]| {
+        for (name, values, own) in given {
+            finite(name, values, own, rows.clone())?;
+        }
+        let own = given.map(|(_, values, own)| &values[rows.start * own..rows.end * own]);
+        let unstable = work(own, results);
+        unstable.map_or(Ok(()), |row| {
+            Err(Error::UnstableSample {
+                row: rows.start + row,
+            })
+        })
+    };
+    in_chunks(results, width, CHUNK, threads, nothing, part)
 }
 
 fn check(name: &str, values: &[f64], length: usize) -> Result<()> {

@@ -158,6 +158,23 @@ impl Constraints {
         }
         forces
     }
+
+    /// Weights of what is out of balance, by dof, in the force of supports along a direction at
+    /// three dofs.
+    pub fn support_weights(&self, first: usize, direction: &[f64]) -> Vec<(usize, f64)> {
+        let along = |constraint: &Constraint| -> f64 {
+            if matches!(constraint.value, Value::Zero) {
+                return 0.0;
+            }
+            let own = constraint.terms.iter().filter(|term| term.0 >= first);
+            let own = own.filter_map(|term| Some(direction.get(term.0 - first)? * term.1));
+            own.sum()
+        };
+        let multipliers: Vec<f64> = self.list.iter().map(along).collect();
+        let removed = self.rows.iter().enumerate();
+        let removed = removed.filter_map(|(dof, row)| Some((dof, row.as_ref()?.sum(&multipliers))));
+        removed.filter(|(_, weight)| *weight != 0.0).collect()
+    }
 }
 
 impl Row {

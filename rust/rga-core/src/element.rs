@@ -50,15 +50,6 @@ impl Beam {
         }
     }
 
-    /// Every stiffness times `factor`.
-    pub fn scaled(&self, factor: f64) -> Self {
-        let mut beam = *self;
-        beam.ea *= factor;
-        beam.gj *= factor;
-        beam.planes.iter_mut().for_each(|plane| plane.ei *= factor);
-        beam
-    }
-
     pub fn stiffness(&self) -> Matrix12 {
         let mut k = Matrix12::zeros();
         for (first, stiffness) in [(0, self.ea), (3, self.gj)] {

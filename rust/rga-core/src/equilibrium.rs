@@ -11,13 +11,13 @@ use crate::reduction::Reduction;
 use crate::stability::Solver;
 
 /// A residual above this part of the load asks for one refinement step.
-const REFINE: f64 = 1e-12;
+pub const REFINE: f64 = 1e-12;
 
 /// A residual above this part of load and internal forces is refused.
-const REFUSE: f64 = 1e-9;
+pub const REFUSE: f64 = 1e-9;
 
 /// A moment on a held rotation below this part of the largest load is rounding.
-const LOOSE_MOMENT: f64 = 1e-9;
+pub const LOOSE_MOMENT: f64 = 1e-9;
 
 pub struct Equilibrium<'a> {
     pub model: &'a Model,
@@ -62,12 +62,7 @@ impl Equilibrium<'_> {
         let loaded = |&&dof: &&usize| unbalanced[dof].abs() > LOOSE_MOMENT * largest;
         match self.reduction.held.iter().find(loaded) {
             None => Ok(()),
-            Some(dof) => Err(Error::invalid(format!(
-                "{load} puts a moment on {} of node {}, which no member, spring or support \
-                 resists; remove the moment or stiffen the rotation",
-                DOFS[dof % 6],
-                dof / 6
-            ))),
+            Some(dof) => Err(loose_moment(load, *dof)),
         }
     }
 
@@ -106,4 +101,13 @@ impl Equilibrium<'_> {
             .map(|(applied, internal)| applied - internal)
             .collect();
     }
+}
+
+pub fn loose_moment(load: impl Display, dof: usize) -> Error {
+    Error::invalid(format!(
+        "{load} puts a moment on {} of node {}, which no member, spring or support resists; remove \
+         the moment or stiffen the rotation",
+        DOFS[dof % 6],
+        dof / 6
+    ))
 }

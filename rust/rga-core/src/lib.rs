@@ -10,8 +10,9 @@
 //! the steps; `friction` follows bearings through time.
 //!
 //! `refactor` repeats an analysis for samples of which every stiffness may
-//! vary: loads are combined (`combination`), the matrix is filled in place
-//! (`scatter`), and rows are shared among threads (`parallel`).
+//! vary: the structure is read off its elements as sums over their factors
+//! (`system`, `bilinear`), the matrix is filled in place, and rows are shared
+//! among threads (`parallel`).
 //!
 //! `condensed` repeats an analysis for many samples of which few
 //! stiffnesses, or none, vary.
@@ -20,13 +21,14 @@
 
 mod assembly;
 mod axes;
+mod bilinear;
 mod check;
 mod check_loads;
 mod check_structure;
-mod combination;
 mod condensed;
 mod connection;
 mod constraint;
+mod directions;
 mod element;
 mod equilibrium;
 mod error;
@@ -41,14 +43,15 @@ mod parallel;
 mod reduction;
 mod refactor;
 mod respond;
-mod scatter;
 mod solve;
 mod stability;
+mod system;
 
-pub use condensed::{Condensed, Directions};
+pub use condensed::Condensed;
+pub use directions::Directions;
 pub use error::{Error, Result};
 pub use friction::{Bearings, slide};
 pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
 pub use input::{Array, Loads, Outputs, Structure};
-pub use refactor::Refactored;
+pub use refactor::{Refactored, Samples};
 pub use respond::respond;

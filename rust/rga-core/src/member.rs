@@ -26,8 +26,8 @@ pub struct Frame {
     pub beam: Beam,
     pub rigid: [f64; 2],
     pub connection: Connection,
-    /// In series with the local end dofs.
-    ends: [f64; 12],
+    /// One of the connections is neither released nor rigid.
+    yields: bool,
     /// Between the nodes, in local axes.
     stiffness: Matrix12,
 }
@@ -57,19 +57,9 @@ impl Member {
         Ok(member)
     }
 
-    /// Every stiffness of `base` times `factor`; end connections stay as they
-    /// are.
-    pub fn scale(&mut self, base: &Self, factor: f64) {
-        self.ea = base.ea * factor;
-        if let (Some(frame), Some(base)) = (&mut self.frame, &base.frame) {
-            frame.scale(base, factor);
-        }
-    }
-
     /// The stiffness is proportional to that of the bare member.
     pub fn is_proportional(&self) -> bool {
-        let yields = |frame: &Frame| frame.yields();
-        !self.frame.as_deref().is_some_and(yields)
+        !self.frame.as_deref().is_some_and(|frame| frame.yields)
     }
 
     /// The global dofs that the member stiffens, and its stiffness there.
@@ -131,15 +121,15 @@ impl Member {
         self.axis().dot(&(at(self.nodes[1]) - at(self.nodes[0])))
     }
 
-    /// Adds local end forces to a global vector of all dofs.
-    pub fn add_forces(&self, local: &Vector12, total: &mut [f64]) {
+    /// Calls `add(dof, force)` for local end forces in global components.
+    pub fn for_each_force(&self, local: &Vector12, mut add: impl FnMut(usize, f64)) {
         // A truss member has no end moments.
         let step = if self.frame.is_some() { 1 } else { 2 };
         for block in (0..4).step_by(step) {
             let global = self.axes.tr_mul(&local.fixed_rows::<3>(3 * block));
             let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
-            for (sum, force) in total[first..first + 3].iter_mut().zip(global.iter()) {
-                *sum += force;
+            for (axis, force) in global.iter().enumerate() {
+                add(first + axis, *force);
             }
         }
     }
@@ -189,14 +179,9 @@ impl Frame {
                 ),
             ],
         );
-        let mut ends = [f64::INFINITY; 12];
-        ends.copy_from_slice(structure.connection.row(index));
-        Self::assemble(beam, rigid, ends)
-    }
-
-    fn assemble(beam: Beam, rigid: [f64; 2], ends: [f64; 12]) -> Self {
+        let ends = structure.connection.row(index);
         let mut stiffness = beam.stiffness();
-        let connection = Connection::condense(&mut stiffness, &ends);
+        let connection = Connection::condense(&mut stiffness, ends);
         if rigid != [0.0; 2] {
             let arm = rigid_arm(rigid);
             stiffness = arm.tr_mul(&(stiffness * arm));
@@ -205,24 +190,8 @@ impl Frame {
             beam,
             rigid,
             connection,
-            ends,
+            yields: ends.iter().any(|&end| end.is_finite() && end > 0.0),
             stiffness,
-        }
-    }
-
-    /// A connection that is neither released nor rigid.
-    fn yields(&self) -> bool {
-        self.ends.iter().any(|&end| end.is_finite() && end > 0.0)
-    }
-
-    fn scale(&mut self, base: &Self, factor: f64) {
-        let beam = base.beam.scaled(factor);
-        if base.yields() {
-            *self = Self::assemble(beam, base.rigid, base.ends);
-        } else {
-            // What the connections pass on does not change with the factor.
-            self.beam = beam;
-            self.stiffness = base.stiffness * factor;
         }
     }
 

@@ -22,6 +22,21 @@ impl Spring {
             add(other, self.dof, -self.stiffness);
         }
     }
+
+    /// Forces of the nodes on the spring, `add(dof, force)`.
+    pub fn for_each_force(&self, displacements: &[f64], mut add: impl FnMut(usize, f64)) {
+        let terms = self.terms();
+        let elongation: f64 = terms.map(|(dof, sign)| sign * displacements[dof]).sum();
+        for (dof, sign) in self.terms() {
+            add(dof, sign * self.stiffness * elongation);
+        }
+    }
+
+    /// Its elongation, as (dof, factor).
+    pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
+        let other = self.other.map(|other| (other, -1.0));
+        std::iter::once((self.dof, 1.0)).chain(other)
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -60,17 +75,6 @@ impl Model {
         }
     }
 
-    /// Every stiffness of `base` times the factor of its member or spring.
-    pub fn scale(&mut self, base: &Self, factors: &[f64]) {
-        let (members, springs) = factors.split_at(self.members.len());
-        for ((member, base), &factor) in self.members.iter_mut().zip(&base.members).zip(members) {
-            member.scale(base, factor);
-        }
-        for ((spring, base), factor) in self.springs.iter_mut().zip(&base.springs).zip(springs) {
-            spring.stiffness = base.stiffness * factor;
-        }
-    }
-
     pub fn diagonal(&self) -> Result<Vec<f64>> {
         let mut diagonal = vec![0.0; self.dofs];
         self.for_each_stiffness(|row, column, value| {
@@ -91,15 +95,11 @@ impl Model {
     pub fn internal_forces(&self, displacements: &[f64], fixed_end: &[Vector12]) -> Vec<f64> {
         let mut total = vec![0.0; self.dofs];
         for (member, fixed_end) in self.members.iter().zip(fixed_end) {
-            member.add_forces(&member.end_forces(displacements, fixed_end), &mut total);
+            let forces = member.end_forces(displacements, fixed_end);
+            member.for_each_force(&forces, |dof, force| total[dof] += force);
         }
         for spring in &self.springs {
-            let far = spring.other.map_or(0.0, |other| displacements[other]);
-            let force = spring.stiffness * (displacements[spring.dof] - far);
-            total[spring.dof] += force;
-            if let Some(other) = spring.other {
-                total[other] -= force;
-            }
+            spring.for_each_force(displacements, |dof, force| total[dof] += force);
         }
         total
     }

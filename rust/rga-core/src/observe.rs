@@ -19,16 +19,30 @@ pub struct State<'a> {
 
 #[derive(Debug, Clone, Copy)]
 pub enum Output {
-    /// Displacement or rotation of a node (first dof), relative to another.
-    Motion(usize, Option<usize>, [f64; 3]),
-    /// At (place in 0..1, y, z); total or mechanical.
-    Strain(usize, [f64; 3], bool),
-    /// At a place in 0..1.
-    AxialForce(usize, f64),
+    Motion(Motion),
+    /// Of a member.
+    Member(usize, Reading),
     /// Force or moment of supports on a node (first dof).
     Reaction(usize, [f64; 3]),
-    /// Local end dof of a member.
-    EndForce(usize, usize),
+}
+
+/// Displacement or rotation of a node, relative to another.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion {
+    /// First dof of the node.
+    first: usize,
+    reference: Option<usize>,
+    direction: [f64; 3],
+}
+
+#[derive(Debug, Clone, Copy)]
+pub enum Reading {
+    /// At (place in 0..1, y, z); total or mechanical.
+    Strain([f64; 3], bool),
+    /// At a place in 0..1.
+    AxialForce(f64),
+    /// Of a local end dof.
+    EndForce(usize),
 }
 
 pub struct Observer<'a> {
@@ -60,20 +74,24 @@ impl<'a> Observer<'a> {
         } else {
             Vec::new()
         };
-        let values = self.outputs.iter().map(|output| match *output {
-            Output::Motion(first, reference, direction) => {
-                let own = along(&state.displacements, first, &direction);
-                own - reference.map_or(0.0, |at| along(&state.displacements, at, &direction))
-            }
-            Output::Strain(index, place, total) => self.strain(state, index, &place, total),
-            Output::AxialForce(index, place) => {
+        let values = self.outputs.iter().map(|output| match output {
+            Output::Motion(motion) => motion.of(&state.displacements),
+            Output::Member(index, reading) => self.member(state, *index, reading),
+            Output::Reaction(first, direction) => along(&reactions, *first, direction),
+        });
+        results.extend(values);
+    }
+
+    /// What is read of one member.
+    pub fn member(&self, state: &State, index: usize, reading: &Reading) -> f64 {
+        match *reading {
+            Reading::Strain(place, total) => self.strain(state, index, &place, total),
+            Reading::AxialForce(place) => {
                 let x = place * self.model.members[index].length;
                 self.section(state, index, x).axial
             }
-            Output::Reaction(first, direction) => along(&reactions, first, &direction),
-            Output::EndForce(index, dof) => self.end_forces(state, index)[dof],
-        });
-        results.extend(values);
+            Reading::EndForce(dof) => self.end_forces(state, index)[dof],
+        }
     }
 
     fn reactions(&self, state: &State) -> Vec<f64> {
@@ -130,6 +148,23 @@ impl<'a> Observer<'a> {
     }
 }
 
+impl Motion {
+    fn of(&self, displacements: &[f64]) -> f64 {
+        let terms = self.terms();
+        terms.map(|(dof, factor)| factor * displacements[dof]).sum()
+    }
+
+    /// (dof, factor)
+    pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let direction = self.direction;
+        let at = move |first: usize, sign: f64| {
+            (0..3).map(move |axis| (first + axis, sign * direction[axis]))
+        };
+        let reference = self.reference.into_iter();
+        at(self.first, 1.0).chain(reference.flat_map(move |first| at(first, -1.0)))
+    }
+}
+
 impl Section {
     /// The part of a member load between the first node and the section at x.
     fn add(&mut self, load: &MemberLoad, x: f64) {
@@ -164,13 +199,17 @@ fn read_output(outputs: &Outputs, at: usize) -> Output {
         kind @ (0 | 1) => {
             let first = 3 * kind as usize;
             let reference = (other >= 0).then(|| 6 * other as usize + first);
-            Output::Motion(6 * index + first, reference, vector)
+            Output::Motion(Motion {
+                first: 6 * index + first,
+                reference,
+                direction: vector,
+            })
         }
-        2 => Output::Strain(index, vector, outputs.total[at]),
-        3 => Output::AxialForce(index, vector[0]),
+        2 => Output::Member(index, Reading::Strain(vector, outputs.total[at])),
+        3 => Output::Member(index, Reading::AxialForce(vector[0])),
         4 => Output::Reaction(6 * index, vector),
         5 => Output::Reaction(6 * index + 3, vector),
-        _ => Output::EndForce(index, other as usize),
+        _ => Output::Member(index, Reading::EndForce(other as usize)),
     }
 }
 

@@ -1,9 +1,10 @@
 //! Refuses structures that can move freely, and says what moves.
 
 use crate::assembly::LowerTriangle;
+use crate::equilibrium::{REFINE, REFUSE};
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::reduction::{Reduction, stiffest};
+use crate::reduction::{NO_STIFFNESS, Reduction, stiffest};
 use crate::solve::Factor;
 
 /// Smallest pivot of the scaled matrix, whose diagonal is 1.
@@ -81,6 +82,65 @@ impl Solver {
         self.factor.solve(right, right.len() / size)?;
         self.apply_scale(right);
         Ok(())
+    }
+
+    /// Solves in place, refines once if needed and checks the residual of each column; false where
+    /// it stays large.
+    pub fn solve_checked(&self, right: &mut [f64]) -> Result<bool> {
+        let size = self.scale.len();
+        if size == 0 {
+            return Ok(true);
+        }
+        let loads = right.to_vec();
+        self.solve(right)?;
+        for (load, unknowns) in loads.chunks_exact(size).zip(right.chunks_exact_mut(size)) {
+            let applied = self.force_norm(load);
+            let mut residual = self.residual(unknowns, load);
+            if self.force_norm(&residual) > REFINE * applied {
+                self.solve(&mut residual)?;
+                for (unknown, correction) in unknowns.iter_mut().zip(&residual) {
+                    *unknown += correction;
+                }
+                residual = self.residual(unknowns, load);
+            }
+            // Written so that NaN is refused as well.
+            let small = REFUSE * (applied + self.motion_norm(unknowns));
+            if !(self.force_norm(&residual) <= small) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// `load` - K `unknowns`
+    fn residual(&self, unknowns: &[f64], load: &[f64]) -> Vec<f64> {
+        let pairs = unknowns.iter().zip(&self.scale);
+        let scaled: Vec<f64> = pairs.map(|(unknown, scale)| unknown / scale).collect();
+        let mut residual = self.matrix.product(&scaled);
+        for ((value, load), scale) in residual.iter_mut().zip(load).zip(&self.scale) {
+            *value = load - *value / scale;
+        }
+        residual
+    }
+
+    /// Gives rotations that nothing stiffens a stiffness, so that they stay where they are;
+    /// `factorise` must follow. The unknowns that it held.
+    pub fn hold_loose(&mut self, reduction: &Reduction, dofs: usize) -> Vec<usize> {
+        let mut all = vec![0.0; dofs];
+        let diagonal = self.matrix.diagonal();
+        for (&dof, value) in reduction.unknowns.iter().zip(&diagonal) {
+            all[dof] = *value;
+        }
+        let rotations = reduction.unknowns.iter().enumerate();
+        let rotations = rotations.filter(|(_, dof)| *dof % 6 >= 3);
+        let loose: Vec<usize> = rotations
+            .filter(|&(at, &dof)| diagonal[at] <= NO_STIFFNESS * stiffest(&all, dof))
+            .map(|(at, _)| at)
+            .collect();
+        for &at in &loose {
+            self.matrix.values[self.matrix.first[at]] = 1.0;
+        }
+        loose
     }
 
     fn apply_scale(&self, values: &mut [f64]) {

@@ -75,3 +75,21 @@ fn describe(value: &Bound<'_, PyAny>) -> String {
         Err(_) => kind,
     }
 }
+
+/// Pairs of indices, i64[n, 2].
+pub fn pairs(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<(usize, usize)>> {
+    let held = Held::<i64>::new(value, name)?;
+    let entries = held.view();
+    let index = |value: i64| {
+        usize::try_from(value)
+            .map_err(|_| InvalidInput::new_err(format!("{name} holds the index {value}")))
+    };
+    if entries.shape.len() != 2 || entries.shape[1] != 2 {
+        return Err(InvalidInput::new_err(format!("{name} must be [n, 2]")));
+    }
+    entries
+        .values
+        .chunks_exact(2)
+        .map(|pair| Ok((index(pair[0])?, index(pair[1])?)))
+        .collect()
+}

@@ -4,7 +4,7 @@ use numpy::{PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use rga_core::{Array, Directions};
 
-use crate::arrays::Held;
+use crate::arrays::{Held, pairs};
 use crate::exceptions::{InvalidInput, to_python};
 
 /// Samples of a structure of which few stiffnesses vary, or none.
@@ -156,6 +156,45 @@ impl Condensed {
         drop(held);
         Ok(shown)
     }
+
+    /// Derivatives of the sum of the outputs times given gradients: the adjoint of `respond`.
+    ///
+    /// Parameters
+    /// ----------
+    /// coefficients, changes : as for `respond`
+    /// gradients : f64[n, o]
+    /// threads : how many share the rows; the results do not depend on it
+    ///
+    /// Returns
+    /// -------
+    /// f64[n, p + r], by the coefficients, then by the changes
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput; UnstableSample, with the row
+    #[pyo3(signature = (coefficients, changes, gradients, threads=1))]
+    fn pull_back<'py>(
+        &self,
+        py: Python<'py>,
+        coefficients: &Bound<'py, PyAny>,
+        changes: &Bound<'py, PyAny>,
+        gradients: &Bound<'py, PyAny>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let coefficients = Held::new(coefficients, "coefficients")?;
+        let changes = Held::new(changes, "changes")?;
+        let gradients = Held::new(gradients, "gradients")?;
+        let (q, d) = (coefficients.view(), changes.view());
+        let g = gradients.view().values;
+        let rows = self.rows(q, d)?;
+        let found = PyArray2::zeros(py, [rows, self.0.patterns + self.0.terms], false);
+        let mut held = found.try_readwrite().map_err(|_| busy())?;
+        let results = held.as_slice_mut()?;
+        py.detach(|| self.0.pull_back(q.values, d.values, g, results, threads))
+            .map_err(|error| to_python(py, error))?;
+        drop(held);
+        Ok(found)
+    }
 }
 
 impl Condensed {
@@ -183,21 +222,4 @@ fn pair(array: Array<'_, f64>, name: &str) -> PyResult<[usize; 2]> {
         .shape
         .try_into()
         .map_err(|_| InvalidInput::new_err(format!("{name} must have two axes")))
-}
-
-fn pairs(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<(usize, usize)>> {
-    let held = Held::<i64>::new(value, name)?;
-    let entries = held.view();
-    let index = |value: i64| {
-        usize::try_from(value)
-            .map_err(|_| InvalidInput::new_err(format!("{name} holds the index {value}")))
-    };
-    if entries.shape.len() != 2 || entries.shape[1] != 2 {
-        return Err(InvalidInput::new_err(format!("{name} must be [n, 2]")));
-    }
-    entries
-        .values
-        .chunks_exact(2)
-        .map(|pair| Ok((index(pair[0])?, index(pair[1])?)))
-        .collect()
 }

@@ -6,37 +6,7 @@ use pulp::{Simd, WithSimd};
 
 use super::Condensed;
 use super::kernel::{PACK, Pack, Samples, add_product, gather, scatter, take_product};
-use crate::error::{Error, Result};
-
-/// Which entries of q and d change along each direction.
-#[derive(Debug, Clone)]
-pub struct Directions {
-    pub count: usize,
-    /// (direction, pattern)
-    pub loads: Vec<(usize, usize)>,
-    /// (direction, term)
-    pub changes: Vec<(usize, usize)>,
-}
-
-impl Directions {
-    pub fn check(&self, condensed: &Condensed) -> Result<()> {
-        for (name, entries, end) in [
-            ("loads", &self.loads, condensed.patterns),
-            ("changes", &self.changes, condensed.terms),
-        ] {
-            let outside =
-                |&&(direction, entry): &&(usize, usize)| direction >= self.count || entry >= end;
-            if let Some((direction, entry)) = entries.iter().find(outside) {
-                return Err(Error::invalid(format!(
-                    "{name} of the directions name entry {entry} of direction {direction}, of \
-                     {end} entries and {} directions",
-                    self.count
-                )));
-            }
-        }
-        Ok(())
-    }
-}
+use crate::directions::Directions;
 
 /// Derivatives `[n, c, o]` of rows; gives the first row whose structure is not stable.
 pub struct SensitivityKernel<'a> {

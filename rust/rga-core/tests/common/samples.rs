@@ -1,6 +1,6 @@
 //! Samples by `Refactored`, and the same by `respond`.
 
-use rga_core::{Array, Loads, Refactored, Result, respond};
+use rga_core::{Array, Loads, Refactored, Result, Samples, respond};
 
 use super::{Case, E, G, Output};
 
@@ -128,10 +128,26 @@ pub fn run(
     rows: usize,
     threads: usize,
 ) -> Result<Vec<f64>> {
-    let per_row = |values: &[f64]| [rows, values.len() / rows];
-    batch.respond(
-        Array::new(factors, &per_row(factors)),
-        Array::new(coefficients, &per_row(coefficients)),
-        threads,
-    )
+    lend(batch, factors, coefficients, rows, |samples| {
+        batch.respond(samples, threads)
+    })
+}
+
+/// Samples in arrays of the shape that `batch` takes; what is too long or too short is lent as it
+/// is.
+pub fn lend<R>(
+    batch: &Refactored,
+    factors: &[f64],
+    coefficients: &[f64],
+    rows: usize,
+    work: impl FnOnce(Samples) -> R,
+) -> R {
+    let shape =
+        |values: &[f64], width: usize| [rows, values.len().checked_div(rows).unwrap_or(width)];
+    let of_factors = shape(factors, batch.elements());
+    let of_coefficients = shape(coefficients, batch.patterns());
+    work(Samples {
+        factors: Array::new(factors, &of_factors),
+        coefficients: Array::new(coefficients, &of_coefficients),
+    })
 }

@@ -1,0 +1,77 @@
+//! Gradients of condensed samples by all that they depend on, one sample a SIMD lane.
+//!
+//! Of g' y, with a = C' g and (H + diag(d)) l = diag(d) a:
+//!
+//!   by q: Y' g - (H V)' l,    by d: (l - a) v, term by term.
+
+use pulp::{Simd, WithSimd};
+
+use super::Condensed;
+use super::kernel::{PACK, Samples, add_product, gather, scatter, take_product};
+
+/// Gradients `[n, p + r]` of rows; gives the first row whose structure is not stable.
+pub struct AdjointKernel<'a> {
+    pub condensed: &'a Condensed,
+    pub coefficients: &'a [f64],
+    pub changes: &'a [f64],
+    /// `[n, o]`
+    pub gradients: &'a [f64],
+    pub results: &'a mut [f64],
+}
+
+impl WithSimd for AdjointKernel<'_> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Option<usize> {
+        let Condensed {
+            patterns,
+            terms,
+            outputs,
+            ..
+        } = *self.condensed;
+        let width = patterns + terms;
+        let both = [&self.condensed.loaded[..], &self.condensed.influence[..]].concat();
+        let both = transposed(&both, outputs);
+        let driven = transposed(&self.condensed.driven, terms);
+        let zero = [simd.splat_f64s(0.0); PACK];
+        let mut samples = Samples::new(simd, self.condensed);
+        let mut gradients = vec![zero; outputs];
+        let mut found = vec![zero; width];
+        let mut adjoint = vec![zero; terms];
+        let many = PACK * S::F64_LANES;
+        let rows = self.results.len() / width;
+        for from in (0..rows).step_by(many) {
+            let present = many.min(rows - from);
+            samples.load(self.coefficients, self.changes, from, present);
+            if let Some(lane) = samples.solve(simd, present) {
+                return Some(from + lane);
+            }
+            gather::<S>(&mut gradients, self.gradients, from, present);
+            found.fill(zero);
+            add_product::<S>(simd, &gradients, &both, &mut found);
+            let (by_loads, a) = found.split_at_mut(patterns);
+            // Minus l, from minus the right-hand side.
+            adjoint.fill(zero);
+            for ((own, d), a) in adjoint.iter_mut().zip(&samples.changes).zip(&*a) {
+                take_product::<S>(simd, d, a, own);
+            }
+            samples.substitute(simd, &mut adjoint);
+            add_product::<S>(simd, &adjoint, &driven, by_loads);
+            for ((a, own), v) in a.iter_mut().zip(&adjoint).zip(&samples.elongations) {
+                for at in 0..PACK {
+                    let sum = simd.add_f64s(own[at], a[at]);
+                    a[at] = simd.neg_f64s(simd.mul_f64s(sum, v[at]));
+                }
+            }
+            scatter::<S>(&found, &mut self.results[from * width..], width, present);
+        }
+        None
+    }
+}
+
+fn transposed(matrix: &[f64], width: usize) -> Vec<f64> {
+    let rows = matrix.len().checked_div(width).unwrap_or(0);
+    let places = (0..width).flat_map(|column| (0..rows).map(move |row| row * width + column));
+    places.map(|place| matrix[place]).collect()
+}
