@@ -12,7 +12,10 @@ from rga import _core
 from rga.benchmark.box_bridge import Arrays, Bridge, box_bridge
 from rga.errors import InputError, UnstableStructureError
 from rga.model import read_model
+from rga.model.schema import EndSprings
+from rga.model.structure import Structure, build_structure
 from rga.simulation.condensation import Condensation, DependentTerms
+from rga.simulation.variation import variation
 
 DISPLACEMENT, STRAIN, FORCE, REACTION = 0, 2, 3, 4
 
@@ -256,6 +259,11 @@ LOSS = {"kind": "member_stiffness", "group": "bottom", "factor": {"context": "lo
 BEARING = {
     "kind": "support_spring", "support": "high", "dof": "uz", "stiffness": {"context": "bearing"},
 }  # fmt: skip
+WEIGHT = {
+    "kind": "member_load", "member": ["b0-b1", "b2-b3"], "uniform": [300, 0, -500],
+    "factor": {"context": "load"},
+}  # fmt: skip
+ZONE = {"kind": "rigid_end_zone", "group": "bottom", "length": {"context": "loss"}}
 RIGIDITY = {"kind": "joint_rigidity", "group": "bottom", "stiffness": {"context": "bearing"}}
 
 
@@ -271,17 +279,24 @@ def contexts(rows: int, **fixed: float) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("effects", "path", "terms"),
+    ("effects", "kind", "path", "terms"),
     [
-        ({}, "C1", 0),
-        ({"loss": LOSS}, "C2", 4),
-        ({"loss": LOSS, "bearing": BEARING}, "C2", 5),
-        ({"loss": LOSS, "rigidity": RIGIDITY}, "C3", 0),
-        ({"loss": {**LOSS, "group": ["bottom", "rest"]}}, "C3", 0),
+        ({}, "truss", "C1", 0),
+        ({"loss": LOSS}, "truss", "C2", 4),
+        ({"loss": LOSS, "bearing": BEARING}, "truss", "C2", 5),
+        ({"loss": LOSS, "rigidity": RIGIDITY}, "truss", "C3", 0),
+        ({"loss": {**LOSS, "group": ["bottom", "rest"]}}, "truss", "C3", 0),
+        # three modes a member in the plane, and a gauge
+        ({"loss": LOSS, "own weight": WEIGHT}, "frame", "C2", 13),
+        ({"loss": LOSS, "bearing": BEARING}, "frame", "C2", 14),
+        ({"loss": {**LOSS, "group": ["bottom", "rest"]}}, "frame", "C3", 0),
+        ({"loss": LOSS, "zone": ZONE}, "frame", "C3", 0),
     ],
 )
-def test_the_cheapest_exact_path_is_taken(effects: dict[str, Any], path: str, terms: int) -> None:
-    simulator = rga.Simulator(model_with(effects))
+def test_the_cheapest_exact_path_is_taken(
+    effects: dict[str, Any], kind: str, path: str, terms: int
+) -> None:
+    simulator = rga.Simulator(model_with(effects, kind))
     given_contexts = contexts(9)
     plan = simulator.plan(given_contexts)
     assert (plan.path, plan.terms, plan.rows) == (path, terms, 9)
@@ -293,14 +308,51 @@ def test_the_cheapest_exact_path_is_taken(effects: dict[str, Any], path: str, te
         np.testing.assert_allclose(found[row], alone, rtol=1e-9, atol=1e-9 * np.abs(found).max())
 
 
+@pytest.mark.parametrize(("names", "whole"), [("EG", True), ("E", False), ("EA", False)])
+def test_frame_members_vary_as_a_whole_or_not_at_all(names: str, whole: bool) -> None:
+    start = build_structure(model_with({}, "frame"))
+
+    def change(state: Any) -> Structure:
+        changed = start.copy()
+        for name in names:
+            changed.arrays[name][[2, 5]] *= state[0]
+        return changed
+
+    found = variation(change, np.linspace(0.5, 1.0, 7)[:, None])
+    assert (found is not None) == whole
+    if found is not None:
+        np.testing.assert_array_equal(found.members, [2, 5])
+        np.testing.assert_allclose(found.elements[-1], [2e11, 2e11])
+
+
 def test_one_state_for_all_rows_is_one_structure() -> None:
     simulator = rga.Simulator(model_with({"loss": LOSS}))
     assert simulator.plan(contexts(5, loss=0.8)).path == "C1"
 
 
-@pytest.mark.parametrize("effects", [{}, {"loss": LOSS, "bearing": BEARING}])
-def test_the_jacobian_is_exact(effects: dict[str, Any]) -> None:
-    simulator = rga.Simulator(model_with(effects))
+def test_frame_members_whose_ends_yield_are_assembled_anew() -> None:
+    model = model_with({"loss": LOSS}, "frame")
+    yielding = model.members["b1-b2"].model_copy(update={"end_springs": EndSprings(i={"ry": 2e6})})
+    simulator = rga.Simulator(
+        model.model_copy(update={"members": {**model.members, "b1-b2": yielding}})
+    )
+    given_contexts = contexts(9)
+    assert simulator.plan(given_contexts).path == "C3"
+    found = simulator.predict(given_contexts)
+    one = {name: column[4] for name, column in given_contexts.items()}
+    np.testing.assert_allclose(found[4], simulator.predict(one)[0], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("effects", "kind"),
+    [
+        ({}, "truss"),
+        ({"loss": LOSS, "bearing": BEARING}, "truss"),
+        ({"loss": LOSS, "bearing": BEARING, "own weight": WEIGHT}, "frame"),
+    ],
+)
+def test_the_jacobian_is_exact(effects: dict[str, Any], kind: str) -> None:
+    simulator = rga.Simulator(model_with(effects, kind))
     at = contexts(6)
     found = simulator.jacobian(at)
     ranges = np.array([np.ptp(variable.range) for variable in simulator.model.context.values()])

@@ -1,46 +1,43 @@
 """Exact condensation of a structure onto its loads, its outputs and the few terms that vary."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from rga import _core
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray
+from rga.simulation.terms import Arrays, Terms, stiffness_terms
 
-Arrays = dict[str, NDArray[Any]]
-STRAIN, REACTION_FORCE = 2, 4
+DISPLACEMENT, ROTATION, FORCE, REACTION_FORCE, REACTION_MOMENT, END_FORCE = 0, 1, 3, 4, 5, 6
 #: the elongations under unit pseudo-forces must be independent to at least this share
 INDEPENDENT = 1e-7
 
 
 class Condensation:
-    """A structure for which only stiffnesses of some truss members and springs vary.
+    """A structure for which only stiffnesses of some members and springs vary.
 
-    A member or spring of stiffness k (1 + m) and elongation v acts on the structure as it is like
+    A term (`terms`) of stiffness k (1 + m) and elongation v acts on the structure as it is like
     one of stiffness k with the pseudo-force w = k m v beside it. Elongations under unit
     pseudo-forces are a matrix G; its inverse is the stiffness that these terms see, and a sample
     costs a factorisation of that size alone (Woodbury's identity; Akgun et al., Fast exact linear
     and non-linear structural reanalysis, IJNME 50, 2001). Forces of temperature and of lack of fit
-    scale with the stiffness of their member.
+    scale with the stiffness of their member; those of loads between its ends do not.
 
     Attributes:
-        stiffness: of the terms in the structure as it is, float[terms] [N/m or N m/rad].
+        stiffness: of the terms in the structure as it is, float[terms] [N/m, N m/rad or Pa].
         loaded, stretched: outputs and elongations under unit loads, float[patterns, outputs] and
             float[patterns, terms].
         influence, unit: the same under unit pseudo-forces, float[terms, outputs] and
             float[terms, terms].
-        own: part of the influence that comes of what outputs on a term read of its own
-            pseudo-force, float[terms, outputs].
 
     Args:
         structure, loads, outputs: as `_core.respond` takes them; all patterns are kept.
-        members: numbers of the truss members that vary, int[members].
+        members: numbers of the members that vary, as a whole, int[members]; no end of a frame
+            member yields.
         springs: numbers of the springs that vary, int[springs].
 
     Raises:
-        DependentTerms: elongations depend on each other, so that no inverse exists.
+        DependentTerms: elongations depend on each other or are prescribed, so that no inverse
+            exists.
         _core.UnstableStructure, _core.InvalidInput: as `_core.respond`.
     """
 
@@ -53,28 +50,26 @@ class Condensation:
         springs: IntArray,
     ) -> None:
         members, springs = np.asarray(members, np.int64), np.asarray(springs, np.int64)
+        terms, held = stiffness_terms(structure, outputs, members, springs)
+        moved = loads["prescribed"][:, held.nodes] * held.motion.reshape(-1, 2, 6)
+        if (moved.sum(axis=(2, 3)) != _at_rest(loads, held)).any():
+            raise DependentTerms
         patterns, count = len(loads["forces"]), len(outputs["kind"])
-        axial = structure["E"] * structure["A"]
-        ends = structure["coordinates"][structure["ends"][members]]
-        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        self.stiffness = np.concatenate(
-            [axial[members] / lengths, structure["spring_stiffness"][springs]]
-        )
         found = _core.respond(
-            structure,
-            _with_unit_forces(structure, loads, members, springs),
-            _with_elongations(structure, outputs, members, springs),
+            structure, _with_unit_forces(loads, terms), _with_motions(outputs, terms)
         )
-        scale = np.concatenate([lengths, np.ones(len(springs))])
-        elongations = found[:, count:] * scale
-        self.own = _own_readings(structure, outputs, members, springs)
+        elongations = found[:, count:].reshape(len(found), 3, len(terms)).sum(axis=1)
         unit = elongations[patterns:].copy()
-        of_members = np.arange(len(members))
-        # A unit initial force lengthens a free member by 1 / k, which its gauge does not read.
-        unit[of_members, of_members] += 1.0 / self.stiffness[: len(members)]
+        self.stiffness = terms.stiffness
+        self.loaded = found[:patterns, :count].copy()
+        self.stretched = elongations[:patterns] - _at_rest(loads, terms)
+        self.influence = found[patterns:, :count] + _own_readings(outputs, terms)
+        gauges = np.flatnonzero(terms.gauge >= 0)
+        if len(gauges):
+            read = terms.gauge[gauges]
+            self.stretched[:, gauges] = _between_held_ends(structure, loads, outputs, read)
+            unit[gauges, gauges] = self.influence[gauges, read] = 1.0 / self.stiffness[gauges]
         self.unit = (unit + unit.T) / 2
-        self.loaded, self.stretched = found[:patterns, :count].copy(), elongations[:patterns]
-        self.influence = found[patterns:, :count] + self.own
         inverse = _inverse(self.unit)
         self._core = _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
 
@@ -129,43 +124,41 @@ class Condensation:
 
 
 class DependentTerms(ArithmeticError):
-    """The elongations of the terms that vary depend on each other."""
+    """The elongations of the terms that vary depend on each other, or are prescribed."""
 
 
-def _with_unit_forces(
-    structure: Arrays, loads: Arrays, members: IntArray, springs: IntArray
-) -> Arrays:
+def _at_rest(loads: Arrays, terms: Terms) -> FloatArray:
+    """Elongations that initial strains bring without any force, float[patterns, terms]."""
+    elongations = np.zeros((len(loads["strain"]), len(terms)))
+    of_members = terms.member >= 0
+    strain = loads["strain"][:, terms.member[of_members]]
+    elongations[:, of_members] = (strain * terms.rest[of_members]).sum(axis=2)
+    return elongations
+
+
+def _with_unit_forces(loads: Arrays, terms: Terms) -> Arrays:
     """The loads, then a pattern for each term: what a unit of pseudo-force does."""
     extended = dict(loads)
-    count = len(members) + len(springs)
     for name in ("forces", "strain", "prescribed", "prescribed_inclined"):
-        extended[name] = np.concatenate([loads[name], np.zeros((count, *loads[name].shape[1:]))])
-    first = len(loads["forces"])
-    axial = structure["E"] * structure["A"]
-    extended["strain"][first + np.arange(len(members)), members, 0] = 1.0 / axial[members]
-    node, to = structure["spring_node"][springs].T
-    dof = structure["spring_dof"][springs]
-    rows = first + len(members) + np.arange(len(springs))
-    extended["forces"][rows, node, dof] += 1.0
-    between = to >= 0
-    extended["forces"][rows[between], to[between], dof[between]] -= 1.0
+        none = np.zeros((len(terms), *loads[name].shape[1:]))
+        extended[name] = np.concatenate([loads[name], none])
+    rows = len(loads["forces"]) + np.arange(len(terms))
+    for end, first in enumerate((0, 6)):
+        extended["forces"][rows, terms.nodes[:, end]] += terms.motion[:, first : first + 6]
     return extended
 
 
-def _with_elongations(
-    structure: Arrays, outputs: Arrays, members: IntArray, springs: IntArray
-) -> Arrays:
-    """The outputs, then the mechanical strain of each member and the elongation of each spring."""
-    node, to = structure["spring_node"][springs].T
-    dof = structure["spring_dof"][springs]
-    vector = np.zeros((len(members) + len(springs), 3))
-    vector[len(members) + np.arange(len(springs)), dof % 3] = 1.0
+def _with_motions(outputs: Arrays, terms: Terms) -> Arrays:
+    """The outputs, then what adds up to elongations: how the ends part, how each of them turns."""
+    start, end = terms.nodes.T
+    nothing = np.full(len(terms), -1)
+    vectors = [terms.motion[:, first : first + 3] for first in (6, 3, 9)]
     added = {
-        "kind": np.concatenate([np.full(len(members), STRAIN), dof // 3]),
-        "index": np.concatenate([members, node]),
-        "other": np.concatenate([np.full(len(members), -1), to]),
-        "vector": vector,
-        "total": np.zeros(len(vector), dtype=bool),
+        "kind": np.repeat([DISPLACEMENT, ROTATION, ROTATION], len(terms)),
+        "index": np.maximum(np.concatenate([end, start, end]), 0),
+        "other": np.concatenate([start, nothing, nothing]),
+        "vector": np.concatenate(vectors),
+        "total": np.zeros(3 * len(terms), dtype=bool),
     }
     return {
         name: np.concatenate([outputs[name], column.astype(outputs[name].dtype)])
@@ -173,26 +166,37 @@ def _with_elongations(
     }
 
 
-def _own_readings(
-    structure: Arrays, outputs: Arrays, members: IntArray, springs: IntArray
-) -> FloatArray:
-    """What outputs on a term read of its own pseudo-force, float[terms, outputs].
+def _own_readings(outputs: Arrays, terms: Terms) -> FloatArray:
+    """What outputs on a term read of its pseudo-force itself, float[terms, outputs].
 
-    The pseudo-force of a member is an initial strain that no gauge is to read; that of a spring to
-    the ground is a part of the reaction there.
+    That of a member is a part of its end forces; that of a spring to the ground is a part of the
+    reaction there.
     """
-    own = np.zeros((len(members) + len(springs), len(outputs["kind"])))
-    axial = structure["E"] * structure["A"]
-    gauges = (outputs["kind"] == STRAIN) & ~outputs["total"]
-    for number, member in enumerate(members):
-        own[number, gauges & (outputs["index"] == member)] = 1.0 / axial[member]
-    for number, spring in enumerate(springs, start=len(members)):
-        node, to = structure["spring_node"][spring]
-        dof = structure["spring_dof"][spring]
-        here = (outputs["kind"] == REACTION_FORCE + dof // 3) & (outputs["index"] == node)
-        if to < 0:
-            own[number, here] = outputs["vector"][here, dof % 3]
+    kind, index, vector = outputs["kind"], outputs["index"], outputs["vector"]
+    on = terms.member[:, None] == index
+    own = np.where(on & (kind == FORCE), terms.local[:, :1], 0.0)
+    ends = np.where(kind == END_FORCE, outputs["other"], 0)
+    own -= np.where(on & (kind == END_FORCE), terms.local[:, ends], 0.0)
+    under = (terms.nodes[:, :1] < 0) & (terms.nodes[:, 1:] == index)
+    for of_kind, first in ((REACTION_FORCE, 6), (REACTION_MOMENT, 9)):
+        part = terms.motion[:, first : first + 3] @ vector.T
+        own += np.where(under & (kind == of_kind), part, 0.0)
     return own
+
+
+def _between_held_ends(
+    structure: Arrays, loads: Arrays, outputs: Arrays, read: IntArray
+) -> FloatArray:
+    """What outputs read of loads along members with all nodes held, float[patterns, outputs]."""
+    still = {
+        name: np.zeros_like(loads[name])
+        for name in ("forces", "strain", "prescribed", "prescribed_inclined")
+    }
+    return _core.respond(
+        {**structure, "fixed": np.ones_like(structure["fixed"])},
+        {**loads, **still},
+        {name: column[read] for name, column in outputs.items()},
+    )
 
 
 def _inverse(unit: FloatArray) -> FloatArray:

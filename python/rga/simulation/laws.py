@@ -13,6 +13,7 @@ from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import Law, Structure
 from rga.simulation.condensation import Condensation
+from rga.simulation.terms import STRAIN
 
 #: Newton steps before a row is given up
 STEPS = 60
@@ -60,10 +61,13 @@ def respond_with_laws(
             "reduce the slack, or name fewer members",
         )
     pseudo, _ = _pseudo(laws, linear.stiffness, elongation)
+    influence, arrays, outputs = linear.influence.copy(), structure.arrays, structure.outputs
     # A gauge on a slack member reads its force, not the way that its ends have moved.
-    influence = linear.influence.copy()
-    members = sum(law.member is not None for law in laws)
-    influence[:members] -= linear.own[:members]
+    gauges = np.where(outputs["total"] | (outputs["kind"] != STRAIN), -1, outputs["index"])
+    for term, law in enumerate(laws):
+        if law.member is not None:
+            axial = arrays["E"][law.member] * arrays["A"][law.member]
+            influence[term, gauges == law.member] -= 1.0 / axial
     return np.asarray(coefficients @ linear.loaded - pseudo @ influence)
 
 

@@ -124,17 +124,18 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
             pass  # a factorisation of each sample decides, and names what is wrong
     if not (varied.first > 0).all():
         return plan("C3"), _each_state(request)
-    return plan("C3"), _refactored(varied, loads, q, stiffness)
+    return plan("C3"), _refactored(varied, loads, q, request.state_of_row)
 
 
 def _refactored(
-    varied: Variation, loads: list[Load], q: FloatArray, stiffness: FloatArray
+    varied: Variation, loads: list[Load], q: FloatArray, state_of_row: IntArray
 ) -> FloatArray:
     """One symbolic analysis, one factorisation a row."""
     structure = varied.start
     count = len(structure.arrays["ends"])
     factors = np.ones((len(q), count + len(structure.arrays["spring_stiffness"])))
-    factors[:, np.append(varied.members, count + varied.springs)] = stiffness / varied.first
+    elements = (varied.elements / varied.elements[0])[state_of_row]
+    factors[:, np.append(varied.members, count + varied.springs)] = elements
     try:
         whole = _core.Refactored(structure.arrays, patterns(structure, loads), structure.outputs)
         return whole.respond(factors, q)

@@ -7,28 +7,30 @@ import numpy as np
 
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Structure
+from rga.simulation.terms import Arrays, stiffness_terms
 
 #: rows at which straightness is checked, beside the ends of each parameter
 CHECKED = 6
-#: properties of a truss member that only reach the answer through EA / L
-AXIAL = ("E", "G", "A")
 
 
 @dataclass(frozen=True)
 class Variation:
-    """Truss members and springs whose stiffness is a straight function of structural parameters.
+    """Members and springs whose stiffness is a straight function of structural parameters.
 
     Attributes:
         start: the structure at the first state.
-        members, springs: numbers of those that vary.
-        first: their stiffness at the first state, float[terms] [N/m or N m/rad].
-        stiffness: of members, then springs, at each state, float[states, terms] [N/m].
+        members, springs: numbers of those that vary; a frame member varies as a whole.
+        elements: stiffness of members, then springs, at each state, float[states, elements]: EA / L
+            of a truss member [N/m], E of a frame member [Pa], of a spring [N/m or N m/rad].
+        first: stiffness of their terms (`terms`) at the first state, float[terms].
+        stiffness: of the terms at each state, float[states, terms].
         slope: of the stiffness by the parameters, float[parameters, terms].
     """
 
     start: Structure
     members: IntArray
     springs: IntArray
+    elements: FloatArray
     first: FloatArray
     stiffness: FloatArray
     slope: FloatArray
@@ -62,32 +64,52 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
         other = change(states[row])
         if not np.allclose(_stiffness(other), stiffness[row], rtol=1e-12, atol=0):
             return None
-    terms = np.flatnonzero(slope.any(axis=0))
+    varied = np.flatnonzero(slope.any(axis=0))
     count = len(start.arrays["ends"])
-    members, springs = terms[terms < count], terms[terms >= count] - count
-    return Variation(start, members, springs, first[terms], stiffness[:, terms], slope[:, terms])
+    members, springs = varied[varied < count], varied[varied >= count] - count
+    terms, _ = stiffness_terms(start.arrays, start.outputs, members, springs)
+    places = varied[terms.element]
+    return Variation(
+        start,
+        members,
+        springs,
+        stiffness[:, varied],
+        first[places],
+        stiffness[:, places],
+        slope[:, places],
+    )
 
 
 def _stiffness(structure: Structure) -> FloatArray:
-    """EA / L of every member, then the stiffness of every spring."""
+    """EA / L of every truss member or E of a frame member, then the stiffness of every spring."""
     arrays = structure.arrays
     axial = arrays["E"] * arrays["A"] / structure.lengths
-    return np.concatenate([axial, arrays["spring_stiffness"]])
+    own = np.where(arrays["frame"], arrays["E"], axial)
+    return np.concatenate([own, arrays["spring_stiffness"]])
 
 
 def _only_stiffness_differs(one: Structure, other: Structure) -> bool:
     if other.bearings or other.laws or one.arrays.keys() != other.arrays.keys():
         return False
-    bends = one.arrays["frame"]
     for name, array in one.arrays.items():
         changed = other.arrays[name]
         if array.shape != changed.shape:
             return False
-        if name == "spring_stiffness":
+        if name in ("E", "G", "spring_stiffness"):
             continue
-        if name in AXIAL:
-            array, changed = array[bends], changed[bends]
+        if name == "A":
+            array, changed = array[one.arrays["frame"]], changed[one.arrays["frame"]]
         if not np.array_equal(array, changed, equal_nan=array.dtype == float):
             return False
     same = (np.array_equal(getattr(one, name), getattr(other, name)) for name in ("alpha", "host"))
-    return all(same)
+    return all(same) and _frames_differ_as_a_whole(one.arrays, other.arrays)
+
+
+def _frames_differ_as_a_whole(one: Arrays, other: Arrays) -> bool:
+    """Where E of a frame member differs, G does in proportion, and no end of the member yields."""
+    frame = one["frame"]
+    yields = (np.isfinite(one["connection"]) & (one["connection"] > 0)).any(axis=1)
+    if (frame & yields & (one["E"] != other["E"])).any():
+        return False
+    ahead, behind = (one["G"] * other["E"])[frame], (other["G"] * one["E"])[frame]
+    return np.allclose(ahead, behind, rtol=1e-12, atol=0)
