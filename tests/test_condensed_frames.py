@@ -2,7 +2,6 @@
 
 import copy
 import json
-import runpy
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from reference_solver import solve_case
 from rga import _core
 from rga.benchmark.verification_input import Frame, Loads, output_arrays
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.terms import stiffness_terms
 
 HERE = Path(__file__).parent
-solve_case = runpy.run_path(str(HERE / "reference_solver.py"))["solve_case"]
 NONE = np.zeros(0, np.int64)
 STRAIN, FORCE = 2, 3
 

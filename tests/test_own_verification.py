@@ -2,17 +2,16 @@
 
 import copy
 import json
-import runpy
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from reference_solver import solve_case
 from rga.benchmark.verification import verify_case, verify_folder
 
 FOLDER = Path(__file__).parent / "verification"
 CASES = sorted(FOLDER.glob("*.json"))
-solve_case = runpy.run_path(str(Path(__file__).parent / "reference_solver.py"))["solve_case"]
 
 
 def read(path: Path) -> dict[str, Any]:

@@ -122,6 +122,24 @@ class Condensation:
         )
         return found.transpose(0, 2, 1)
 
+    def pull_back(
+        self,
+        coefficients: FloatArray,
+        stiffness: FloatArray,
+        gradients: FloatArray,
+        threads: int = 1,
+    ) -> FloatArray:
+        """Derivatives of the sum of the outputs times gradients: the adjoint of `respond`.
+
+        Args:
+            coefficients, stiffness, threads: as for `respond`.
+            gradients: float[rows, outputs].
+
+        Returns:
+            float[rows, patterns + terms], by the coefficients and then by the stiffnesses.
+        """
+        return self._core.pull_back(coefficients, stiffness - self.stiffness, gradients, threads)
+
 
 class DependentTerms(ArithmeticError):
     """The elongations of the terms that vary depend on each other, or are prescribed."""
