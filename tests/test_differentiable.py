@@ -39,8 +39,50 @@ def test_values_are_those_of_the_simulator(simulator: Simulator) -> None:
 
 
 def test_gradients(simulator: Simulator) -> None:
-    # The derivatives are central differences themselves: equal to about six figures.
-    assert torch.autograd.gradcheck(simulator.as_torch(), (contexts(),), eps=1e-3, atol=1e-6)
+    assert torch.autograd.gradcheck(simulator.as_torch(), (contexts(),), eps=1e-3, atol=1e-8)
+
+
+@pytest.mark.parametrize("path", ["C1", "C2", "C3", "C3 anew", "C4", "shown otherwise"])
+def test_the_adjoint_is_the_jacobian_transposed(simulator: Simulator, path: str) -> None:
+    data = simulator.model.model_dump()
+    rows = 9 if path in ("C2", "C3", "C3 anew") else 4
+    table = {"temperature": np.linspace(-15, 35, rows), "load": np.linspace(10, 90, rows) ** 1.1}
+    if path == "C1":
+        del data["effects"]["stiffness"]
+    elif path == "C3":
+        # Elongations of two members side by side are one: they cannot be condensed.
+        data["members"]["beside"] = data["members"]["west"]
+        data["effects"]["stiffness"]["member"] = ["west", "beside"]
+    elif path == "C3 anew":
+        del data["effects"]["stiffness"]
+        factor = {"context": "temperature", "times": 0.001, "minus": -1000.0}
+        data["effects"]["warm"] = {
+            "kind": "thermal_expansion",
+            "material": "steel",
+            "factor": factor,
+        }
+    elif path == "C4":
+        data["effects"]["slip"] = {"kind": "joint_slip", "member": "west", "slip": 1e-4}
+        del data["effects"]["stiffness"]
+    elif path == "shown otherwise":
+        data["effects"]["gain"] = {"kind": "sensor_gain", "sensor": "D1", "factor": 1.5}
+    other = Simulator(read_model(data, "test"))
+    if path.startswith("C"):
+        assert other.plan(table).path == path[:2]
+    gradients = np.random.default_rng(1).normal(size=(rows, len(other.model.sensors)))
+    jacobian = other.jacobian(table)
+    expected = np.einsum("ts,tsc->tc", gradients, jacobian)
+    size = np.einsum("ts,tsc->tc", np.abs(gradients), np.abs(jacobian))
+    assert np.abs(jacobian).max(axis=(0, 1)).min() > 0
+    assert (np.abs(other.pull_back(table, gradients) - expected) <= 1e-9 * size).all()
+
+
+def test_bad_gradients_are_refused(simulator: Simulator) -> None:
+    table = {"temperature": [1.0, 2.0], "load": [3.0, 4.0]}
+    sensors = len(simulator.model.sensors)
+    for wrong in (np.zeros((3, sensors)), np.full((2, sensors), np.nan), [[0.0]]):
+        with pytest.raises(InputError, match="gradients"):
+            simulator.pull_back(table, wrong)
 
 
 def test_time(simulator: Simulator) -> None:

@@ -5,6 +5,7 @@ import numpy as np
 from rga import _core
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray
+from rga.simulation.rates import along
 from rga.simulation.terms import Arrays, Terms, stiffness_terms
 
 DISPLACEMENT, ROTATION, FORCE, REACTION_FORCE, REACTION_MOMENT, END_FORCE = 0, 1, 3, 4, 5, 6
@@ -24,6 +25,7 @@ class Condensation:
 
     Attributes:
         stiffness: of the terms in the structure as it is, float[terms] [N/m, N m/rad or Pa].
+        element: place of each term among the members, then springs, that vary, int[terms].
         loaded, stretched: outputs and elongations under unit loads, float[patterns, outputs] and
             float[patterns, terms].
         influence, unit: the same under unit pseudo-forces, float[terms, outputs] and
@@ -60,7 +62,7 @@ class Condensation:
         )
         elongations = found[:, count:].reshape(len(found), 3, len(terms)).sum(axis=1)
         unit = elongations[patterns:].copy()
-        self.stiffness = terms.stiffness
+        self.stiffness, self.element = terms.stiffness, terms.element
         self.loaded = found[:patterns, :count].copy()
         self.stretched = elongations[:patterns] - _at_rest(loads, terms)
         self.influence = found[patterns:, :count] + _own_readings(outputs, terms)
@@ -73,6 +75,11 @@ class Condensation:
         inverse = _inverse(self.unit)
         self._core = _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
 
+    @property
+    def terms(self) -> int:
+        """How many terms there are."""
+        return len(self.stiffness)
+
     def respond(
         self,
         coefficients: FloatArray,
@@ -84,14 +91,14 @@ class Condensation:
 
         Args:
             coefficients: of the load patterns, float[rows, patterns].
-            stiffness: of each term, members first, float[rows, terms] [N/m or N m/rad].
+            stiffness: of each element that varies, members first, float[rows, elements].
             threads: how many share the rows; the results do not depend on it.
             out: where to write them, in C order; left out, a new array.
 
         Raises:
             _core.UnstableSample: names the row.
         """
-        return self._core.respond(coefficients, stiffness - self.stiffness, threads, out)
+        return self._core.respond(coefficients, self._changes(stiffness), threads, out)
 
     def differentiate(
         self,
@@ -106,19 +113,13 @@ class Condensation:
         Args:
             coefficients, stiffness, threads: as for `respond`.
             coefficient_rates: derivatives of the coefficients, float[rows, patterns, directions].
-            stiffness_rates: derivatives of the stiffnesses, float[rows, terms, directions].
+            stiffness_rates: derivatives of the stiffnesses, float[rows, elements, directions].
         """
-        loads = np.argwhere(coefficient_rates.any(axis=0).T)
-        terms = np.argwhere(stiffness_rates.any(axis=0).T)
+        loads, of_loads = along(coefficient_rates)
+        terms, of_terms = along(stiffness_rates[:, self.element])
+        changes, directions = self._changes(stiffness), coefficient_rates.shape[2]
         found = self._core.differentiate(
-            coefficients,
-            stiffness - self.stiffness,
-            coefficient_rates.shape[2],
-            loads,
-            coefficient_rates[:, loads[:, 1], loads[:, 0]],
-            terms,
-            stiffness_rates[:, terms[:, 1], terms[:, 0]],
-            threads,
+            coefficients, changes, directions, loads, of_loads, terms, of_terms, threads
         )
         return found.transpose(0, 2, 1)
 
@@ -136,9 +137,21 @@ class Condensation:
             gradients: float[rows, outputs].
 
         Returns:
-            float[rows, patterns + terms], by the coefficients and then by the stiffnesses.
+            float[rows, patterns + elements], by the coefficients and then by the stiffnesses.
         """
-        return self._core.pull_back(coefficients, stiffness - self.stiffness, gradients, threads)
+        changes = self._changes(stiffness)
+        found = self._core.pull_back(coefficients, changes, gradients, threads)
+        patterns, elements = coefficients.shape[1], stiffness.shape[1]
+        if self.terms == elements:
+            return found
+        of_terms = np.eye(elements)[self.element]
+        return np.concatenate([found[:, :patterns], found[:, patterns:] @ of_terms], axis=1)
+
+    def _changes(self, stiffness: FloatArray) -> FloatArray:
+        """Of the terms, float[rows, terms]: each has the stiffness of its element."""
+        if self.terms == stiffness.shape[1]:
+            return stiffness - self.stiffness
+        return stiffness[:, self.element] - self.stiffness
 
 
 class DependentTerms(ArithmeticError):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class DifferentiableSimulator(nn.Module):
-    """A simulator whose backward pass is the product of a vector with its Jacobian.
+    """A simulator whose backward pass is its adjoint.
 
     Where effects have memory (lag, friction, a clock), a reading is taken to depend on the
     contexts of its own row alone.
@@ -69,6 +69,5 @@ class _Simulation(torch.autograd.Function):
     @staticmethod
     @torch.autograd.function.once_differentiable
     def backward(ctx: Any, *gradients: Tensor) -> tuple[Tensor, None, None]:
-        # A faulty sensor says nothing; its derivative must not spoil the others' sum.
-        jacobian = torch.from_numpy(np.nan_to_num(ctx.simulator.jacobian(ctx.table)))
-        return torch.einsum("ts,tsc->tc", gradients[0].double(), jacobian), None, None
+        of_sensors = gradients[0].detach().double().cpu().numpy()
+        return torch.from_numpy(ctx.simulator.pull_back(ctx.table, of_sensors)), None, None

@@ -1,6 +1,7 @@
 """The cheapest exact path to the response of rows: chosen from what varies between them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -12,10 +13,11 @@ from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import Condensation, DependentTerms
+from rga.simulation.factorisation import Factorisation
 from rga.simulation.friction import respond_with_friction
 from rga.simulation.laws import respond_with_laws, terms_of
 from rga.simulation.response import patterns, refused, respond
-from rga.simulation.variation import Variation, variation
+from rga.simulation.variation import Variation, unvaried, variation
 
 NOTHING: IntArray = np.zeros(0, np.int64)
 #: structures that are solved one by one, which costs less than to look for what varies
@@ -103,44 +105,43 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
         return plan("C1"), np.zeros((len(rows), sensors))
     if structure.bearings or structure.laws:
         return plan("C4"), _each_state(request)
-    if len(request.states) == 1:
-        whole = condensed(request.prepared, structure, loads)
-        try:
-            return plan("C1"), whole.respond(coefficients(loads), np.zeros((len(rows), 0)))
-        except _core.InvalidInput as error:
-            raise refused(structure, error) from None
     varied = None
-    if len(request.states) > APART:
+    if len(request.states) == 1:
+        varied = unvaried(structure, request.states.shape[1])
+    elif len(request.states) > APART:
         varied = variation(request.change, request.states)
     if varied is None:
         return plan("C3"), _each_state(request)
-    q, stiffness = coefficients(loads), varied.stiffness[request.state_of_row]
-    terms = stiffness.shape[1]
-    if terms <= MOST_TERMS:
+    q, stiffness = coefficients(loads), varied.elements[request.state_of_row]
+    for path, system in linear_paths(request.prepared, varied, loads):
         try:
-            found = condensed(request.prepared, structure, loads, varied.members, varied.springs)
-            return plan("C2", terms), found.respond(q, stiffness)
-        except (DependentTerms, _core.UnstableSample, _core.InvalidInput):
-            pass  # a factorisation of each sample decides, and names what is wrong
-    if not (varied.first > 0).all():
-        return plan("C3"), _each_state(request)
-    return plan("C3"), _refactored(varied, loads, q, request.state_of_row)
+            return plan(path, system.terms), system.respond(q, stiffness)
+        except _core.UnstableSample:
+            continue  # a factorisation of each sample decides, and names what is wrong
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(structure, error) from None
+    return plan("C3"), _each_state(request)
 
 
-def _refactored(
-    varied: Variation, loads: list[Load], q: FloatArray, state_of_row: IntArray
-) -> FloatArray:
-    """One symbolic analysis, one factorisation a row."""
-    structure = varied.start
-    count = len(structure.arrays["ends"])
-    factors = np.ones((len(q), count + len(structure.arrays["spring_stiffness"])))
-    elements = (varied.elements / varied.elements[0])[state_of_row]
-    factors[:, np.append(varied.members, count + varied.springs)] = elements
-    try:
-        whole = _core.Refactored(structure.arrays, patterns(structure, loads), structure.outputs)
-        return whole.respond(factors, q)
-    except (_core.UnstableStructure, _core.InvalidInput) as error:
-        raise refused(structure, error) from None
+def linear_paths(
+    prepared: Prepared, varied: Variation, loads: list[Load]
+) -> Iterator[tuple[Path, Condensation | Factorisation]]:
+    """Ways to the response when nothing but these stiffnesses and loads vary, cheapest first."""
+    structure, members, springs = varied.start, varied.members, varied.springs
+    count = len(members) + len(springs)
+    if count <= MOST_TERMS and varied.terms <= MOST_TERMS:
+        with suppress(DependentTerms):
+            path: Path = "C2" if count else "C1"
+            yield path, condensed(prepared, structure, loads, members, springs)
+    if (varied.elements[0] > 0).all():
+        arrays, of_loads = structure.arrays, patterns(structure, loads)
+        try:
+            whole = Factorisation(
+                arrays, of_loads, structure.outputs, members, springs, varied.elements[0]
+            )
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(structure, error) from None
+        yield "C3", whole
 
 
 def _each_state(request: Request) -> FloatArray:

@@ -14,7 +14,7 @@ from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import IntArray, Load, Structure, build_structure
 from rga.simulation.plan import Plan, Prepared, Request, answer
-from rga.simulation.sensitivity import jacobian
+from rga.simulation.sensitivity import jacobian, pull_back
 
 if TYPE_CHECKING:
     from rga.simulation.differentiable import DifferentiableSimulator
@@ -147,10 +147,43 @@ class Simulator:
             contexts: as for `predict`.
 
         Returns:
-            float[rows, sensors, contexts]; exact where loads and a few stiffnesses follow the
-            contexts, by central differences over 1e-4 of each range elsewhere.
+            float[rows, sensors, contexts]; exact where loads and stiffnesses follow the contexts,
+            by central differences over 1e-4 of each range elsewhere.
         """
         return jacobian(self, self._table(contexts))
+
+    def pull_back(self, contexts: Mapping[str, ArrayLike], gradients: ArrayLike) -> FloatArray:
+        """Derivatives of a function of the sensors by the context variables: the adjoint.
+
+        Args:
+            contexts: as for `predict`.
+            gradients: derivatives of the function by the sensors, float[rows, sensors].
+
+        Returns:
+            float[rows, contexts]: the gradients times the Jacobian, at the cost of a sample.
+
+        Raises:
+            InputError: as `predict`; gradients of another shape, or not finite.
+        """
+        table = self._table(contexts)
+        given = np.asarray(gradients, dtype=float)
+        shape = (len(table["time"]), len(self.model.sensors))
+        if given.shape != shape or not np.isfinite(given).all():
+            raise InputError(
+                f"the gradients are float{list(given.shape)}, or not all finite",
+                "the adjoint of the simulation",
+                f"give finite float{list(shape)}",
+            )
+        return pull_back(self, table, given)
+
+    @property
+    def reads_plainly(self) -> bool:
+        """Whether sensors show what the structure does and nothing else."""
+        effects, sensors = self.model.effects.values(), self.model.sensors.values()
+        plain = not any(
+            type(effect).change_readings is not Effect.change_readings for effect in effects
+        )
+        return plain and all(sensor.zero is None for sensor in sensors)
 
     def as_torch(self, time: ArrayLike | None = None) -> "DifferentiableSimulator":
         """The simulation as a torch module: contexts in the order of the model in, sensors out.

@@ -22,18 +22,28 @@ class Variation:
         members, springs: numbers of those that vary; a frame member varies as a whole.
         elements: stiffness of members, then springs, at each state, float[states, elements]: EA / L
             of a truss member [N/m], E of a frame member [Pa], of a spring [N/m or N m/rad].
-        first: stiffness of their terms (`terms`) at the first state, float[terms].
-        stiffness: of the terms at each state, float[states, terms].
-        slope: of the stiffness by the parameters, float[parameters, terms].
+        slope: of `elements` by the parameters, float[parameters, elements].
     """
 
     start: Structure
     members: IntArray
     springs: IntArray
     elements: FloatArray
-    first: FloatArray
-    stiffness: FloatArray
     slope: FloatArray
+
+    @property
+    def terms(self) -> int:
+        """How many terms of rank one vary."""
+        terms, _ = stiffness_terms(
+            self.start.arrays, self.start.outputs, self.members, self.springs
+        )
+        return len(terms)
+
+
+def unvaried(structure: Structure, parameters: int) -> Variation:
+    """One structure, at any of whose structural parameters nothing varies."""
+    nothing, none = np.zeros(0, np.int64), np.zeros((1, 0))
+    return Variation(structure, nothing, nothing, none, np.zeros((parameters, 0)))
 
 
 def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> Variation | None:
@@ -67,17 +77,7 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
     varied = np.flatnonzero(slope.any(axis=0))
     count = len(start.arrays["ends"])
     members, springs = varied[varied < count], varied[varied >= count] - count
-    terms, _ = stiffness_terms(start.arrays, start.outputs, members, springs)
-    places = varied[terms.element]
-    return Variation(
-        start,
-        members,
-        springs,
-        stiffness[:, varied],
-        first[places],
-        stiffness[:, places],
-        slope[:, places],
-    )
+    return Variation(start, members, springs, stiffness[:, varied], slope[:, varied])
 
 
 def _stiffness(structure: Structure) -> FloatArray:
