@@ -4,6 +4,7 @@ import platform
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,17 @@ from threadpoolctl import threadpool_limits
 
 from rga import __version__, _core
 from rga.benchmark.box_bridge import Arrays, Bridge, box_bridge
+from rga.benchmark.data_set import data_set_cost
 from rga.model.parameter import FloatArray
 from rga.simulation.condensation import Condensation
+from rga.simulation.factorisation import Factorisation
 
 #: samples of a batch: large enough to leave the caches, as a data set does
 ROWS = 262_144
 #: sensors and contexts of the Jacobian
 SENSORS, DIRECTIONS = 84, 8
+#: rows of the data set
+DATA_SET = 10_000_000
 #: agreement that is asked for before anything is timed, relative to the largest output
 AGREEMENT = 1e-9
 #: seconds that each figure is measured for
@@ -57,7 +62,14 @@ def measure(quick: bool = False, progress: Callable[[float], None] | None = None
         ArithmeticError: two paths disagree.
     """
     rows, seconds = (ROWS // 16, SECONDS / 16) if quick else (ROWS, SECONDS)
-    tasks = [_loads_vary, _few_stiffnesses_vary, _all_stiffnesses_vary, _one_sample, _jacobian]
+    tasks = [
+        _loads_vary,
+        _few_stiffnesses_vary,
+        _all_stiffnesses_vary,
+        _one_sample,
+        _derivatives,
+        _data_set,
+    ]
     figures = []
     with threadpool_limits(1):
         roof = _bandwidth(rows, seconds)
@@ -140,41 +152,83 @@ def _one_sample(rows: int, seconds: float, roof: float) -> list[Figure]:
     return [Figure("one sample from Python, over the time inside", (alone - inside) * 1e6, "us")]
 
 
-def _jacobian(rows: int, seconds: float, roof: float) -> list[Figure]:
-    """84 sensors by 8 contexts: loads in six of them, and stiffnesses in two."""
+def _derivatives(rows: int, seconds: float, roof: float) -> list[Figure]:
+    """84 sensors by 8 contexts: loads in six of them, and ten stiffnesses in two."""
     bridge = box_bridge(sensors=SENSORS)
-    ours = Condensation(
+    few = Condensation(
         bridge.structure, bridge.loads, bridge.outputs, bridge.members, bridge.springs
+    )
+    varied = np.concatenate([bridge.members, bridge.springs])
+    every = Factorisation(
+        bridge.structure,
+        bridge.loads,
+        bridge.outputs,
+        bridge.members,
+        bridge.springs,
+        few.stiffness,
     )
     count = min(rows, 4096)
     q = _draw(count, len(bridge.loads["forces"]))
-    stiffness = (1.0 + 0.5 * _draw(count, len(ours.stiffness))) * ours.stiffness
+    stiffness = (1.0 + 0.5 * _draw(count, len(varied))) * few.stiffness
     rates = np.zeros((count, q.shape[1], DIRECTIONS))
-    of_terms = np.zeros((count, len(ours.stiffness), DIRECTIONS))
+    of_terms = np.zeros((count, len(varied), DIRECTIONS))
     for direction in range(6):
         rates[:, 2 * direction : 2 * direction + 2, direction] = 1.0
-    of_terms[:, : len(bridge.members), 6] = ours.stiffness[: len(bridge.members)]
-    of_terms[:, len(bridge.members) :, 7] = ours.stiffness[len(bridge.members) :]
-    found = ours.differentiate(q[:16], stiffness[:16], rates[:16], of_terms[:16])
-    step = 1e-4
-    sides = [
+    of_terms[:, : len(bridge.members), 6] = few.stiffness[: len(bridge.members)]
+    of_terms[:, len(bridge.members) :, 7] = few.stiffness[len(bridge.members) :]
+    figures = []
+    for name, path, size in (("C2", few, count), ("C3", every, 256)):
+        given = (q[:size], stiffness[:size])
+        along = (rates[:size], of_terms[:size])
+        checked = _check_derivatives(path, q[:16], stiffness[:16], rates[:16], of_terms[:16])
+        gradients = np.tile(checked, (size // 16, 1))
+        sample = _shortest(partial(path.respond, *given), seconds)
+        whole = _shortest(partial(path.differentiate, *given, *along), seconds)
+        back = _shortest(partial(path.pull_back, *given, gradients), seconds)
+        figures += [
+            Figure(f"{name}, Jacobian of {SENSORS} by {DIRECTIONS}", whole / sample, "samples"),
+            Figure(f"{name}, gradient of all by the adjoint", back / sample, "samples"),
+        ]
+    return figures
+
+
+def _check_derivatives(
+    path: Condensation | Factorisation,
+    q: FloatArray,
+    stiffness: FloatArray,
+    rates: FloatArray,
+    of_terms: FloatArray,
+) -> FloatArray:
+    """Both derivatives against differences; gradients for the adjoint, float[rows, sensors]."""
+    found = path.differentiate(q, stiffness, rates, of_terms)
+    ahead, behind = (
         np.stack(
             [
-                ours.respond(
-                    np.ascontiguousarray(q[:16] + sign * step * rates[:16, :, k]),
-                    stiffness[:16] + sign * step * of_terms[:16, :, k],
+                path.respond(
+                    np.ascontiguousarray(q + step * rates[:, :, k]),
+                    stiffness + step * of_terms[:, :, k],
                 )
                 for k in range(DIRECTIONS)
             ],
             axis=2,
         )
-        for sign in (1.0, -1.0)
-    ]
-    _agree("Jacobian", found, (sides[0] - sides[1]) / (2 * step), 1e-7)
-    sample = _shortest(lambda: ours.respond(q, stiffness), seconds)
-    whole = _shortest(lambda: ours.differentiate(q, stiffness, rates, of_terms), seconds)
+        for step in (1e-4, -1e-4)
+    )
+    _agree("Jacobian", found, (ahead - behind) / 2e-4, 1e-7)
+    gradients = _draw(len(q), SENSORS)
+    pulled = path.pull_back(q, stiffness, gradients)
+    both = np.concatenate([rates, of_terms], axis=1)
+    back = np.einsum("tp,tpc->tc", pulled, both)
+    _agree("adjoint", back, np.einsum("ts,tsc->tc", gradients, found))
+    return gradients
+
+
+def _data_set(rows: int, seconds: float, roof: float) -> list[Figure]:
+    samples = DATA_SET if rows == ROWS else DATA_SET // 100
+    memory, taken = data_set_cost(samples)
     return [
-        Figure(f"Jacobian of {SENSORS} sensors by {DIRECTIONS} contexts", whole / sample, "samples")
+        Figure(f"data set of {samples / 1e6:g} million rows, memory", memory, "MiB"),
+        Figure("data set, written", samples / taken / 1e6, "million rows/s"),
     ]
 
 
