@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -22,6 +23,7 @@ from random_structures import (
     lengths,
     loads_on,
 )
+from rga import _core
 
 PER_MEMBER = {"ends", "frame", "local_y", "connection", "rigid_end", "E", "G", "A"}
 PER_MEMBER |= {"Iy", "Iz", "J", "Asy", "Asz"}
@@ -244,3 +246,67 @@ def test_a_node_in_a_member_changes_nothing(case: Case, share: float) -> None:
     joined = parts.end_forces[:-1].copy()
     joined[0, 6:] = parts.end_forces[-1, 6:]
     same(joined, whole.end_forces)
+
+
+def chain(count: int, along: Floats, hinged: bool) -> Case:
+    """A cantilever of frame members in a row, slender and askew, loaded across at its end."""
+    random = np.random.default_rng(100)
+    nodes, x = count + 1, along / np.linalg.norm(along)
+    across = np.cross(x, random.normal(size=3))
+    across /= np.linalg.norm(across)
+    connection = np.full((count, 12), np.inf)
+    if hinged:
+        connection[-1, 5] = 0.0
+    fixed = np.zeros((nodes, 6), dtype=bool)
+    fixed[0] = True
+    every: Arrays = {key: np.full(count, 1.0) for key in ("E", "G", "A", "Iy", "Iz", "J")}
+    structure: Arrays = {
+        "coordinates": np.linspace(0.0, 10.0, nodes)[:, None] * x,
+        "ends": np.stack([np.arange(count), np.arange(1, nodes)], axis=1),
+        "frame": np.ones(count, dtype=bool),
+        "local_y": np.tile(across, (count, 1)),
+        "connection": connection,
+        "rigid_end": np.zeros((count, 2)),
+        "fixed": fixed,
+        "inclined_node": np.zeros(0, dtype=np.int64),
+        "inclined_direction": np.zeros((0, 3)),
+        "spring_node": np.zeros((0, 2), dtype=np.int64),
+        "spring_dof": np.zeros(0, dtype=np.int64),
+        "spring_stiffness": np.zeros(0),
+        "tie_node": np.zeros((0, 2), dtype=np.int64),
+        "tie_dof": np.zeros(0, dtype=np.int64),
+        **every,
+        "Asy": np.full(count, np.inf),
+        "Asz": np.full(count, np.inf),
+    }
+    # A round bar of 0.01 m over a length of 10 m.
+    structure["E"] *= 2e11
+    structure["G"] *= 8e10
+    structure["A"] *= 7.85e-5
+    for key, size in (("Iy", 4.9e-10), ("Iz", 4.9e-10), ("J", 9.8e-10)):
+        structure[key] *= size
+    forces = np.zeros((1, nodes, 6))
+    forces[0, -1, :3] = 0.1 * across
+    none = np.zeros(0)
+    loads: Arrays = {
+        "forces": forces,
+        "strain": np.zeros((1, count, 3)),
+        "prescribed": np.zeros((1, nodes, 6)),
+        "prescribed_inclined": np.zeros((1, 0)),
+        **{f"member_{key}": none.astype(np.int64) for key in ("pattern", "index", "axis")},
+        **{f"member_{key}": none for key in MEMBER_LOAD[2:]},
+    }
+    return Case(structure, loads)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_bends_much_stands_and_a_hinge_in_it_does_not(seed: int) -> None:
+    along = np.random.default_rng(seed).normal(size=3)
+    for count in (1, 8, 300):
+        soft = chain(count, along, hinged=False)
+        tip = np.linalg.norm(soft.solve().motions[-1, :3])
+        # The condition of a chain grows with the fourth power of its members.
+        exact = 0.1 * 10.0**3 / (3 * 2e11 * 4.9e-10)
+        assert abs(tip - exact) <= 1e-5 * exact
+        with pytest.raises(_core.UnstableStructure):
+            chain(count, along, hinged=True).solve()

@@ -102,16 +102,30 @@ impl Member {
                 forces[6] += tension;
                 forces
             }
+            Some(frame) => frame.stiffness * self.to_local(displacements) + fixed_end,
+        }
+    }
+
+    /// Motions of the two ends, local.
+    pub fn to_local(&self, displacements: &[f64]) -> Vector12 {
+        let mut local = Vector12::zeros();
+        for block in 0..4 {
+            let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
+            let global = Vector3::from_column_slice(&displacements[first..first + 3]);
+            local
+                .fixed_rows_mut::<3>(3 * block)
+                .copy_from(&(self.axes * global));
+        }
+        local
+    }
+
+    /// Twice the strain energy of a motion of its ends.
+    pub fn energy(&self, displacements: &[f64]) -> f64 {
+        match &self.frame {
+            None => self.ea / self.length * self.elongation(displacements).powi(2),
             Some(frame) => {
-                let mut local = Vector12::zeros();
-                for block in 0..4 {
-                    let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
-                    let global = Vector3::from_column_slice(&displacements[first..first + 3]);
-                    local
-                        .fixed_rows_mut::<3>(3 * block)
-                        .copy_from(&(self.axes * global));
-                }
-                frame.stiffness * local + fixed_end
+                let local = self.to_local(displacements);
+                local.dot(&(frame.stiffness * local))
             }
         }
     }

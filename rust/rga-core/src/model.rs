@@ -91,6 +91,39 @@ impl Model {
         }
     }
 
+    /// Forces of the nodes on elements without loads, each with a factor on its stiffness.
+    pub fn elastic_forces(&self, displacements: &[f64], factor: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut total = vec![0.0; self.dofs];
+        for (element, member) in self.members.iter().enumerate() {
+            let forces = member.end_forces(displacements, &Vector12::zeros());
+            let factor = factor(element);
+            member.for_each_force(&forces, |dof, force| total[dof] += factor * force);
+        }
+        for (spring, element) in self.springs.iter().zip(self.members.len()..) {
+            let factor = factor(element);
+            spring.for_each_force(displacements, |dof, force| total[dof] += factor * force);
+        }
+        total
+    }
+
+    /// Twice the strain energy of a motion, each element with a factor on its stiffness: members
+    /// before springs.
+    pub fn energy(&self, displacements: &[f64], factor: impl Fn(usize) -> f64) -> f64 {
+        let of_members = self
+            .members
+            .iter()
+            .map(|member| member.energy(displacements));
+        let of_springs = self.springs.iter().map(|spring| {
+            let terms = spring.terms();
+            let elongation: f64 = terms.map(|(dof, sign)| sign * displacements[dof]).sum();
+            spring.stiffness * elongation * elongation
+        });
+        let energies = of_members.chain(of_springs).enumerate();
+        energies
+            .map(|(element, energy)| factor(element) * energy)
+            .sum()
+    }
+
     /// Forces of the nodes on members and springs: K u + fixed-end forces.
     pub fn internal_forces(&self, displacements: &[f64], fixed_end: &[Vector12]) -> Vec<f64> {
         let mut total = vec![0.0; self.dofs];

@@ -145,7 +145,10 @@ impl Refactored {
                     stiffness.add_one(weight, -rate, &solved.unknowns, right);
                 }
             }
-            if !solved.solver.solve_checked(&mut motions)? {
+            if !solved
+                .solver
+                .solve_checked(&mut motions, self.resisted(&solved.weights))?
+            {
                 return Err(solved.solver.unstable(&self.model, &self.reduction));
             }
             for (at, direction) in moved.iter().enumerate() {
@@ -179,7 +182,10 @@ impl Refactored {
             let weights = &solved.weights;
             let mut adjoint = vec![0.0; solved.unknowns.len()];
             system.shown.add_transposed(weights, g, &mut adjoint);
-            if !solved.solver.solve_checked(&mut adjoint)? {
+            if !solved
+                .solver
+                .solve_checked(&mut adjoint, self.resisted(&solved.weights))?
+            {
                 return Err(solved.solver.unstable(&self.model, &self.reduction));
             }
             let (by_coefficients, by_factors) = found.split_at_mut(self.patterns);
@@ -282,12 +288,30 @@ impl Refactored {
                 return Err(solver.unstable(&self.model, &self.reduction));
             }
         }
+        if solver.moves_freely(&self.model, &self.reduction, |element| weights[element])? {
+            return Err(solver.unstable(&self.model, &self.reduction));
+        }
         self.check_loose(weights, coefficients, load, &loose)?;
         unknowns.copy_from_slice(load);
-        if solver.solve_checked(unknowns)? {
+        let resisted = self.resisted(weights);
+        if solver.solve_checked(unknowns, resisted)? {
             Ok(())
         } else {
             Err(solver.unstable(&self.model, &self.reduction))
+        }
+    }
+
+    /// K z, element by element.
+    fn resisted(&self, weights: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> {
+        |unknowns| {
+            let mut displacements = vec![0.0; self.model.dofs];
+            self.reduction.expand(unknowns, &mut displacements);
+            let forces = self
+                .model
+                .elastic_forces(&displacements, |element| weights[element]);
+            let mut reduced = vec![0.0; unknowns.len()];
+            self.reduction.collect(&forces, &mut reduced);
+            reduced
         }
     }
 

@@ -10,6 +10,18 @@ use crate::solve::Factor;
 /// Smallest pivot of the scaled matrix, whose diagonal is 1.
 const SMALLEST_PIVOT: f64 = 1e-11;
 
+/// Below this, a pivot may be the rounding of one that vanishes.
+const SUSPICIOUS_PIVOT: f64 = 1e-6;
+
+/// Below this, the assembled matrix may have lost digits of soft motions.
+const DELICATE_PIVOT: f64 = 1e-3;
+
+/// Refinements there: each gains about as many digits as the factor still has.
+const DELICATE_STEPS: usize = 2;
+
+/// Energy of a motion that nothing holds, over that with which each dof moves on its own.
+const FREE_ENERGY: f64 = 1e-12;
+
 /// Scaling never takes a direction that is this much softer than the
 /// stiffest of its node for a stiff one. With `SMALLEST_PIVOT` it refuses
 /// what `NO_STIFFNESS` calls rounding.
@@ -34,7 +46,8 @@ pub struct Solver {
 impl Solver {
     pub fn new(model: &Model, reduction: &Reduction) -> Result<Self> {
         let mut solver = Self::analyse(LowerTriangle::assemble(model, reduction))?;
-        if solver.factorise(model, reduction) {
+        let stands = solver.factorise(model, reduction);
+        if stands && !solver.moves_freely(model, reduction, |_| 1.0)? {
             Ok(solver)
         } else {
             Err(solver.unstable(model, reduction))
@@ -72,6 +85,28 @@ impl Solver {
         self.factor.refactor(&self.matrix) && self.factor.smallest_pivot() >= SMALLEST_PIVOT
     }
 
+    /// Whether the softest motion strains no element: where members are much stiffer along than
+    /// across, the pivot of a mechanism may be all rounding and yet not small. Rounding of the
+    /// elements' own deformations is smaller by far.
+    ///
+    /// `factor` is that of a member, or spring behind them, on the stiffness of `model`.
+    pub fn moves_freely(
+        &self,
+        model: &Model,
+        reduction: &Reduction,
+        factor: impl Fn(usize) -> f64,
+    ) -> Result<bool> {
+        if self.scale.is_empty() || self.factor.smallest_pivot() >= SUSPICIOUS_PIVOT {
+            return Ok(false);
+        }
+        let motion = softest(&self.factor, self.scale.len())?;
+        let unscaled: Vec<f64> = motion.iter().zip(&self.scale).map(|(m, s)| m * s).collect();
+        let mut displacements = vec![0.0; model.dofs];
+        reduction.expand(&unscaled, &mut displacements);
+        let size: f64 = motion.iter().map(|value| value * value).sum();
+        Ok(model.energy(&displacements, factor) < FREE_ENERGY * size)
+    }
+
     /// Solves in place for right-hand sides one behind the other.
     pub fn solve(&self, right: &mut [f64]) -> Result<()> {
         let size = self.scale.len();
@@ -84,43 +119,66 @@ impl Solver {
         Ok(())
     }
 
-    /// Solves in place, refines once if needed and checks the residual of each column; false where
-    /// it stays large.
-    pub fn solve_checked(&self, right: &mut [f64]) -> Result<bool> {
+    /// Solves in place, refines and checks the residual of each column; false where it stays
+    /// large.
+    ///
+    /// `resisted` gives K z element by element, which is asked for where digits of the assembled
+    /// matrix may be lost: where members are much stiffer along than across, say.
+    pub fn solve_checked(
+        &self,
+        right: &mut [f64],
+        resisted: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Result<bool> {
         let size = self.scale.len();
         if size == 0 {
             return Ok(true);
         }
+        let delicate = self.factor.smallest_pivot() < DELICATE_PIVOT;
         let loads = right.to_vec();
         self.solve(right)?;
         for (load, unknowns) in loads.chunks_exact(size).zip(right.chunks_exact_mut(size)) {
+            let residual = |unknowns: &[f64]| -> Vec<f64> {
+                let taken = if delicate {
+                    resisted(unknowns)
+                } else {
+                    self.resisted(unknowns)
+                };
+                load.iter()
+                    .zip(taken)
+                    .map(|(load, taken)| load - taken)
+                    .collect()
+            };
             let applied = self.force_norm(load);
-            let mut residual = self.residual(unknowns, load);
-            if self.force_norm(&residual) > REFINE * applied {
-                self.solve(&mut residual)?;
-                for (unknown, correction) in unknowns.iter_mut().zip(&residual) {
+            let mut left = residual(unknowns);
+            let steps = if delicate { DELICATE_STEPS } else { 1 };
+            for _ in 0..steps {
+                if !delicate && self.force_norm(&left) <= REFINE * applied {
+                    break;
+                }
+                self.solve(&mut left)?;
+                for (unknown, correction) in unknowns.iter_mut().zip(&left) {
                     *unknown += correction;
                 }
-                residual = self.residual(unknowns, load);
+                left = residual(unknowns);
             }
             // Written so that NaN is refused as well.
             let small = REFUSE * (applied + self.motion_norm(unknowns));
-            if !(self.force_norm(&residual) <= small) {
+            if !(self.force_norm(&left) <= small) {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// `load` - K `unknowns`
-    fn residual(&self, unknowns: &[f64], load: &[f64]) -> Vec<f64> {
+    /// K `unknowns`, from the assembled matrix.
+    fn resisted(&self, unknowns: &[f64]) -> Vec<f64> {
         let pairs = unknowns.iter().zip(&self.scale);
         let scaled: Vec<f64> = pairs.map(|(unknown, scale)| unknown / scale).collect();
-        let mut residual = self.matrix.product(&scaled);
-        for ((value, load), scale) in residual.iter_mut().zip(load).zip(&self.scale) {
-            *value = load - *value / scale;
+        let mut forces = self.matrix.product(&scaled);
+        for (force, scale) in forces.iter_mut().zip(&self.scale) {
+            *force /= scale;
         }
-        residual
+        forces
     }
 
     /// Gives rotations that nothing stiffens a stiffness, so that they stay where they are;
@@ -235,7 +293,7 @@ fn name_mechanism(
     }
 }
 
-/// Inverse iteration on the shifted matrix, from a fixed irregular start.
+/// The motion that the matrix, shifted until it is definite, resists least.
 fn null_vector(mut matrix: LowerTriangle) -> Result<Vec<f64>> {
     let mut shift = SHIFT;
     let factor = loop {
@@ -246,9 +304,14 @@ fn null_vector(mut matrix: LowerTriangle) -> Result<Vec<f64>> {
             None => return Err(Error::invalid("the stiffness is not a finite number")),
         }
     };
+    softest(&factor, matrix.size())
+}
+
+/// Inverse iteration from a fixed irregular start.
+fn softest(factor: &Factor, size: usize) -> Result<Vec<f64>> {
     let golden = 0.618_033_988_749_895;
     let start = |at: usize| 0.5 + (golden * (at + 1) as f64).fract();
-    let mut motion: Vec<f64> = (0..matrix.size()).map(start).collect();
+    let mut motion: Vec<f64> = (0..size).map(start).collect();
     for _ in 0..ITERATIONS {
         factor.solve(&mut motion, 1)?;
         let largest = motion
