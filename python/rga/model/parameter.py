@@ -40,10 +40,12 @@ class Parameter:
         unit: unit of the value, "-" for a pure number.
         neutral: the value at which the effect does nothing; before an onset the effect has it.
             None for a parameter that an onset leaves alone.
+        least: smallest value that a model may state; None where there is none.
     """
 
     unit: str
     neutral: float | None
+    least: float | None = None
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,15 @@ def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> Floa
     if isinstance(value, Driven):
         return value.times * (contexts[value.context] - value.minus)
     return np.full(rows, value.value if isinstance(value, Estimated) else value)
+
+
+def listed(place: str | list[str] | None) -> list[str]:
+    """The parts that a place names: one, several that share a parameter, or none.
+
+    >>> listed("east"), listed(["east", "west"]), listed(None)
+    (['east'], ['east', 'west'], [])
+    """
+    return [place] if isinstance(place, str) else list(place or [])
 
 
 def marks(annotation: Any, kind: type) -> Any:

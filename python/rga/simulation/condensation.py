@@ -1,5 +1,6 @@
 """Exact condensation of a structure onto its loads, its outputs and the few terms that vary."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -40,7 +41,6 @@ class Condensation:
         springs: numbers of the springs that vary, int[springs].
 
     Raises:
-        DependentTerms: elongations depend on each other, so that no inverse exists.
         _core.UnstableStructure, _core.InvalidInput: as `_core.respond`.
     """
 
@@ -75,8 +75,11 @@ class Condensation:
         self.unit = (unit + unit.T) / 2
         self.loaded, self.stretched = found[:patterns, :count].copy(), elongations[:patterns]
         self.influence = found[patterns:, :count] + self.own
+
+    @cached_property
+    def _core(self) -> _core.Condensed:
         inverse = _inverse(self.unit)
-        self._core = _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
+        return _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
 
     def respond(
         self,
@@ -94,6 +97,7 @@ class Condensation:
             out: where to write them, in C order; left out, a new array.
 
         Raises:
+            DependentTerms: elongations depend on each other, so that no inverse exists.
             _core.UnstableSample: names the row.
         """
         return self._core.respond(coefficients, stiffness - self.stiffness, threads, out)
@@ -112,6 +116,9 @@ class Condensation:
             coefficients, stiffness, threads: as for `respond`.
             coefficient_rates: derivatives of the coefficients, float[rows, patterns, directions].
             stiffness_rates: derivatives of the stiffnesses, float[rows, terms, directions].
+
+        Raises:
+            DependentTerms: as `respond`.
         """
         loads = np.argwhere(coefficient_rates.any(axis=0).T)
         terms = np.argwhere(stiffness_rates.any(axis=0).T)

@@ -24,7 +24,7 @@ APART = 4
 MOST_TERMS = 32
 #: condensed structures that a simulator keeps
 KEPT = 8
-#: arrays of structures and loads, and what they were condensed to
+#: arrays of structures, outputs and loads, and what they were condensed to
 Prepared = list[tuple[list[NDArray[Any]], Condensation]]
 Path = Literal["C1", "C2", "C3", "C4"]
 WORDS: dict[Path, str] = {
@@ -146,12 +146,21 @@ def _each_state(request: Request) -> FloatArray:
     parts = []
     order = np.argsort(request.state_of_row, kind="stable")
     starts = np.searchsorted(request.state_of_row[order], np.arange(len(request.states) + 1))
+    changes = np.count_nonzero(np.diff(request.state_of_row))
     for number, state in enumerate(request.states):
         chosen = order[starts[number] : starts[number + 1]]
         structure = request.change(state)
         loads = request.loads(structure, chosen)
         if structure.laws:
             parts.append(_with_laws(request, structure, loads))
+        elif structure.bearings and changes >= APART:
+            # Friction starts anew with each structure, and would never come to hold.
+            raise InputError(
+                "friction is simulated through rows that share a structure, and this one changes "
+                f"{changes} times",
+                "bearing_friction",
+                "let nothing that changes from row to row drive mu or a stiffness beside it",
+            )
         elif structure.bearings:
             parts.append(respond_with_friction(structure, loads))
         else:
@@ -167,14 +176,7 @@ def _with_laws(request: Request, structure: Structure, loads: list[Load]) -> Flo
             "friction and slack are not simulated together", "effects", "leave out one of them"
         )
     members, springs = terms_of(structure)
-    try:
-        linear = condensed(request.prepared, structure, loads, members, springs)
-    except DependentTerms:
-        raise InputError(
-            "play or slack at so many members leaves nothing that holds the structure",
-            "effects",
-            "name fewer members",
-        ) from None
+    linear = condensed(request.prepared, structure, loads, members, springs)
     return respond_with_laws(structure, linear, coefficients(loads))
 
 
@@ -196,7 +198,8 @@ def condensed(
 ) -> Condensation:
     """A structure condensed onto its loads, sensors, and the members and springs that vary."""
     of_loads = patterns(structure, loads)
-    given = [*structure.arrays.values(), *of_loads.values(), members, springs]
+    given = [*structure.arrays.values(), *structure.outputs.values(), *of_loads.values()]
+    given += [members, springs]
     for known, found in prepared:
         if len(known) == len(given) and all(map(_same, known, given)):
             return found

@@ -95,9 +95,9 @@ def _rates(middle: Request, sides: Sequence[Request]) -> FloatArray | None:
     moved = np.stack([one.of_rows @ slope for one in sides], 2)
     try:
         found = condensed(middle.prepared, start, loads, members, springs)
+        rates = found.differentiate(coefficients(loads), stiffness, _halves(ends), _halves(moved))
     except DependentTerms:
         return None
-    rates = found.differentiate(coefficients(loads), stiffness, _halves(ends), _halves(moved))
     return np.asarray(rates * start.per_si[:, None])
 
 

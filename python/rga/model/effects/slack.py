@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from rga.model.effect import Effect
-from rga.model.effects.bearings import Direction, Supports, supported
-from rga.model.parameter import Parameter, Place, Value
+from rga.model.effects.bearings import Direction, Supports, only_free, supported
+from rga.model.effects.stiffness import some_member
+from rga.model.parameter import Parameter, Place, Value, listed
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Law, Structure
 
@@ -20,7 +21,7 @@ class JointSlip(Effect):
     structural = True
     member: Members = None
     group: Groups = None
-    slip: Annotated[Value, Parameter("m", 0.0)] = 0.0
+    slip: Annotated[Value, Parameter("m", 0.0, least=0.0)] = 0.0
 
     def check(self, model: Model) -> None:
         _only_trusses(self, model, self.member, self.group)
@@ -56,13 +57,11 @@ class SupportGap(Effect):
     structural = True
     support: Supports
     dof: Direction
-    gap: Annotated[Value, Parameter("m", None)]
-    stiffness: Annotated[Value, Parameter("N/m", 0.0)] = 0.0
+    gap: Annotated[Value, Parameter("m", None, least=0.0)]
+    stiffness: Annotated[Value, Parameter("N/m", 0.0, least=0.0)] = 0.0
 
     def check(self, model: Model) -> None:
-        for name in [self.support] if isinstance(self.support, str) else self.support:
-            if self.dof in model.supports[name].fixed:
-                raise ValueError(f"support {name!r} holds {self.dof}: name a free direction")
+        only_free(model, self.support, self.dof)
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for node in supported(structure, self.support):
@@ -75,9 +74,8 @@ class SupportGap(Effect):
 def _only_trusses(
     effect: Effect, model: Model, member: str | list[str] | None, group: str | list[str] | None
 ) -> None:
-    members = [member] if isinstance(member, str) else list(member or [])
-    for name in [group] if isinstance(group, str) else group or []:
-        members += model.groups[name]
+    some_member(effect, member, group)
+    members = [*listed(member), *(name for one in listed(group) for name in model.groups[one])]
     for name in members:
         if model.members[name].kind != "truss":
             raise ValueError(f"{effect.kind} acts on truss members, and {name!r} is a frame member")
