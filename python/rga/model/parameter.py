@@ -118,22 +118,22 @@ class Factor:
 class Positive:
     """A positive value known to within some powers of e about its median.
 
+    Attributes:
+        trials: z at which a screening looks; few where places are many.
+
     >>> Positive(100.0, 2.0).value(0.0)
     100.0
     """
 
     median: float
     spread: float
+    trials: tuple[float, ...] = (-1.5, -0.5, 0.5, 1.5)
 
     def value(self, z: float) -> float:
         return float(self.median * np.exp(self.spread * z))
 
     def z(self, value: float) -> float:
         return float(np.log(value / self.median)) / self.spread
-
-    @property
-    def trials(self) -> tuple[float, ...]:
-        return (-1.5, -0.5, 0.5, 1.5)
 
 
 def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> FloatArray:

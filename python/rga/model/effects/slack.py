@@ -1,12 +1,19 @@
 """Members and supports that carry nothing until they are stretched or moved far enough."""
 
-from collections.abc import Mapping
-from typing import Annotated, Literal
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
 
 from rga.model.effect import Effect
-from rga.model.effects.bearings import Direction, Supports, only_free, supported
+from rga.model.effects.bearings import (
+    Direction,
+    Supports,
+    directions,
+    member_scale,
+    only_free,
+    supported,
+)
 from rga.model.effects.stiffness import some_member
-from rga.model.parameter import Parameter, Place, Value, listed
+from rga.model.parameter import Parameter, Place, Positive, Prior, Value, listed
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Law, Structure
 
@@ -25,6 +32,14 @@ class JointSlip(Effect):
 
     def check(self, model: Model) -> None:
         _only_trusses(self, model, self.member, self.group)
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from _trusses(model)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"slip": Positive(5e-4, 1.0, trials=(-2.0, 0.5))}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for member in structure.named(self.member, self.group):
@@ -63,12 +78,30 @@ class SupportGap(Effect):
     def check(self, model: Model) -> None:
         only_free(model, self.support, self.dof)
 
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from directions(model, held=False, axes=("ux",))
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {
+            "gap": Positive(2e-3, 1.0, trials=(-1.0, 0.0, 1.0)),
+            "stiffness": Positive(0.1 * member_scale(model), 2.0),
+        }
+
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for node in supported(structure, self.support):
             if value["stiffness"] > 0:
                 spring = len(structure.arrays["spring_dof"])
                 structure.add_spring(node, -1, DOFS.index(self.dof), value["stiffness"])
                 structure.laws.append(Law("play", None, spring, abs(value["gap"])))
+
+
+def _trusses(model: Model) -> Iterator[dict[str, Any]]:
+    """Truss members one by one, and groups of nothing else."""
+    trusses = {name for name, member in model.members.items() if member.kind == "truss"}
+    yield from ({"member": name} for name in model.members if name in trusses)
+    yield from ({"group": group} for group, names in model.groups.items() if trusses >= set(names))
 
 
 def _only_trusses(
