@@ -84,9 +84,10 @@ class SupportGap(Effect):
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        scale = 0.1 * member_scale(model)
         return {
             "gap": Positive(2e-3, 1.0, trials=(-1.0, 0.0, 1.0)),
-            "stiffness": Positive(0.1 * member_scale(model), 2.0),
+            "stiffness": Positive(scale, 2.0, trials=(-1.0, 1.0)),
         }
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
