@@ -180,8 +180,12 @@ def test_derivatives_are_those_of_differences_of_high_order() -> None:
 def test_terms_that_depend_on_each_other_are_refused() -> None:
     bridge = box_bridge(0)
     everything = np.arange(len(bridge.structure["ends"]))
+    all_of_them = Condensation(
+        bridge.structure, bridge.loads, bridge.outputs, everything, bridge.springs
+    )
+    q = np.ones((1, len(bridge.loads["forces"])))
     with pytest.raises(DependentTerms):
-        Condensation(bridge.structure, bridge.loads, bridge.outputs, everything, bridge.springs)
+        all_of_them.respond(q, all_of_them.stiffness[None])
 
 
 def test_a_sample_that_can_move_is_named() -> None:

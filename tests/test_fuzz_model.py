@@ -105,6 +105,7 @@ OTHER_EFFECTS: list[dict[str, Any]] = [
     {"kind": "clock_lag", "time": 60.0},
     {"kind": "context_bias", "context": "temperature", "offset": 1.0},
     {"kind": "context_gain", "context": "temperature", "factor": 1.1},
+    {"kind": "creep", "amplitude": 0.2},
     {"kind": "dead_load", "group": "deck", "force_per_length": 100.0, "onset": "1970-01-01T00:30"},
     {"kind": "elastic_modulus", "material": "steel", "factor": 0.95},
     {"kind": "floor_participation", "group": "deck", "area": 1e-3, "connector_stiffness": 1e7},
@@ -122,6 +123,7 @@ OTHER_EFFECTS: list[dict[str, Any]] = [
     {"kind": "sensor_gain", "sensor": "D1", "factor": 1.02},
     {"kind": "sensor_swap", "sensors": ["F1", "R1"]},
     {"kind": "sensor_temperature", "sensor": "D1", "rate": 0.1},
+    {"kind": "stiffness_temperature", "group": "bars", "rate": -0.001, "kink": 5.0},
     {"kind": "support_flexibility", "support": "west", "dof": "uz", "stiffness": 1e8},
     {
         "kind": "support_settlement",

@@ -81,6 +81,15 @@ class Effect(BaseModel):
             raise ValueError(f"without {needed} the effect does nothing: give it")
         return self
 
+    @model_validator(mode="after")
+    def _large_enough(self) -> Self:
+        for name, mark in self.parameters().items():
+            raw = getattr(self, name)
+            stated = raw.value if isinstance(raw, Estimated) else raw
+            if mark.least is not None and isinstance(stated, float) and stated < mark.least:
+                raise ValueError(f"{name}: {stated:g} {mark.unit} is below {mark.least:g}")
+        return self
+
     @classmethod
     @cache
     def parameters(cls) -> dict[str, Parameter]:

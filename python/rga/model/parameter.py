@@ -40,10 +40,12 @@ class Parameter:
         unit: unit of the value, "-" for a pure number.
         neutral: the value at which the effect does nothing; before an onset the effect has it.
             None for a parameter that an onset leaves alone.
+        least: smallest value that a model may state; None where there is none.
     """
 
     unit: str
     neutral: float | None
+    least: float | None = None
 
 
 @dataclass(frozen=True)
@@ -116,22 +118,22 @@ class Factor:
 class Positive:
     """A positive value known to within some powers of e about its median.
 
+    Attributes:
+        trials: z at which a screening looks; few where places are many.
+
     >>> Positive(100.0, 2.0).value(0.0)
     100.0
     """
 
     median: float
     spread: float
+    trials: tuple[float, ...] = (-1.5, -0.5, 0.5, 1.5)
 
     def value(self, z: float) -> float:
         return float(self.median * np.exp(self.spread * z))
 
     def z(self, value: float) -> float:
         return float(np.log(value / self.median)) / self.spread
-
-    @property
-    def trials(self) -> tuple[float, ...]:
-        return (-1.5, -0.5, 0.5, 1.5)
 
 
 def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> FloatArray:
@@ -148,6 +150,15 @@ def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> Floa
     if isinstance(value, Driven):
         return value.times * (contexts[value.context] - value.minus)
     return np.full(rows, value.value if isinstance(value, Estimated) else value)
+
+
+def listed(place: str | list[str] | None) -> list[str]:
+    """The parts that a place names: one, several that share a parameter, or none.
+
+    >>> listed("east"), listed(["east", "west"]), listed(None)
+    (['east'], ['east', 'west'], [])
+    """
+    return [place] if isinstance(place, str) else list(place or [])
 
 
 def marks(annotation: Any, kind: type) -> Any:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.model.parameter import FloatArray, listed
 
 
 @dataclass
@@ -22,6 +22,10 @@ class Readings:
     columns: dict[str, int]
     time: FloatArray
     warmth: FloatArray
+
+    def at(self, sensors: str | list[str]) -> list[int]:
+        """Columns of the sensors of a place."""
+        return [self.columns[name] for name in listed(sensors)]
 
     @property
     def days(self) -> FloatArray:

@@ -6,8 +6,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
-from rga.model.schema import DOFS, Model, Sensor
+from rga.model.parameter import FloatArray, listed
+from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
 
 IntArray = NDArray[np.int64]
@@ -25,6 +25,7 @@ class Load:
         strain: initial axial strain of every member, float[members], or None.
         prescribed: (node, dof) -> displacement of a support [m or rad].
         spread: (member, axis, from, to, start, end) of loads along members.
+        permanent: a load that no context drives.
     """
 
     coefficient: FloatArray
@@ -32,6 +33,7 @@ class Load:
     strain: FloatArray | None = None
     prescribed: dict[tuple[int, int], float] = field(default_factory=dict)
     spread: list[tuple[int, int, float, float, float, float]] = field(default_factory=list)
+    permanent: bool = False
 
 
 @dataclass(frozen=True)
@@ -115,18 +117,18 @@ class Structure:
         ends = self.arrays["coordinates"][self.arrays["ends"]]
         return np.asarray(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
 
-    def of_material(self, material: str) -> NDArray[np.bool_]:
+    def of_material(self, material: str | list[str]) -> NDArray[np.bool_]:
         """True for members of a material, those that share a host's temperature included."""
-        made_of = np.array([name == material for name in self.materials], dtype=bool)
+        made_of = np.isin(self.materials, listed(material))
         return np.asarray(made_of[self.host])
 
     def named(self, member: str | list[str] | None, group: str | list[str] | None) -> IntArray:
         """Numbers of the members that a place names, each once."""
-        members = [member] if isinstance(member, str) else member or []
-        groups = [group] if isinstance(group, str) else group or []
-        numbers = [self.members[name] for name in members]
+        numbers = [self.members[name] for name in listed(member)]
         return np.unique(
-            np.concatenate([numbers, *(self.groups[name] for name in groups)]).astype(np.int64)
+            np.concatenate([numbers, *(self.groups[name] for name in listed(group))]).astype(
+                np.int64
+            )
         )
 
     def add_nodes(self, coordinates: FloatArray) -> IntArray:
@@ -166,6 +168,17 @@ class Structure:
         arrays["spring_node"] = np.vstack([arrays["spring_node"], [[node, to]]])
         arrays["spring_dof"] = np.append(arrays["spring_dof"], dof)
         arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], stiffness)
+
+
+def check_direction(direction: Vector) -> None:
+    """ValueError where a direction points nowhere."""
+    if not any(direction):
+        raise ValueError("the direction [0, 0, 0] points nowhere")
+
+
+def unit_vector(direction: Vector) -> FloatArray:
+    """A direction of length one, float[3]."""
+    return np.asarray(np.array(direction) / np.linalg.norm(direction))
 
 
 def build_structure(model: Model) -> Structure:

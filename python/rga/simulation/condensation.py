@@ -1,5 +1,7 @@
 """Exact condensation of a structure onto its loads, its outputs and the few terms that vary."""
 
+from functools import cached_property
+
 import numpy as np
 
 from rga import _core
@@ -36,10 +38,10 @@ class Condensation:
         members: numbers of the members that vary, as a whole, int[members]; no end of a frame
             member yields.
         springs: numbers of the springs that vary, int[springs].
+        axial: of frame members too, no more varies than how they resist growing longer.
 
     Raises:
-        DependentTerms: elongations depend on each other or are prescribed, so that no inverse
-            exists.
+        DependentTerms: elongations are prescribed.
         _core.UnstableStructure, _core.InvalidInput: as `_core.respond`.
     """
 
@@ -50,9 +52,10 @@ class Condensation:
         outputs: Arrays,
         members: IntArray,
         springs: IntArray,
+        axial: bool = False,
     ) -> None:
         members, springs = np.asarray(members, np.int64), np.asarray(springs, np.int64)
-        terms, held = stiffness_terms(structure, outputs, members, springs)
+        terms, held = stiffness_terms(structure, outputs, members, springs, axial)
         moved = loads["prescribed"][:, held.nodes] * held.motion.reshape(-1, 2, 6)
         if (moved.sum(axis=(2, 3)) != _at_rest(loads, held)).any():
             raise DependentTerms
@@ -72,8 +75,11 @@ class Condensation:
             self.stretched[:, gauges] = _between_held_ends(structure, loads, outputs, read)
             unit[gauges, gauges] = self.influence[gauges, read] = 1.0 / self.stiffness[gauges]
         self.unit = (unit + unit.T) / 2
+
+    @cached_property
+    def _core(self) -> _core.Condensed:
         inverse = _inverse(self.unit)
-        self._core = _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
+        return _core.Condensed(self.loaded, self.stretched @ inverse, inverse, self.influence)
 
     @property
     def terms(self) -> int:
@@ -96,6 +102,7 @@ class Condensation:
             out: where to write them, in C order; left out, a new array.
 
         Raises:
+            DependentTerms: elongations depend on each other, so that no inverse exists.
             _core.UnstableSample: names the row.
         """
         return self._core.respond(coefficients, self._changes(stiffness), threads, out)
@@ -114,6 +121,9 @@ class Condensation:
             coefficients, stiffness, threads: as for `respond`.
             coefficient_rates: derivatives of the coefficients, float[rows, patterns, directions].
             stiffness_rates: derivatives of the stiffnesses, float[rows, elements, directions].
+
+        Raises:
+            DependentTerms: as `respond`.
         """
         loads, of_loads = along(coefficient_rates)
         terms, of_terms = along(stiffness_rates[:, self.element])

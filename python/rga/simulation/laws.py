@@ -4,6 +4,9 @@ A law N(v) of a term is written as that of the linear term of the structure and 
 w = N(v) - k v beside it. Condensed onto these terms, v + G w(v) = v0 is a small system with corners
 at the ends of the play; Newton's method meets few of them (Qi and Sun, A nonsmooth version of
 Newton's method, Math. Programming 58, 1993).
+
+A trace of stiffness in idle terms keeps in the middle of the play what only the play lets move and
+no load pushes. It finds the side on which each term is; its force is then taken off again.
 """
 
 import numpy as np
@@ -11,7 +14,7 @@ from numpy.typing import NDArray
 
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
-from rga.model.structure import Law, Structure
+from rga.model.structure import IntArray, Law, Structure
 from rga.simulation.condensation import Condensation
 from rga.simulation.terms import STRAIN
 
@@ -19,8 +22,12 @@ from rga.simulation.terms import STRAIN
 STEPS = 60
 #: an elongation is found when it changes by less than this part of the largest
 CONVERGED = 1e-12
-#: share of its stiffness that a step grants an idle term, so that it may lead out of the play
-TRACE = 1e-8
+#: share of its stiffness that an idle term keeps, and how much of the loads it may carry by that
+TRACE, CARRIED = 1e-8, 1e-3
+#: steps that take its force off again
+REFINED = 2
+#: elongations below this are none [m]
+NONE = 1e-12
 
 
 def respond_with_laws(
@@ -38,29 +45,45 @@ def respond_with_laws(
         InputError: play or slack leaves a row nothing that holds it.
     """
     laws = sorted(structure.laws, key=_order)
-    apart = coefficients @ linear.stretched
-    # All terms bear at first, each on the side that it would take without its law.
+    stiffness, unit = linear.stiffness, linear.unit
     size = np.array([law.size for law in laws])
-    elongation = apart + (np.sign(apart) * size * linear.stiffness) @ linear.unit
+    rod = np.array([law.kind == "tension" for law in laws])
+    apart = coefficients @ linear.stretched
+
+    def move(elongation: FloatArray, side: FloatArray, rows: IntArray, trace: float) -> FloatArray:
+        """One Newton step, the terms staying on their sides."""
+        idle = (1 - trace) * elongation + trace * size * rod
+        pseudo = -stiffness * np.where(side == 0, idle, side * size)
+        left = elongation + pseudo @ unit - apart[rows]
+        slope = np.where(side == 0, (TRACE - 1) * stiffness, 0.0)
+        matrix = np.eye(len(laws)) + unit * slope[:, None, :]
+        return np.asarray(elongation - np.linalg.solve(matrix, left[:, :, None])[:, :, 0])
+
+    # All terms bear at first, each on the side that it would take without its law.
+    elongation = apart + (np.sign(apart) * size * stiffness) @ unit
+    side = _side(elongation, size, rod)
     waiting = np.arange(len(apart))
-    identity = np.eye(len(laws))
     for _ in range(STEPS):
-        pseudo, slope = _pseudo(laws, linear.stiffness, elongation[waiting])
-        left = elongation[waiting] + pseudo @ linear.unit - apart[waiting]
-        matrix = identity + linear.unit * slope[:, None, :]
-        step = np.linalg.solve(matrix, left[:, :, None])[:, :, 0]
-        elongation[waiting] -= step
-        largest = np.abs(elongation[waiting]).max(axis=1)
-        waiting = waiting[np.abs(step).max(axis=1) > CONVERGED * largest]
+        before, on = elongation[waiting], side[waiting]
+        now = move(before, on, waiting, TRACE)
+        elongation[waiting], side[waiting] = now, _side(now, size, rod)
+        # Between corners all is straight, and a step that meets none is exact.
+        met = (side[waiting] != on).any(axis=1)
+        far = np.abs(now - before).max(axis=1) > CONVERGED * np.abs(now).max(axis=1)
+        waiting = waiting[met & far]
         if not len(waiting):
             break
-    else:
+    held = TRACE * np.abs(elongation) < CARRIED * (np.abs(apart).max() + size.max() + NONE)
+    lost = np.union1d(waiting, np.flatnonzero(~held.all(axis=1)))
+    if len(lost):
         raise InputError(
             "play or slack leaves nothing that holds the structure",
-            f"row {waiting[0] + 1}",
+            f"row {lost[0] + 1}",
             "reduce the slack, or name fewer members",
         )
-    pseudo, _ = _pseudo(laws, linear.stiffness, elongation)
+    for _ in range(REFINED):
+        elongation = move(elongation, side, np.arange(len(apart)), 0.0)
+    pseudo = -stiffness * np.where(side == 0, elongation, side * size)
     influence, arrays, outputs = linear.influence.copy(), structure.arrays, structure.outputs
     # A gauge on a slack member reads its force, not the way that its ends have moved.
     gauges = np.where(outputs["total"] | (outputs["kind"] != STRAIN), -1, outputs["index"])
@@ -93,11 +116,9 @@ def _order(law: Law) -> tuple[bool, int]:
     return law.member is None, (law.spring if law.member is None else law.member) or 0
 
 
-def _pseudo(
-    laws: list[Law], stiffness: FloatArray, elongation: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """N(v) - k v and its slope, float[rows, terms]: what play or slack takes off the force."""
-    size = np.array([law.size for law in laws])
-    lowest = np.where([law.kind == "tension" for law in laws], -np.inf, -size)
-    idle = np.clip(elongation, lowest, size)
-    return -stiffness * idle, np.where(idle == elongation, (TRACE - 1.0) * stiffness, 0.0)
+def _side(elongation: FloatArray, size: FloatArray, rod: NDArray[np.bool_]) -> FloatArray:
+    """1 or -1 for terms that bear at an end of their play, 0 for idle ones, float[rows, terms]."""
+    # With the trace a rod's force is zero at its slack, that of a play in its middle.
+    highest = np.where(rod, size, size / (1 - TRACE))
+    lowest = np.where(rod, -np.inf, -highest)
+    return np.where(elongation >= highest, 1.0, np.where(elongation <= lowest, -1.0, 0.0))

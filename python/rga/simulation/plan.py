@@ -26,7 +26,7 @@ APART = 4
 MOST_TERMS = 32
 #: condensed structures that a simulator keeps
 KEPT = 8
-#: arrays of structures and loads, and what they were condensed to
+#: arrays of structures, outputs and loads, and what they were condensed to
 Prepared = list[tuple[list[NDArray[Any]], Condensation]]
 Path = Literal["C1", "C2", "C3", "C4"]
 WORDS: dict[Path, str] = {
@@ -116,7 +116,7 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
     for path, system in linear_paths(request.prepared, varied, loads):
         try:
             return plan(path, system.terms), system.respond(q, stiffness)
-        except _core.UnstableSample:
+        except (_core.UnstableSample, DependentTerms):
             continue  # a factorisation of each sample decides, and names what is wrong
         except (_core.UnstableStructure, _core.InvalidInput) as error:
             raise refused(structure, error) from None
@@ -148,12 +148,21 @@ def _each_state(request: Request) -> FloatArray:
     parts = []
     order = np.argsort(request.state_of_row, kind="stable")
     starts = np.searchsorted(request.state_of_row[order], np.arange(len(request.states) + 1))
+    changes = np.count_nonzero(np.diff(request.state_of_row))
     for number, state in enumerate(request.states):
         chosen = order[starts[number] : starts[number + 1]]
         structure = request.change(state)
         loads = request.loads(structure, chosen)
         if structure.laws:
             parts.append(_with_laws(request, structure, loads))
+        elif structure.bearings and changes >= APART:
+            # Friction starts anew with each structure, and would never come to hold.
+            raise InputError(
+                "friction is simulated through rows that share a structure, and this one changes "
+                f"{changes} times",
+                "bearing_friction",
+                "let nothing that changes from row to row drive mu or a stiffness beside it",
+            )
         elif structure.bearings:
             parts.append(respond_with_friction(structure, loads))
         else:
@@ -169,14 +178,7 @@ def _with_laws(request: Request, structure: Structure, loads: list[Load]) -> Flo
             "friction and slack are not simulated together", "effects", "leave out one of them"
         )
     members, springs = terms_of(structure)
-    try:
-        linear = condensed(request.prepared, structure, loads, members, springs)
-    except DependentTerms:
-        raise InputError(
-            "play or slack at so many members leaves nothing that holds the structure",
-            "effects",
-            "name fewer members",
-        ) from None
+    linear = condensed(request.prepared, structure, loads, members, springs, axial=True)
     return respond_with_laws(structure, linear, coefficients(loads))
 
 
@@ -195,15 +197,17 @@ def condensed(
     loads: list[Load],
     members: IntArray = NOTHING,
     springs: IntArray = NOTHING,
+    axial: bool = False,
 ) -> Condensation:
     """A structure condensed onto its loads, sensors, and the members and springs that vary."""
     of_loads = patterns(structure, loads)
-    given = [*structure.arrays.values(), *of_loads.values(), members, springs]
+    given = [*structure.arrays.values(), *structure.outputs.values(), *of_loads.values()]
+    given += [members, springs, np.array(axial)]
     for known, found in prepared:
         if len(known) == len(given) and all(map(_same, known, given)):
             return found
     try:
-        found = Condensation(structure.arrays, of_loads, structure.outputs, members, springs)
+        found = Condensation(structure.arrays, of_loads, structure.outputs, members, springs, axial)
     except (_core.UnstableStructure, _core.InvalidInput) as error:
         raise refused(structure, error) from None
     prepared.append(([array.copy() for array in given], found))

@@ -15,7 +15,7 @@ import numpy as np
 from rga import _core
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
-from rga.simulation.condensation import Condensation
+from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.factorisation import Factorisation
 from rga.simulation.plan import coefficients, linear_paths
 from rga.simulation.variation import unvaried, variation
@@ -86,7 +86,7 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
                 tangent.coefficient_rates,
                 tangent.stiffness_rates,
             )
-        except _core.UnstableSample:
+        except (_core.UnstableSample, DependentTerms):
             continue  # the next path decides
         rates = found * tangent.per_si[:, None]
         break
@@ -127,7 +127,7 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
             found = tangent.system.pull_back(
                 tangent.coefficients, tangent.stiffness, gradients * tangent.per_si
             )
-        except _core.UnstableSample:
+        except (_core.UnstableSample, DependentTerms):
             continue  # the next path decides
         by_loads, by_stiffness = np.split(found, [tangent.coefficients.shape[1]], axis=1)
         along = _product(by_loads, tangent.coefficient_rates)

@@ -238,7 +238,8 @@ class Simulator:
         for effect in effects.values():
             effect.change_contexts(true, effect.values(measured, rows))
         values = {name: effect.values(true, rows) for name, effect in effects.items()}
-        for name, effect in effects.items():
+        # What the structure follows is known once lags have acted on it.
+        for name, effect in sorted(effects.items(), key=lambda named: named[1].structural):
             effect.change_values(values, values[name], measured["time"])
         return values
 

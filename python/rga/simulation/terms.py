@@ -61,16 +61,22 @@ class Terms:
 
 
 def stiffness_terms(
-    structure: Arrays, outputs: Arrays, members: IntArray, springs: IntArray
+    structure: Arrays,
+    outputs: Arrays,
+    members: IntArray,
+    springs: IntArray,
+    axial: bool = False,
 ) -> tuple[Terms, Terms]:
     """Terms that can stretch, and modes of frame members that supports hold still.
 
     Args:
         structure, outputs: as `_core.respond` takes them.
         members, springs: numbers of those whose terms are wanted; no end of a member yields.
+        axial: of frame members too only that they grow longer.
     """
-    parts = [_of_members(structure, members), _of_springs(structure, springs, len(members))]
-    frames = np.flatnonzero(structure["frame"][members])
+    bends = structure["frame"][members] & (not axial)
+    parts = [_of_members(structure, members, bends), _of_springs(structure, springs, len(members))]
+    frames = np.flatnonzero(bends)
     parts.append(_of_gauges(structure, outputs, members, frames))
     every = Terms(*map(np.concatenate, zip(*(vars(part).values() for part in parts), strict=True)))
     free = ~structure["fixed"][every.nodes].reshape(-1, 12)
@@ -92,17 +98,18 @@ def local_axes(structure: Arrays, members: IntArray) -> tuple[FloatArray, FloatA
     return lengths, np.stack([x, np.cross(z, x), z], axis=1)
 
 
-def _of_members(structure: Arrays, members: IntArray) -> Terms:
+def _of_members(structure: Arrays, members: IntArray, frame: NDArray[np.bool_]) -> Terms:
     lengths, axes = local_axes(structure, members)
-    frame = structure["frame"][members]
+    rigid = structure["rigid_end"][members].sum(axis=1)
+    elastic = lengths - np.where(structure["frame"][members], rigid, 0.0)
     local = np.zeros((len(members), 6, 12))
     rest = np.zeros((len(members), 6, 3))
     local[:, 0, [0, 6]] = [-1.0, 1.0]
-    rest[:, 0, 0] = lengths
+    rest[:, 0, 0] = elastic
     there = np.zeros((len(members), 6), dtype=bool)
     there[:, 0] = ~frame
     own, free = structure["E"][members], structure["connection"][members] == 0
-    own = np.where(frame, own, own * structure["A"][members] / lengths)
+    own = np.where(frame, own, own * structure["A"][members] / elastic)
     for number in np.flatnonzero(frame):
         modes, of_strain = _modes(structure, int(members[number]), lengths[number], free[number])
         there[number, : len(modes)] = True

@@ -16,7 +16,7 @@ from .draft import Bridge, ModelDict
 from .effect import Setting, Span
 from .frame import Array
 from .gauges import measure, observe, silenced
-from .hidden import HIDDEN, KINDS, draw_hidden, fits
+from .hidden import DRAWN, HIDDEN, KINDS, draw_hidden, fits
 from .noise import autoregressive, long_run_variance, missing, stream
 from .response import Contexts, respond
 from .score import d_prime
@@ -118,7 +118,7 @@ def _choose(
     rng = stream(seed, "choice")
     drawn = list(BRIDGES)[int(rng.integers(len(BRIDGES)))]
     stiff = "frame" if rng.random() < 0.5 else "truss"
-    null, order = rng.random() < _NULLS, rng.permutation(len(HIDDEN))
+    null, order = rng.random() < _NULLS, rng.permutation(len(DRAWN))
     name = bridge or drawn
     if name not in BRIDGES:
         raise ValueError(f"no bridge {name!r}; there are {', '.join(BRIDGES)}")
@@ -130,7 +130,7 @@ def _choose(
     if kind is not None and not fits(kind, model):
         raise ValueError(f"the bridge {name!r} has nothing that {kind!r} could act on")
     if kind is None:
-        hidden = [list(HIDDEN)[int(k)] for k in order]
+        hidden = [list(DRAWN)[int(k)] for k in order]
         usable = [k for k in hidden if fits(k, model)]
         if reality == "truss":
             usable.remove("joint_rigidity")

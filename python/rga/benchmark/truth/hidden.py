@@ -11,9 +11,10 @@ from .draft import Bridge
 from .effect import Kind, Setting, Span
 from .hidden_gauge import GAUGE
 from .hidden_load import LOAD
-from .hidden_structure import STRUCTURE
+from .hidden_structure import PLAY, STRUCTURE
 
-HIDDEN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
+DRAWN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
+HIDDEN: dict[str, Kind] = {**DRAWN, **PLAY}
 KINDS = ("null", *HIDDEN)
 _PLACES = 8
 _HALVINGS = 9

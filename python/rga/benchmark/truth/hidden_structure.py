@@ -6,7 +6,7 @@ import numpy as np
 
 from .effect import Kind, Setting, Span, either, pick
 from .frame import Array, Spring
-from .world import Friction, StrandBar, World
+from .world import Friction, Stop, StrandBar, World
 
 Rng = np.random.Generator
 
@@ -144,6 +144,27 @@ def _stick(w: World, span: Span, value: float) -> None:
     )
 
 
+def _loose_bolts(s: Setting, rng: Rng) -> Span:
+    if rng.random() < 0.3:
+        return Span({"group": pick(rng, s.bridge.jointed)}, 1e-5, 4e-3, log=True)
+    members = s.bridge.model["members"].items()
+    main = [name for name, m in members if m["groups"][0] in s.bridge.jointed + s.bridge.floor]
+    return Span({"member": pick(rng, main)}, 1e-5, 4e-3, log=True)
+
+
+def _slip(w: World, span: Span, value: float) -> None:
+    w.slip = np.where(w.members_of(**span.place), value, 0.0)
+
+
+def _stopped(s: Setting, rng: Rng) -> Span:
+    fixed = {"gap": float(np.round(rng.uniform(5e-4, 4e-3), 5))}
+    return Span(_bearings(s, rng), 1e5, 2e9, log=True, fixed=fixed)
+
+
+def _stop(w: World, span: Span, value: float) -> None:
+    w.stop = Stop(_dofs(w, span), span.fixed["gap"], value)
+
+
 STRUCTURE = {
     "elastic_modulus": Kind("factor", _modulus, _soften_material),
     "member_stiffness": Kind("factor", _member, _soften_member, onset=0.3),
@@ -154,4 +175,9 @@ STRUCTURE = {
     "floor_participation": Kind("area", _stringers, _add_strands),
     "joint_rigidity": Kind("stiffness", _joints, _join),
     "bearing_friction": Kind("mu", _sticking, _stick),
+}
+#: drawn where they are asked for by name; the cases of a seed are those without them
+PLAY = {
+    "joint_slip": Kind("slip", _loose_bolts, _slip),
+    "support_gap": Kind("stiffness", _stopped, _stop),
 }

@@ -13,6 +13,7 @@ import numpy as np
 
 from .frame import DOFS, Array, Frame, Solution, Spring
 from .friction import slide
+from .play import slips, stops
 from .world import World
 
 Contexts = dict[str, Array]
@@ -76,11 +77,40 @@ def respond(world: World, contexts: Contexts, time: Array) -> tuple[Array, dict[
         free = len(patterns)
         grip = slide(world.friction, solution, course, free)
         course = np.hstack([course, grip])
+    readings = course @ gauges.T + _played(world, frame, solution, course, warming)
     shares: dict[str, Array] = {}
     for k, pattern in enumerate(patterns):
         part = course[:, k : k + 1] * gauges[:, k]
         shares[pattern.driver] = shares.get(pattern.driver, 0.0) + part
-    return course @ gauges.T, shares
+    return readings, shares
+
+
+def _played(
+    world: World, frame: Frame, solution: Solution, course: Array, warming: Array
+) -> Array | float:
+    """What slip in joints and stops at bearings add to the channels [n, c]."""
+    length = world.geometry.length
+    if world.slip is not None:
+        m = np.flatnonzero(world.slip)
+        long = np.zeros((len(length), len(m)))
+        long[m, np.arange(len(m))] = 1.0 / length[m]
+        moved = frame.solve(np.zeros((world.size, len(m))), long)
+        axial = (frame.ea / length)[m, None]
+        free = world.alpha[m, None] * warming[m] * length[m, None]
+        unit = axial * (moved.elongation[m] - np.eye(len(m)))
+        force = course @ (axial * (solution.elongation[m] - free)).T
+        # A gauge on a member reads what stretches the steel, not what its bolts have slipped.
+        tight = moved._replace(elongation=moved.elongation - long * length[:, None])
+        return slips(force, unit, world.slip[m]) @ _read(world, tight, np.zeros_like(long)).T
+    if world.stop is not None:
+        at, many = world.stop.dofs, len(world.stop.dofs)
+        units = np.zeros((world.size, many))
+        units[at, np.arange(many)] = 1.0
+        pushed = frame.solve(units, np.zeros((len(length), many)))
+        loose = course @ solution.u[at].T
+        push = stops(loose, pushed.u[at], world.stop.gap, world.stop.stiffness)
+        return push @ _read(world, pushed, np.zeros((len(length), many))).T
+    return 0.0
 
 
 def _assemble(world: World) -> Frame:

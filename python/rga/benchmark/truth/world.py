@@ -37,6 +37,15 @@ class Friction:
 
 
 @dataclass
+class Stop:
+    """Stops at bearings: a stiffness [N/m] beyond a gap [m] to either side."""
+
+    dofs: list[int]
+    gap: float
+    stiffness: float
+
+
+@dataclass
 class Curiosity:
     """What no vocabulary holds: see ``response.py`` for the meaning of each variant."""
 
@@ -67,6 +76,8 @@ class World:
     load_share: dict[str, float] = field(default_factory=dict)
     added_load: list[tuple[str, Array]] = field(default_factory=list)  # context, force [d]
     friction: Friction | None = None
+    slip: Array | None = None  # [m] of every member to either side
+    stop: Stop | None = None
     curiosity: Curiosity | None = None
     sensor_ops: list[tuple[str, Any]] = field(default_factory=list)
     context_ops: list[tuple[str, str, float]] = field(default_factory=list)

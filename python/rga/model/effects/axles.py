@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray, Number, Parameter, Value
-from rga.model.structure import Load, Structure
+from rga.model.structure import Load, Structure, check_direction, unit_vector
 
 
 class AxleLoad(Effect):
@@ -37,6 +37,7 @@ class AxleLoad(Effect):
             raise ValueError(f"{len(self.forces)} forces but {len(self.offsets)} offsets")
         if len(set(self.path)) < len(self.path):
             raise ValueError("the path meets a node twice")
+        check_direction(self.direction)
         return self
 
     @property
@@ -49,8 +50,12 @@ class AxleLoad(Effect):
         points = structure.arrays["coordinates"][numbers]
         stations = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
         shares = self._shares(values["position"], stations) * values["factor"][:, None]
-        force = np.array([*self.direction, 0.0, 0.0, 0.0])
-        return [Load(shares[:, k], forces={number: force}) for k, number in enumerate(numbers)]
+        force = np.append(unit_vector(self.direction), np.zeros(3))
+        fast = not self.drivers()
+        return [
+            Load(shares[:, k], forces={number: force}, permanent=fast)
+            for k, number in enumerate(numbers)
+        ]
 
     def _shares(self, position: FloatArray, stations: FloatArray) -> FloatArray:
         """Force that each node of the path takes, float[rows, nodes] [N]."""

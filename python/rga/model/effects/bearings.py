@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from rga.model.effect import Effect
-from rga.model.parameter import Parameter, Place, Positive, Prior, Value
+from rga.model.parameter import Parameter, Place, Positive, Prior, Value, listed
 from rga.model.schema import DOFS, Dof, Model
 from rga.model.structure import HELD_BY_PLANE, Bearing, Structure
 
@@ -21,12 +21,10 @@ class SupportSpring(Effect):
     structural = True
     support: Supports
     dof: Direction
-    stiffness: Annotated[Value, Parameter("N/m", 0.0)] = 0.0
+    stiffness: Annotated[Value, Parameter("N/m", 0.0, least=0.0)] = 0.0
 
     def check(self, model: Model) -> None:
-        for name in [self.support] if isinstance(self.support, str) else self.support:
-            if self.dof in model.supports[name].fixed:
-                raise ValueError(f"support {name!r} holds {self.dof}: name a free direction")
+        only_free(model, self.support, self.dof)
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -49,7 +47,12 @@ class SupportFlexibility(Effect):
     structural = True
     support: Supports
     dof: Direction
-    stiffness: Annotated[Value, Parameter("N/m", float("inf"))] = float("inf")
+    stiffness: Annotated[Value, Parameter("N/m", float("inf"), least=0.0)] = float("inf")
+
+    def check(self, model: Model) -> None:
+        for name in listed(self.support):
+            if self.dof not in model.supports[name].fixed:
+                raise ValueError(f"support {name!r} leaves {self.dof} free: name a held direction")
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -69,15 +72,23 @@ class SupportFlexibility(Effect):
 
 
 class BearingFriction(Effect):
-    """Coulomb friction on a free direction: mu times (reaction + permanent_force [N])."""
+    """Coulomb friction on a free direction: mu times (reaction + permanent_force [N]).
+
+    Attributes:
+        mu: coefficient of friction [-].
+        permanent_force: part of the vertical reaction that the model's loads leave out [N].
+    """
 
     kind: Literal["bearing_friction"] = "bearing_friction"
     structural = True
     remembers = True
     support: Supports
     dof: Direction
-    mu: Annotated[Value, Parameter("-", 0.0)] = 0.0
-    permanent_force: float = 0.0
+    mu: Annotated[Value, Parameter("-", 0.0, least=0.0)] = 0.0
+    permanent_force: Annotated[Value, Parameter("N", None)] = 0.0
+
+    def check(self, model: Model) -> None:
+        only_free(model, self.support, self.dof)
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -91,7 +102,7 @@ class BearingFriction(Effect):
         for node in supported(structure, self.support):
             if value["mu"] > 0:
                 structure.bearings.append(
-                    Bearing(node, DOFS.index(self.dof), value["mu"], self.permanent_force)
+                    Bearing(node, DOFS.index(self.dof), value["mu"], value["permanent_force"])
                 )
 
 
@@ -114,11 +125,16 @@ def directions(
         yield from ({"support": line, "dof": dof} for line in together if len(line) > 1)
 
 
+def only_free(model: Model, support: str | list[str], dof: str) -> None:
+    """ValueError where one of the supports holds the direction."""
+    for name in listed(support):
+        if dof in model.supports[name].fixed:
+            raise ValueError(f"support {name!r} holds {dof}: name a free direction")
+
+
 def supported(structure: Structure, support: str | list[str]) -> list[int]:
     """Nodes of the supports of a place."""
-    return [
-        structure.supports[name] for name in ([support] if isinstance(support, str) else support)
-    ]
+    return [structure.supports[name] for name in listed(support)]
 
 
 def member_scale(model: Model) -> float:

@@ -6,18 +6,18 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from rga.model.effect import Effect, Values
-from rga.model.parameter import Factor, Normal, Parameter, Place, Prior, Value
+from rga.model.parameter import Factor, Normal, Parameter, Place, Prior, Value, listed
 from rga.model.readings import Readings
 from rga.model.schema import Model
 
-OneContext = Annotated[str, Place("context")]
+Contexts = Annotated[str | list[str], Place("context")]
 
 
 class ContextBias(Effect):
     """An offset of a context channel: measured = true + offset [its unit]."""
 
     kind: Literal["context_bias"] = "context_bias"
-    context: OneContext
+    context: Contexts
     offset: Annotated[Value, Parameter("unit", 0.0)] = 0.0
 
     @classmethod
@@ -30,14 +30,15 @@ class ContextBias(Effect):
         return {"offset": Normal(0.0, 0.05 * (high - low))}
 
     def change_contexts(self, contexts: Values, values: Values) -> None:
-        contexts[self.context] = contexts[self.context] - values["offset"]
+        for name in listed(self.context):
+            contexts[name] = contexts[name] - values["offset"]
 
 
 class ContextGain(Effect):
     """A factor on a context channel: measured = factor * true."""
 
     kind: Literal["context_gain"] = "context_gain"
-    context: OneContext
+    context: Contexts
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
 
     @classmethod
@@ -49,7 +50,8 @@ class ContextGain(Effect):
         return {"factor": Factor(0.15)}
 
     def change_contexts(self, contexts: Values, values: Values) -> None:
-        contexts[self.context] = contexts[self.context] / values["factor"]
+        for name in listed(self.context):
+            contexts[name] = contexts[name] / values["factor"]
 
 
 class ClockLag(Effect):
@@ -59,7 +61,8 @@ class ClockLag(Effect):
     """
 
     kind: Literal["clock_lag"] = "clock_lag"
-    sensor: Annotated[str | None, Place("sensor")] = None
+    remembers = True
+    sensor: Annotated[str | list[str] | None, Place("sensor")] = None
     time: Annotated[Value, Parameter("s", 0.0)] = 0.0
 
     def change_contexts(self, contexts: Values, values: Values) -> None:
@@ -71,6 +74,6 @@ class ClockLag(Effect):
                 contexts[name] = np.interp(clock - values["time"], clock, column)
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        if self.sensor is not None:
-            column = readings.values[:, readings.columns[self.sensor]]
+        for name in listed(self.sensor):
+            column = readings.values[:, readings.columns[name]]
             column[:] = np.interp(readings.time - values["time"], readings.time, column.copy())

@@ -17,7 +17,7 @@ class AddedAxialArea(Effect):
     kind: Literal["added_axial_area"] = "added_axial_area"
     structural = True
     group: Annotated[str | list[str], Place("group")]
-    area: Annotated[Value, Parameter("m2", 0.0)] = 0.0
+    area: Annotated[Value, Parameter("m2", 0.0, least=0.0)] = 0.0
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -47,8 +47,8 @@ class FloorParticipation(Effect):
     kind: Literal["floor_participation"] = "floor_participation"
     structural = True
     group: Annotated[str | list[str], Place("group")]
-    area: Annotated[Value, Parameter("m2", 0.0)] = 0.0
-    connector_stiffness: Annotated[Value, Parameter("N/m", None)] = 0.0
+    area: Annotated[Value, Parameter("m2", 0.0, least=0.0)] = 0.0
+    connector_stiffness: Annotated[Value, Parameter("N/m", None, least=0.0)]
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:

@@ -23,7 +23,7 @@ class JointRigidity(Effect):
     kind: Literal["joint_rigidity"] = "joint_rigidity"
     structural = True
     group: Annotated[str | list[str], Place("group")]
-    stiffness: Annotated[Value, Parameter("N m/rad", 0.0)] = 0.0
+    stiffness: Annotated[Value, Parameter("N m/rad", 0.0, least=0.0)] = 0.0
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -57,7 +57,7 @@ class RigidEndZone(Effect):
     kind: Literal["rigid_end_zone"] = "rigid_end_zone"
     structural = True
     group: Annotated[str | list[str], Place("group")]
-    length: Annotated[Value, Parameter("m", 0.0)] = 0.0
+    length: Annotated[Value, Parameter("m", 0.0, least=0.0)] = 0.0
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:

@@ -1,6 +1,7 @@
 """Loads that are larger, elsewhere or others than the model says."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -16,9 +17,10 @@ from rga.model.parameter import (
     Place,
     Prior,
     Value,
+    listed,
 )
 from rga.model.schema import Model
-from rga.model.structure import HELD_BY_PLANE, Load, Structure
+from rga.model.structure import HELD_BY_PLANE, Load, Structure, check_direction, unit_vector
 
 Effects = Annotated[str | list[str], Place("effect")]
 LOAD_KINDS = ("nodal_load", "member_load", "axle_load")
@@ -45,7 +47,7 @@ class LoadScale(Effect):
     def change_values(
         self, all_values: dict[str, Values], values: Values, time: FloatArray
     ) -> None:
-        for name in [self.effect] if isinstance(self.effect, str) else self.effect:
+        for name in listed(self.effect):
             other = all_values[name]
             other["factor"] = other["factor"] * values["factor"]
 
@@ -81,17 +83,23 @@ class LoadPosition(Effect):
     def change_values(
         self, all_values: dict[str, Values], values: Values, time: FloatArray
     ) -> None:
-        for name in [self.effect] if isinstance(self.effect, str) else self.effect:
+        for name in listed(self.effect):
             other = all_values[name]
             other["position"] = other["position"] + values["offset"]
 
 
 class LoadEccentricity(Effect):
-    """Loads shifted sideways: at +y nodes times (1 + 2 share), at -y nodes (1 - 2 share)."""
+    """Loads shifted sideways: at +y nodes times (1 + 2 share), at -y nodes (1 - 2 share).
+
+    A load along a member is shifted as the mean of the member's two nodes.
+    """
 
     kind: Literal["load_eccentricity"] = "load_eccentricity"
     effect: Effects
     share: Annotated[Value, Parameter("-", 0.0)] = 0.0
+
+    def check(self, model: Model) -> None:
+        _check_target(self, self.effect, model, "factor")
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -107,11 +115,17 @@ class LoadEccentricity(Effect):
     ) -> None:
         y = structure.arrays["coordinates"][:, 1]
         side = np.sign(np.round(y - (y.min() + y.max()) / 2, 9))
-        for name in [self.effect] if isinstance(self.effect, str) else self.effect:
+        of_member = side[structure.arrays["ends"]].mean(axis=1)
+        for name in listed(self.effect):
             shifted = [
-                Load(
-                    2 * values["share"] * load.coefficient,
+                replace(
+                    load,
+                    coefficient=2 * values["share"] * load.coefficient,
                     forces={node: side[node] * force for node, force in load.forces.items()},
+                    spread=[
+                        (member, *along, of_member[member] * start, of_member[member] * end)
+                        for member, *along, start, end in load.spread
+                    ],
                 )
                 for load in loads[name]
             ]
@@ -132,6 +146,9 @@ class UnmodelledLoad(Effect):
     direction: Annotated[tuple[Number, Number, Number], Place("")]
     context: Annotated[str, Place("context")]
     rate: Annotated[Value, Parameter("N/m per unit", 0.0)] = 0.0
+
+    def check(self, model: Model) -> None:
+        check_direction(self.direction)
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -173,14 +190,14 @@ class DeadLoad(Effect):
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
         forces = line_forces(structure, self.group, (0.0, 0.0, -1.0))
-        return [Load(values["force_per_length"], forces=forces)]
+        return [Load(values["force_per_length"], forces=forces, permanent=not self.drivers())]
 
 
 def line_forces(
     structure: Structure, group: str | list[str], direction: tuple[float, float, float]
 ) -> dict[int, FloatArray]:
     """Nodal forces of a unit load per length on a group: half of each member to each end."""
-    unit = np.array([*direction, 0.0, 0.0, 0.0]) / np.linalg.norm(direction)
+    unit = np.append(unit_vector(direction), np.zeros(3))
     forces: dict[int, FloatArray] = {}
     for member in structure.named(None, group):
         for node in structure.arrays["ends"][member]:
@@ -191,11 +208,12 @@ def line_forces(
 
 def _check_target(effect: Effect, named: str | list[str], model: Model, parameter: str) -> None:
     """Refuse an effect on others that lack the parameter that it changes (ValueError)."""
-    for name in [named] if isinstance(named, str) else named:
-        if parameter not in model.effects[name].parameters():
+    for name in listed(named):
+        kind = type(model.effects[name])
+        if kind.loads is Effect.loads or parameter not in kind.parameters():
             raise ValueError(
                 f"{effect.kind} acts on the {parameter} of a load, which {name!r} "
-                f"({model.effects[name].kind}) has not"
+                f"({model.effects[name].kind}) has not: name a load with one"
             )
 
 

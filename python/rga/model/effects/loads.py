@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from rga.model.effect import Effect, Values
-from rga.model.parameter import Number, Parameter, Place, Value
+from rga.model.parameter import Number, Parameter, Place, Value, listed
 from rga.model.structure import Load, Structure
 
 LOCAL = ("x", "y", "z")
@@ -36,7 +36,7 @@ class NodalLoad(Effect):
             structure.nodes[node]: np.array([*force, 0.0, 0.0, 0.0][:6])
             for node, force in self.forces.items()
         }
-        return [Load(values["factor"], forces=forces)]
+        return [Load(values["factor"], forces=forces, permanent=not self.drivers())]
 
 
 class MemberLoad(Effect):
@@ -66,7 +66,7 @@ class MemberLoad(Effect):
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
         spread = []
-        for name in [self.member] if isinstance(self.member, str) else self.member:
+        for name in listed(self.member):
             member = structure.members[name]
             length = float(structure.lengths[member])
             if self.uniform is not None:
@@ -78,4 +78,4 @@ class MemberLoad(Effect):
                 spread += [
                     (member, a, self.x, self.x, p, 0.0) for a, p in enumerate(self.point) if p
                 ]
-        return [Load(values["factor"], spread=spread)]
+        return [Load(values["factor"], spread=spread, permanent=not self.drivers())]

@@ -6,13 +6,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from rga.model.effect import Effect, Values, seconds
-from rga.model.parameter import Normal, Parameter, Place, Prior, Value
+from rga.model.parameter import Normal, Parameter, Place, Prior, Value, listed
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import Structure
 from rga.model.units import UNITS
 
-OneSensor = Annotated[str, Place("sensor")]
+Sensors = Annotated[str | list[str], Place("sensor")]
 #: a large zero offset of a sensor [SI unit], by kind
 OFFSET = {"displacement": 5e-3, "rotation": 1e-3, "strain": 3e-5, "force": 2e4, "reaction": 2e4}
 
@@ -22,7 +22,7 @@ class SensorBias(Effect):
 
     kind: Literal["sensor_bias"] = "sensor_bias"
     on_sensors = True
-    sensor: OneSensor
+    sensor: Sensors
     offset: Annotated[Value, Parameter("unit", 0.0)] = 0.0
 
     @classmethod
@@ -34,7 +34,7 @@ class SensorBias(Effect):
         return {"offset": Normal(0.0, offset_scale(model, place["sensor"]))}
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        readings.values[:, readings.columns[self.sensor]] += values["offset"]
+        readings.values[:, readings.at(self.sensor)] += values["offset"][:, None]
 
 
 class SensorGain(Effect):
@@ -42,7 +42,7 @@ class SensorGain(Effect):
 
     kind: Literal["sensor_gain"] = "sensor_gain"
     on_sensors = True
-    sensor: OneSensor
+    sensor: Sensors
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
 
     @classmethod
@@ -54,7 +54,7 @@ class SensorGain(Effect):
         return {"factor": Normal(1.0, 0.3)}
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        readings.values[:, readings.columns[self.sensor]] *= values["factor"]
+        readings.values[:, readings.at(self.sensor)] *= values["factor"][:, None]
 
 
 class SensorDrift(Effect):
@@ -63,7 +63,7 @@ class SensorDrift(Effect):
     kind: Literal["sensor_drift"] = "sensor_drift"
     remembers = True
     on_sensors = True
-    sensor: OneSensor
+    sensor: Sensors
     rate: Annotated[Value, Parameter("unit/day", 0.0)] = 0.0
 
     @classmethod
@@ -78,7 +78,7 @@ class SensorDrift(Effect):
         days = readings.days
         if self.onset is not None and len(days):
             days = np.maximum(readings.time - seconds(self.onset), 0.0) / 86400
-        readings.values[:, readings.columns[self.sensor]] += values["rate"] * days
+        readings.values[:, readings.at(self.sensor)] += (values["rate"] * days)[:, None]
 
 
 class SensorFault(Effect):
@@ -86,12 +86,12 @@ class SensorFault(Effect):
 
     kind: Literal["sensor_fault"] = "sensor_fault"
     on_sensors = True
-    sensor: OneSensor
+    sensor: Sensors
     mode: Literal["dead", "stuck", "spiking"]
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        faulty = self.weight(readings.time) > 0
-        readings.values[faulty, readings.columns[self.sensor]] = np.nan
+        faulty = np.flatnonzero(self.weight(readings.time) > 0)
+        readings.values[faulty[:, None], readings.at(self.sensor)] = np.nan
 
 
 class SensorSwap(Effect):
@@ -100,6 +100,10 @@ class SensorSwap(Effect):
     kind: Literal["sensor_swap"] = "sensor_swap"
     on_sensors = True
     sensors: Annotated[tuple[str, str], Place("sensor")]
+
+    def check(self, model: Model) -> None:
+        if len(set(self.sensors)) < 2:
+            raise ValueError("sensors: name two that differ")
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -121,7 +125,7 @@ class SensorTemperature(Effect):
 
     kind: Literal["sensor_temperature"] = "sensor_temperature"
     on_sensors = True
-    sensor: OneSensor
+    sensor: Sensors
     rate: Annotated[Value, Parameter("unit/K", 0.0)] = 0.0
 
     @classmethod
@@ -134,15 +138,15 @@ class SensorTemperature(Effect):
         return {"rate": Normal(0.0, offset_scale(model, place["sensor"]) / 30)}
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        readings.values[:, readings.columns[self.sensor]] += values["rate"] * readings.warmth
+        readings.values[:, readings.at(self.sensor)] += (values["rate"] * readings.warmth)[:, None]
 
 
 class GaugePosition(Effect):
-    """A strain gauge off the axis of a frame member: it reads bending too [m]."""
+    """A strain gauge off the fibre where the model has it: it reads other bending [m]."""
 
     kind: Literal["gauge_position"] = "gauge_position"
     structural = True
-    sensor: OneSensor
+    sensor: Sensors
     y: Annotated[Value, Parameter("m", 0.0)] = 0.0
     z: Annotated[Value, Parameter("m", 0.0)] = 0.0
 
@@ -167,8 +171,8 @@ class GaugePosition(Effect):
         return {"y": Normal(0.0, 0.15), "z": Normal(0.0, 0.15)}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
-        row = structure.sensors[self.sensor]
-        structure.outputs["vector"][row, 1:] = value["y"], value["z"]
+        rows = [structure.sensors[name] for name in listed(self.sensor)]
+        structure.outputs["vector"][rows, 1:] += value["y"], value["z"]
 
 
 def each_sensor(model: Model) -> Iterator[dict[str, Any]]:

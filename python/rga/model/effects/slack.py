@@ -1,11 +1,19 @@
 """Members and supports that carry nothing until they are stretched or moved far enough."""
 
-from collections.abc import Mapping
-from typing import Annotated, Literal
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
 
 from rga.model.effect import Effect
-from rga.model.effects.bearings import Direction, Supports, supported
-from rga.model.parameter import Parameter, Place, Value
+from rga.model.effects.bearings import (
+    Direction,
+    Supports,
+    directions,
+    member_scale,
+    only_free,
+    supported,
+)
+from rga.model.effects.stiffness import some_member
+from rga.model.parameter import Parameter, Place, Positive, Prior, Value, listed
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Law, Structure
 
@@ -20,10 +28,18 @@ class JointSlip(Effect):
     structural = True
     member: Members = None
     group: Groups = None
-    slip: Annotated[Value, Parameter("m", 0.0)] = 0.0
+    slip: Annotated[Value, Parameter("m", 0.0, least=0.0)] = 0.0
 
     def check(self, model: Model) -> None:
         _only_trusses(self, model, self.member, self.group)
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from _trusses(model)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"slip": Positive(5e-4, 1.0, trials=(-2.0, 0.5))}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for member in structure.named(self.member, self.group):
@@ -56,13 +72,23 @@ class SupportGap(Effect):
     structural = True
     support: Supports
     dof: Direction
-    gap: Annotated[Value, Parameter("m", None)]
-    stiffness: Annotated[Value, Parameter("N/m", 0.0)] = 0.0
+    gap: Annotated[Value, Parameter("m", None, least=0.0)]
+    stiffness: Annotated[Value, Parameter("N/m", 0.0, least=0.0)] = 0.0
 
     def check(self, model: Model) -> None:
-        for name in [self.support] if isinstance(self.support, str) else self.support:
-            if self.dof in model.supports[name].fixed:
-                raise ValueError(f"support {name!r} holds {self.dof}: name a free direction")
+        only_free(model, self.support, self.dof)
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from directions(model, held=False, axes=("ux",))
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        scale = 0.1 * member_scale(model)
+        return {
+            "gap": Positive(2e-3, 1.0, trials=(-1.0, 0.0, 1.0)),
+            "stiffness": Positive(scale, 2.0, trials=(-1.0, 1.0)),
+        }
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for node in supported(structure, self.support):
@@ -72,12 +98,18 @@ class SupportGap(Effect):
                 structure.laws.append(Law("play", None, spring, abs(value["gap"])))
 
 
+def _trusses(model: Model) -> Iterator[dict[str, Any]]:
+    """Truss members one by one, and groups of nothing else."""
+    trusses = {name for name, member in model.members.items() if member.kind == "truss"}
+    yield from ({"member": name} for name in model.members if name in trusses)
+    yield from ({"group": group} for group, names in model.groups.items() if trusses >= set(names))
+
+
 def _only_trusses(
     effect: Effect, model: Model, member: str | list[str] | None, group: str | list[str] | None
 ) -> None:
-    members = [member] if isinstance(member, str) else list(member or [])
-    for name in [group] if isinstance(group, str) else group or []:
-        members += model.groups[name]
+    some_member(effect, member, group)
+    members = [*listed(member), *(name for one in listed(group) for name in model.groups[one])]
     for name in members:
         if model.members[name].kind != "truss":
             raise ValueError(f"{effect.kind} acts on truss members, and {name!r} is a frame member")

@@ -1,11 +1,12 @@
 """The temperature of members."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 
 from rga.model.effect import Effect, Values
-from rga.model.parameter import FloatArray, Number, Parameter, Value
+from rga.model.parameter import Driven, FloatArray, Number, Parameter, Value
 from rga.model.structure import Load, Structure
 
 if TYPE_CHECKING:
@@ -31,6 +32,14 @@ class Temperature(Effect):
                         f"groups: member {member!r} is in both {seen[member]!r} and {group!r}"
                     )
                 seen[member] = group
+
+    def values(self, contexts: Mapping[str, FloatArray], rows: int) -> Values:
+        """Beside delta the driving context itself, and its value at which nothing is warmed."""
+        found = super().values(contexts, rows)
+        if isinstance(self.delta, Driven):
+            found["temperature"] = contexts[self.delta.context]
+            found["reference"] = np.full(rows, self.delta.minus)
+        return found
 
     def field(self, structure: Structure) -> FloatArray:
         """Kelvin of every member per unit of delta, float[members]."""

@@ -19,7 +19,7 @@ class ThermalExpansion(Effect):
 
     kind: Literal["thermal_expansion"] = "thermal_expansion"
     structural = True
-    material: Annotated[str, Place("material")]
+    material: Annotated[str | list[str], Place("material")]
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
 
     @classmethod
@@ -49,6 +49,11 @@ class ThermalGradient(Effect):
     axis: Annotated[Literal["vertical", "lateral"], Place("")]
     ratio: Annotated[Value | None, Parameter("K/K", 0.0)] = None
     difference: Annotated[Value | None, Parameter("K", 0.0)] = None
+
+    def check(self, model: Model) -> None:
+        warm = any(isinstance(effect, Temperature) for effect in model.effects.values())
+        if self.ratio is not None and not warm:
+            raise ValueError("ratio is per kelvin of a temperature effect, and the model has none")
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -84,7 +89,7 @@ class ThermalLag(Effect):
 
     kind: Literal["thermal_lag"] = "thermal_lag"
     remembers = True
-    time_constant: Annotated[Value, Parameter("h", 0.0)] = 0.0
+    time_constant: Annotated[Value, Parameter("h", 0.0, least=0.0)] = 0.0
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
@@ -101,8 +106,9 @@ class ThermalLag(Effect):
         self, all_values: dict[str, Values], values: Values, time: FloatArray
     ) -> None:
         for other in all_values.values():
-            if "delta" in other:
-                other["delta"] = lagged(other["delta"], time, values["time_constant"] * 3600)
+            for key in ("delta", "temperature"):
+                if key in other:
+                    other[key] = lagged(other[key], time, values["time_constant"] * 3600)
 
 
 def lagged(driver: FloatArray, time: FloatArray, time_constant: FloatArray) -> FloatArray:

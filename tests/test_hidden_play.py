@@ -1,0 +1,80 @@
+"""Slip in joints and stops at bearings: two ways to simulate them agree, and hidden ones are found.
+
+The readings come from physics of their own (rga.benchmark.truth), which goes force by force where
+the simulator goes by Newton steps on elongations.
+"""
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rga.benchmark.truth import draw_case
+from rga.benchmark.truth.bridges import BRIDGES
+from rga.benchmark.truth.contexts import courses
+from rga.benchmark.truth.effect import Setting
+from rga.benchmark.truth.hidden import HIDDEN
+from rga.benchmark.truth.noise import stream
+from rga.benchmark.truth.response import respond
+from rga.benchmark.truth.world import World
+from rga.diagnosis import Findings, diagnose
+from rga.model import load_model, read_model
+from rga.records import load_record
+from rga.simulation import Simulator
+
+KINDS = ("joint_slip", "support_gap")
+
+
+@pytest.mark.parametrize("name", BRIDGES)
+@pytest.mark.parametrize("kind", KINDS)
+def test_forces_and_elongations_lead_to_the_same_readings(name: str, kind: str) -> None:
+    bridge = BRIDGES[name](stream(3, "bridge"))
+    time, contexts = courses(bridge, stream(3, "contexts"), 40)
+    setting = Setting(bridge, float(time[-1]), {})
+    for seed in (0, 1):
+        span = HIDDEN[kind].draw(setting, np.random.default_rng(seed))
+        if kind == "support_gap":
+            span = replace(span, fixed={"gap": 1e-4})
+        value = span.at(0.8)
+        assert value is not None
+        world = World.of(bridge.model)
+        plain = respond(world, contexts, time)[0]
+        HIDDEN[kind].act(world, span, value)
+        expected = respond(world, contexts, time)[0]
+        own = {"kind": kind, **span.place, **span.fixed, HIDDEN[kind].parameter: value}
+        content = {**bridge.model, "effects": {**bridge.model["effects"], "own": own}}
+        found = Simulator(read_model(content, name)).predict({**contexts, "time": time})
+        assert np.abs(expected - plain).max() > 1.0
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8)
+
+
+def diagnosed(kind: str, hidden: str) -> tuple[Findings, dict[str, Any]]:
+    """Findings of a case of the footbridge in which `hidden` is, or nothing (`null`)."""
+    seed, rows = {"joint_slip": (2015, 100), "support_gap": (2020, 60)}[kind]
+    case = draw_case(seed, bridge="footbridge", kind=hidden, reality="truss", rows=rows)
+    with tempfile.TemporaryDirectory() as folder:
+        case.write(folder)
+        model = load_model(Path(folder) / "model.json")
+        record = load_record(Path(folder) / "record.csv", model)
+        return diagnose(model, record, seed=seed), case.truth
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_hidden_one_is_named(kind: str) -> None:
+    findings, truth = diagnosed(kind, kind)
+    assert truth["d_prime"] > 15
+    (cause,) = findings.causes
+    assert cause.effect["kind"] == kind
+    assert {name: cause.effect[name] for name in truth["place"]} == truth["place"]
+    low, high = cause.effect[truth["parameter"]]["ci90"]
+    assert low / 1.5 < truth["value"] < 1.5 * high
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_its_null_twin_names_nothing(kind: str) -> None:
+    findings, truth = diagnosed(kind, "null")
+    assert truth["d_prime"] == 0
+    assert not findings.causes
