@@ -75,6 +75,7 @@ class Structure:
         host: number of the member whose temperature a member shares, int[members].
         bearings: bearings with friction.
         laws: members and springs that carry nothing within some play.
+        nonlinear: equilibrium is that of the deformed structure.
     """
 
     nodes: dict[str, int]
@@ -90,6 +91,7 @@ class Structure:
     host: IntArray
     bearings: list[Bearing]
     laws: list[Law]
+    nonlinear: bool
 
     def copy(self) -> "Structure":
         """An independent copy: effects change copies only."""
@@ -107,6 +109,7 @@ class Structure:
             self.host.copy(),
             list(self.bearings),
             list(self.laws),
+            self.nonlinear,
         )
 
     @property
@@ -202,6 +205,7 @@ def build_structure(model: Model) -> Structure:
         host=np.arange(len(members)),
         bearings=[],
         laws=[],
+        nonlinear=model.analysis.geometry == "nonlinear",
     )
 
 

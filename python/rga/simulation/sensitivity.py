@@ -2,8 +2,8 @@
 
 Coefficients of loads and stiffnesses are straight in the contexts but for kinks, so that their
 central differences have no truncation error; the response to them is differentiated exactly
-(`condensation`). Where whole structures vary, or where friction remembers, the response itself is
-differenced.
+(`condensation`). Where whole structures vary, where friction remembers, or where displacements are
+large, the response itself is differenced.
 """
 
 from collections.abc import Sequence
@@ -77,7 +77,7 @@ def _rates(middle: Request, sides: Sequence[Request]) -> FloatArray | None:
     states = np.unique(np.concatenate([one.states for one in (middle, *sides)]), axis=0)
     rows = np.arange(len(middle.state_of_row))
     start = middle.change(states[0])
-    if start.bearings or start.laws:
+    if start.bearings or start.laws or start.nonlinear:
         return None
     loads = middle.loads(start, rows)
     if not loads:

@@ -61,12 +61,22 @@ impl Combination {
     }
 
     pub fn combine(&self, coefficients: &[f64], into: &mut Combined) -> Result<()> {
-        self.forces.combine(coefficients, &mut into.forces);
-        self.strain.combine(coefficients, &mut into.strain);
+        self.combine_apart(coefficients, coefficients, into)
+    }
+
+    /// With coefficients for forces, and others for initial strains and prescribed displacements.
+    pub fn combine_apart(
+        &self,
+        of_forces: &[f64],
+        of_strains: &[f64],
+        into: &mut Combined,
+    ) -> Result<()> {
+        self.forces.combine(of_forces, &mut into.forces);
+        self.strain.combine(of_strains, &mut into.strain);
         self.displacements
-            .combine(coefficients, &mut into.displacements);
+            .combine(of_strains, &mut into.displacements);
         into.members
-            .combine(&self.members, &self.member_patterns, coefficients);
+            .combine(&self.members, &self.member_patterns, of_forces);
         let sums = [&into.forces, &into.strain, &into.displacements];
         if into.members.is_finite() && sums.into_iter().flatten().all(|sum| sum.is_finite()) {
             Ok(())

@@ -16,6 +16,9 @@
 //! `condensed` repeats an analysis for many samples of which few
 //! stiffnesses, or none, vary.
 //!
+//! `nonlinear` finds the equilibrium of the deformed structure, sample by sample, from members
+//! that are `deformed`.
+//!
 //! `gaussian_window` stands on its own: it watches what sensors send.
 
 mod assembly;
@@ -27,6 +30,7 @@ mod combination;
 mod condensed;
 mod connection;
 mod constraint;
+mod deformed;
 mod element;
 mod equilibrium;
 mod error;
@@ -36,6 +40,7 @@ mod input;
 mod load;
 mod member;
 mod model;
+mod nonlinear;
 mod observe;
 mod parallel;
 mod reduction;
@@ -50,5 +55,6 @@ pub use error::{Error, Result};
 pub use friction::{Bearings, slide};
 pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
 pub use input::{Array, Loads, Outputs, Structure};
+pub use nonlinear::respond_nonlinear;
 pub use refactor::Refactored;
 pub use respond::respond;

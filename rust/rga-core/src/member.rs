@@ -29,7 +29,7 @@ pub struct Frame {
     /// In series with the local end dofs.
     ends: [f64; 12],
     /// Between the nodes, in local axes.
-    stiffness: Matrix12,
+    pub stiffness: Matrix12,
 }
 
 impl Member {
@@ -112,18 +112,21 @@ impl Member {
                 forces[6] += tension;
                 forces
             }
-            Some(frame) => {
-                let mut local = Vector12::zeros();
-                for block in 0..4 {
-                    let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
-                    let global = Vector3::from_column_slice(&displacements[first..first + 3]);
-                    local
-                        .fixed_rows_mut::<3>(3 * block)
-                        .copy_from(&(self.axes * global));
-                }
-                frame.stiffness * local + fixed_end
-            }
+            Some(frame) => frame.stiffness * self.to_local(displacements) + fixed_end,
         }
+    }
+
+    /// Motions of the two ends, local.
+    pub fn to_local(&self, displacements: &[f64]) -> Vector12 {
+        let mut local = Vector12::zeros();
+        for block in 0..4 {
+            let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
+            let global = Vector3::from_column_slice(&displacements[first..first + 3]);
+            local
+                .fixed_rows_mut::<3>(3 * block)
+                .copy_from(&(self.axes * global));
+        }
+        local
     }
 
     pub fn elongation(&self, displacements: &[f64]) -> f64 {
@@ -144,11 +147,22 @@ impl Member {
         }
     }
 
+    /// Adds the sizes of local end forces and moments to all dofs that these may act on.
+    pub fn add_sizes(&self, local: &Vector12, total: &mut [f64]) {
+        for block in 0..4 {
+            let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
+            let size = local.fixed_rows::<3>(3 * block).norm();
+            for sum in &mut total[first..first + 3] {
+                *sum += size;
+            }
+        }
+    }
+
     fn axis(&self) -> Vector3<f64> {
         self.axes.row(0).transpose()
     }
 
-    fn to_global(&self, local: &Matrix12) -> Matrix12 {
+    pub fn to_global(&self, local: &Matrix12) -> Matrix12 {
         let mut global = Matrix12::zeros();
         for row in 0..4 {
             for column in 0..4 {
@@ -226,6 +240,11 @@ impl Frame {
         }
     }
 
+    /// Motions of the faces of the rigid zones, from those of the nodes.
+    pub fn node_to_face(&self, motions: &Vector12) -> Vector12 {
+        rigid_arm(self.rigid) * motions
+    }
+
     /// Forces at the faces of the rigid zones, moved to the nodes.
     pub fn face_to_node(&self, forces: &Vector12) -> Vector12 {
         rigid_arm(self.rigid).tr_mul(forces)
@@ -242,6 +261,6 @@ fn rigid_arm(rigid: [f64; 2]) -> Matrix12 {
     arm
 }
 
-fn pairs(size: usize) -> impl Iterator<Item = (usize, usize)> {
+pub fn pairs(size: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..size).flat_map(move |row| (0..size).map(move |column| (row, column)))
 }

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::reduction::Reduction;
 
 /// Entries of a member's stiffness.
-const MOST: usize = 144;
+pub const MOST: usize = 144;
 
 /// Where the stiffness of members and springs goes in K = T' K T.
 #[derive(Debug)]
@@ -51,10 +51,23 @@ struct Addition {
 impl Scatter {
     /// Together with K, whose values are yet to be filled in.
     pub fn new(model: &Model, reduction: &Reduction) -> (Self, LowerTriangle) {
+        Self::with(model, reduction, Member::is_proportional)
+    }
+
+    /// For members of which every entry may change (`fill_with`).
+    pub fn of_tangents(model: &Model, reduction: &Reduction) -> (Self, LowerTriangle) {
+        Self::with(model, reduction, |_| false)
+    }
+
+    fn with(
+        model: &Model,
+        reduction: &Reduction,
+        is_proportional: impl Fn(&Member) -> bool,
+    ) -> (Self, LowerTriangle) {
         let members: Vec<Vec<Addition>> = (model.members.iter())
             .map(|member| {
                 let mut additions = additions(reduction, |add| member.for_each_stiffness(add));
-                if member.is_proportional() {
+                if is_proportional(member) {
                     // What is zero is so for every factor.
                     additions.retain(|addition| addition.value != 0.0);
                 }
@@ -71,7 +84,7 @@ impl Scatter {
         let entries: Vec<Entry> = diagonal.chain(added).collect();
         let matrix = LowerTriangle::from_entries(&entries, size);
         let element = |(member, additions): (&Member, &Vec<Addition>)| {
-            if member.is_proportional() {
+            if is_proportional(member) {
                 Element::Proportional(terms(additions, &matrix))
             } else {
                 Element::Yielding(links(additions, &matrix))
@@ -87,13 +100,28 @@ impl Scatter {
     /// `model` is scaled by the same factors, those of members before those
     /// of springs.
     pub fn fill(&self, model: &Model, factors: &[f64], values: &mut [f64]) {
+        let entries = |index: usize| {
+            let member: &Member = &model.members[index];
+            listed(|add| member.for_each_stiffness(add))
+        };
+        self.fill_with(entries, factors, values);
+    }
+
+    /// The same with the entries of member `index` from `entries`, where they are not
+    /// proportional to its factor.
+    pub fn fill_with(
+        &self,
+        entries: impl Fn(usize) -> [f64; MOST],
+        factors: &[f64],
+        values: &mut [f64],
+    ) {
         values.fill(0.0);
         let (of_members, of_springs) = factors.split_at(self.members.len());
         for (index, (element, factor)) in self.members.iter().zip(of_members).enumerate() {
             match element {
                 Element::Proportional(terms) => add(terms, *factor, values),
                 Element::Yielding(links) => {
-                    let stiffness = entries(&model.members[index]);
+                    let stiffness = entries(index);
                     for link in links {
                         values[link.place] += link.weight * stiffness[link.entry];
                     }
@@ -154,10 +182,11 @@ fn add(terms: &[Term], factor: f64, values: &mut [f64]) {
     }
 }
 
-fn entries(member: &Member) -> [f64; MOST] {
+/// The values that `for_each` passes on, in their order.
+pub fn listed(for_each: impl FnOnce(&mut dyn FnMut(usize, usize, f64))) -> [f64; MOST] {
     let mut entries = [0.0; MOST];
     let mut next = entries.iter_mut();
-    member.for_each_stiffness(|_, _, value| {
+    for_each(&mut |_, _, value| {
         if let Some(entry) = next.next() {
             *entry = value;
         }
