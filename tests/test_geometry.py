@@ -16,6 +16,8 @@ from rga.simulation.response import patterns
 
 E, ALPHA = 2e11, 1.2e-5
 FIXED = ["ux", "uy", "uz", "rx", "ry", "rz"]
+Ends = tuple[list[str], list[str], dict[str, Any], dict[str, Any]]
+"""Held at the left and at the right end; what else the first and the last member have."""
 
 
 def model(**parts: Any) -> rga.Model:
@@ -209,10 +211,9 @@ EI, EA = E * 1e-7, E * 1e-2
 EULER = np.pi**2 * EI / LENGTH**2
 
 
-def column(
-    left: list[str], right: list[str], first: dict[str, Any], last: dict[str, Any], **parts: Any
-) -> rga.Model:
+def column(ends: Ends, **parts: Any) -> rga.Model:
     """A straight member along x in COUNT parts: pushed, loaded across, and warmed."""
+    left, right, first, last = ends
     parts_of = [f"m{k}" for k in range(COUNT)]
     common = {"section": "column", "material": "steel", "kind": "frame", "groups": ["all"]}
     members: dict[str, Any] = {
@@ -258,8 +259,9 @@ def column(
     return model(**{**content, **parts})
 
 
-PINNED = ["ux", "uz"], ["uz"], {}, {}
-CLAMPED = FIXED, ["uy", "uz", "rx", "ry", "rz"], {}, {}
+PINNED: Ends = ["ux", "uz"], ["uz"], {}, {}
+CLAMPED: Ends = FIXED, ["uy", "uz", "rx", "ry", "rz"], {}, {}
+IMMOVABLE: Ends = ["ux", "uz"], ["ux", "uz"], {}, {}
 STILL = {"push": 0.0, "across": 0.0, "side": 0.0, "warm": 0.0}
 
 
@@ -281,7 +283,7 @@ def test_a_beam_column_under_a_uniform_load(share: float) -> None:
         "right": -across * LENGTH / 2,
         "pushed": push,
     }
-    simulator = rga.Simulator(column(*PINNED))
+    simulator = rga.Simulator(column(PINNED))
     (shown,) = simulator.predict({**STILL, "push": push, "across": across})
     read = dict(zip(simulator.model.sensors, shown, strict=True))
     for name, value in expected.items():
@@ -293,7 +295,7 @@ def test_a_column_that_leans_on_its_base() -> None:
     push, side = 0.2 * EULER, 0.2
     k = np.sqrt(push / EI)
     delta = side * (np.tan(k * LENGTH) - k * LENGTH) / (push * k)
-    simulator = rga.Simulator(column(FIXED, [], {}, {}))
+    simulator = rga.Simulator(column((FIXED, [], {}, {})))
     (shown,) = simulator.predict({**STILL, "push": push, "side": side})
     read = dict(zip(simulator.model.sensors, shown, strict=True))
     assert read["end"] == pytest.approx(delta, rel=1e-4)
@@ -330,8 +332,8 @@ SPRING = 2 * EI / LENGTH
     ],
     ids=["pinned", "clamped", "cantilever", "propped", "springs"],
 )
-def test_columns_buckle_at_their_critical_load(ends: Any, critical: float) -> None:
-    simulator = rga.Simulator(column(*ends))
+def test_columns_buckle_at_their_critical_load(ends: Ends, critical: float) -> None:
+    simulator = rga.Simulator(column(ends))
     simulator.predict({**STILL, "push": 0.9998 * critical})
     words = r"buckles .* under 99.* % of its load: node 'n\d+' gives way in uz \(row 1\)"
     with pytest.raises(UnstableStructureError, match=words):
@@ -342,15 +344,14 @@ def test_a_column_that_shears_buckles_earlier() -> None:
     """P = Pe / (1 + Pe / GA_s), Engesser."""
     shear = E / 2.5 * 1e-6
     critical = EULER / (1 + EULER / shear)
-    simulator = rga.Simulator(column(*PINNED, sections={"column": {**COLUMN, "Asz": 1e-6}}))
+    simulator = rga.Simulator(column(PINNED, sections={"column": {**COLUMN, "Asz": 1e-6}}))
     simulator.predict({**STILL, "push": 0.9995 * critical})
     with pytest.raises(UnstableStructureError, match="buckles"):
         simulator.predict({**STILL, "push": 1.0005 * critical})
 
 
 def test_a_warm_bar_that_cannot_lengthen() -> None:
-    ends = ["ux", "uz"], ["ux", "uz"], {}, {}
-    simulator = rga.Simulator(column(*ends))
+    simulator = rga.Simulator(column(IMMOVABLE))
     critical = EULER / EA / ALPHA
     for warm in (-40.0, 0.99 * critical):
         (shown,) = simulator.predict({**STILL, "warm": warm})
@@ -365,12 +366,11 @@ def test_a_warm_bar_that_cannot_lengthen() -> None:
 
 def test_a_cold_tie_rod() -> None:
     """A beam in tension between immovable pins: cooling stiffens it against a load across."""
-    ends = ["ux", "uz"], ["ux", "uz"], {}, {}
     cold, across = -0.4, 0.01
     tension = -EA * ALPHA * cold
     u = np.sqrt(tension / EI) * LENGTH / 2
     sag = across * LENGTH**2 / (8 * tension) - across * EI / tension**2 * (1 - 1 / np.cosh(u))
-    simulator = rga.Simulator(column(*ends))
+    simulator = rga.Simulator(column(IMMOVABLE))
     shown = simulator.predict({**STILL, "warm": cold, "across": across})
     assert shown[0, 0] == pytest.approx(sag, rel=1e-4)
 
@@ -378,18 +378,23 @@ def test_a_cold_tie_rod() -> None:
 def test_small_loads_are_those_of_linear_geometry() -> None:
     """What geometry adds grows with the square of the load."""
     load = np.array([1.0, 2.0])
-    contexts = {"push": load, "across": 0.001 * load, "side": 0.01 * load, "warm": 0.0}
-    ends = [FIXED, ["uz"], {}, {}]
-    curved = rga.Simulator(column(*ends)).predict(contexts)
-    straight = rga.Simulator(column(*ends, analysis={"geometry": "linear"})).predict(contexts)
-    names = list(rga.Simulator(column(*ends)).model.sensors)
+    contexts: dict[str, Any] = {
+        "push": load,
+        "across": 0.001 * load,
+        "side": 0.01 * load,
+        "warm": 0.0,
+    }
+    ends: Ends = (FIXED, ["uz"], {}, {})
+    curved = rga.Simulator(column(ends)).predict(contexts)
+    straight = rga.Simulator(column(ends, analysis={"geometry": "linear"})).predict(contexts)
+    names = list(rga.Simulator(column(ends)).model.sensors)
     one, two = np.abs(curved - straight)[:, [names.index(name) for name in ("middle", "quarter")]]
     np.testing.assert_allclose(two / one, 4.0, rtol=0.05)
     np.testing.assert_allclose(curved, straight, rtol=1e-3, atol=1e-12)
 
 
 def test_derivatives_of_a_column() -> None:
-    simulator, step = rga.Simulator(column(*PINNED)), 0.01
+    simulator, step = rga.Simulator(column(PINNED)), 0.01
     at = {"push": 0.5 * EULER, "across": 5.0, "side": 0.0, "warm": 10.0}
     found = simulator.jacobian(at)[0]
     for number, (name, width) in enumerate((("push", 1e4), ("across", 10.0))):
