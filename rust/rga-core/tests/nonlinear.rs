@@ -55,7 +55,7 @@ fn displacements_answer_each_other_forces() -> Result<()> {
         .map(|(node, dof)| (MOVES[dof / 3], node, -1, axis(dof)))
         .collect();
     let places: Vec<(usize, usize)> = (0..12).map(|at| (1 + at / 6, at % 6)).collect();
-    let step = 50.0;
+    let step = 5.0;
     let rates: Vec<Vec<f64>> = places
         .iter()
         .map(|&(node, dof)| {
