@@ -117,7 +117,7 @@ def test_the_arch_does_not_snap_through_unseen() -> None:
     largest = float(arch_load(np.array(arch_peak())))
     simulator.predict({"load": 0.9999 * largest, "warm": 0.0})
     for factor, share in ((1.001, "99.9"), (2.0, "50"), (20.0, "5"), (800.0, "0.12")):
-        words = rf"under {share}.* % of its load: node 'T' gives way in uz \(row 2\)"
+        words = rf"beyond {share}.* % of its load .*, node 'T' gives way in uz \(row 2\)"
         with pytest.raises(UnstableStructureError, match=words):
             simulator.predict({"load": [0.5 * largest, factor * largest], "warm": 0.0})
 
@@ -170,7 +170,8 @@ def test_derivatives_of_the_arch() -> None:
 # --- a rope
 
 
-def test_a_rope_needs_tension() -> None:
+@pytest.mark.parametrize("cold", [40.0, 0.01])
+def test_a_rope_needs_tension(cold: float) -> None:
     """A straight line of bars holds a load across by the tension that cooling gives it."""
     bar = {"section": "bar", "material": "steel", "groups": ["rope"]}
     rope = model(
@@ -192,7 +193,7 @@ def test_a_rope_needs_tension() -> None:
             "force": {"kind": "force", "member": "w", "unit": "N"},
         },
     )  # fmt: skip
-    sag, cold = np.array([0.0, 1e-4, 0.02, 0.3, 2.0]), 40.0
+    sag = np.array([0.0, 1e-4, 0.02, 0.3, 2.0])
     length = np.hypot(5, sag)
     tension = E * 1e-4 * (length / 5 - 1 + ALPHA * cold)
     load = 2 * tension * sag / length
@@ -335,7 +336,7 @@ SPRING = 2 * EI / LENGTH
 def test_columns_buckle_at_their_critical_load(ends: Ends, critical: float) -> None:
     simulator = rga.Simulator(column(ends))
     simulator.predict({**STILL, "push": 0.9998 * critical})
-    words = r"buckles .* under 99.* % of its load: node 'n\d+' gives way in uz \(row 1\)"
+    words = r"buckles .* beyond 99.* % of its load .*, node 'n\d+' gives way in uz \(row 1\)"
     with pytest.raises(UnstableStructureError, match=words):
         simulator.predict({**STILL, "push": 1.0004 * critical})
 

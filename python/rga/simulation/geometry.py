@@ -58,7 +58,8 @@ def _refused(
         return UnstableStructureError(told.what, where, told.remedy)
     place = f"node {node_name(structure, error.node)!r} gives way in {DOFS[error.dof]}"
     return UnstableStructureError(
-        f"it buckles or snaps through under {100 * error.share:.4g} % of its load: {place}",
+        f"it buckles or snaps through: beyond {100 * error.share:.4g} % of its load no stable "
+        f"equilibrium is reached, {place}",
         where,
         "lower the load, or stiffen the structure there",
     )

@@ -24,10 +24,11 @@ pub enum Error {
         direction: [f64; 6],
     },
 
-    /// `share` of the load is carried; `direction` as above, in which the rest is not.
+    /// `share` of the load is carried; `direction` as above.
     #[error(
-        "the structure buckles or snaps through under {share:.3} of the load: node {node} gives \
-         way in {name}; lower the load or stiffen the structure there",
+        "the structure buckles or snaps through: beyond {share:.4} of the load no stable \
+         equilibrium is reached, node {node} gives way in {name}; lower the load or stiffen the \
+         structure there",
         name = DOFS[*dof]
     )]
     Buckled {

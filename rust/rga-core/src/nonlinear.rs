@@ -54,8 +54,8 @@ const CHANGE: f64 = 2.0;
 
 const CORRECTIONS: usize = 12;
 
-/// Smallest step of the load, as a part of it.
-const SMALLEST_STEP: f64 = 1e-6;
+/// Smallest step of the load, as a part of it: what is soft until it is tight begins with such.
+const SMALLEST_STEP: f64 = 1e-12;
 
 const LEVELS: usize = 1000;
 
