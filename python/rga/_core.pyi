@@ -14,6 +14,7 @@ __all__ = [
     "UnstableSample",
     "UnstableStructure",
     "respond",
+    "respond_nonlinear",
     "slide",
 ]
 
@@ -30,7 +31,9 @@ class UnstableStructure(ArithmeticError):
     direction: list[float]
     """The motion of that node, six numbers of norm 1."""
     row: int
-    """Of `Refactored`: the row of the sample."""
+    """Of `Refactored` and `respond_nonlinear`: the row of the sample."""
+    share: float | None
+    """Of `respond_nonlinear`: the part of the load that is carried."""
 
 class UnstableSample(ArithmeticError):
     """The stiffnesses of a sample leave no stable structure."""
@@ -50,6 +53,15 @@ def respond(
     outputs: dict[str, NDArray[Any]],
 ) -> NDArray[np.float64]:
     """Linear static response [patterns, outputs]; `help(respond)` lists the arrays."""
+
+def respond_nonlinear(
+    structure: dict[str, NDArray[Any]],
+    loads: dict[str, NDArray[Any]],
+    outputs: dict[str, NDArray[Any]],
+    coefficients: NDArray[np.float64],
+    threads: int = 1,
+) -> NDArray[np.float64]:
+    """Response [rows, outputs] of the deformed structure; `help(respond_nonlinear)` tells more."""
 
 def slide(
     free_displacement: NDArray[np.float64],

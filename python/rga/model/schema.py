@@ -178,9 +178,14 @@ class Sensor(Part):
 
 
 class Analysis(Part):
-    """How the structure is analysed."""
+    """How the structure is analysed.
 
-    geometry: Literal["linear"] = "linear"
+    Attributes:
+        geometry: `linear`: equilibrium of the structure as drawn; `nonlinear`: of the deformed
+            one, where tension stiffens, compression softens and buckles.
+    """
+
+    geometry: Literal["linear", "nonlinear"] = "linear"
 
 
 class Model(Part):

@@ -77,6 +77,7 @@ class Structure:
         host: number of the member whose temperature a member shares, int[members].
         bearings: bearings with friction.
         laws: members and springs that carry nothing within some play.
+        nonlinear: equilibrium is that of the deformed structure.
     """
 
     nodes: dict[str, int]
@@ -92,6 +93,7 @@ class Structure:
     host: IntArray
     bearings: list[Bearing]
     laws: list[Law]
+    nonlinear: bool
 
     def copy(self) -> "Structure":
         """An independent copy: effects change copies only."""
@@ -109,6 +111,7 @@ class Structure:
             self.host.copy(),
             list(self.bearings),
             list(self.laws),
+            self.nonlinear,
         )
 
     @property
@@ -215,6 +218,7 @@ def build_structure(model: Model) -> Structure:
         host=np.arange(len(members)),
         bearings=[],
         laws=[],
+        nonlinear=model.analysis.geometry == "nonlinear",
     )
 
 

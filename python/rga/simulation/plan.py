@@ -15,6 +15,7 @@ from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.factorisation import Factorisation
 from rga.simulation.friction import respond_with_friction
+from rga.simulation.geometry import respond_deformed
 from rga.simulation.laws import respond_with_laws, terms_of
 from rga.simulation.response import patterns, refused, respond
 from rga.simulation.variation import Variation, unvaried, variation
@@ -33,7 +34,7 @@ WORDS: dict[Path, str] = {
     "C1": "one structure for all rows: a matrix times the coefficients of the loads",
     "C2": "few stiffnesses vary: condensed, one small solve a row",
     "C3": "the structure varies: one factorisation for each of its states",
-    "C4": "friction, play or slack: condensed, and solved row by row",
+    "C4": "friction, play, slack or large displacements: solved row by row",
 }
 
 
@@ -68,7 +69,7 @@ class Plan:
 
     Attributes:
         path: of design 7.1: C1 loads and temperatures vary, C2 a few stiffnesses, C3 the
-            structure, C4 friction.
+            structure, C4 friction, play or large displacements.
         rows, states, patterns, terms, sensors: how many rows, different structures, load
             patterns, condensed stiffnesses and sensors there are.
     """
@@ -103,7 +104,7 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
 
     if not loads or not sensors:
         return plan("C1"), np.zeros((len(rows), sensors))
-    if structure.bearings or structure.laws:
+    if structure.bearings or structure.laws or structure.nonlinear:
         return plan("C4"), _each_state(request)
     varied = None
     if len(request.states) == 1:
@@ -153,7 +154,9 @@ def _each_state(request: Request) -> FloatArray:
         chosen = order[starts[number] : starts[number + 1]]
         structure = request.change(state)
         loads = request.loads(structure, chosen)
-        if structure.laws:
+        if structure.nonlinear:
+            parts.append(respond_deformed(structure, loads, chosen))
+        elif structure.laws:
             parts.append(_with_laws(request, structure, loads))
         elif structure.bearings and changes >= APART:
             # Friction starts anew with each structure, and would never come to hold.

@@ -33,13 +33,18 @@ def refused(
     """What the core refuses, in the names of the model."""
     if isinstance(error, _core.InvalidInput):
         return InputError(str(error), "the structure as it reaches the solver", "mend that value")
-    names = list(structure.nodes)
-    node = names[error.node] if error.node < len(names) else f"of the floor beside {names[0]}"
+    place = f"node {node_name(structure, error.node)!r} in {DOFS[error.dof]}"
     return UnstableStructureError(
-        f"the structure can move: node {node!r} in {DOFS[error.dof]} meets no resistance",
+        f"the structure can move: {place} meets no resistance",
         "members and supports",
         "add a member, a support or a stiffness there, or hold the plane",
     )
+
+
+def node_name(structure: Structure, node: int) -> str:
+    """Name of a node of the model, or words for one that an effect has added."""
+    names = list(structure.nodes)
+    return names[node] if node < len(names) else f"of the floor beside {names[0]}"
 
 
 def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]:

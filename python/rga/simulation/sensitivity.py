@@ -3,7 +3,7 @@
 Coefficients of loads and stiffnesses are straight in the contexts but for kinks, so that their
 central differences have no truncation error; the response to them is differentiated exactly, along
 the contexts (`jacobian`) or backwards from the sensors (`pull_back`). Where whole structures vary,
-or where friction remembers, the response itself is differenced.
+where friction remembers, or where displacements are large, the response itself is differenced.
 """
 
 from collections.abc import Iterator
@@ -156,7 +156,7 @@ def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Ite
     states = np.unique(np.concatenate([one.states for one in (middle, *around)]), axis=0)
     start = middle.change(states[0])
     loads = middle.loads(start, np.arange(rows))
-    if start.bearings or start.laws or not loads:
+    if start.bearings or start.laws or start.nonlinear or not loads:
         return
     varied = unvaried(start, states.shape[1])
     if len(states) > 1:

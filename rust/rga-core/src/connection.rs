@@ -55,6 +55,15 @@ impl Connection {
         }
         Ok(())
     }
+
+    /// Motions of the bare member behind its connections, from those of the nodes.
+    pub fn inner(&self, ends: &Vector12) -> Vector12 {
+        let mut inner = *ends;
+        for step in self.steps.iter().rev() {
+            inner[step.dof] = step.share * inner[step.dof] - step.carry.dot(&inner);
+        }
+        inner
+    }
 }
 
 fn eliminate(k: &mut Matrix12, dof: usize, spring: f64) -> Step {

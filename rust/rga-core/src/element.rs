@@ -71,7 +71,49 @@ impl Beam {
     }
 }
 
+impl Beam {
+    /// Twice the shortening of the chord by deflection, as a form of the dofs: the geometric
+    /// stiffness per unit of axial force.
+    pub fn geometric(&self) -> Matrix12 {
+        let mut g = Matrix12::zeros();
+        for plane in &self.planes {
+            let block = plane.geometric(self.length);
+            for (a, (row, row_sign)) in plane.dofs.into_iter().enumerate() {
+                for (b, (column, column_sign)) in plane.dofs.into_iter().enumerate() {
+                    g[(row, column)] = block[a][b] * row_sign * column_sign;
+                }
+            }
+        }
+        g
+    }
+}
+
 impl Bending {
+    /// The integral of v' v' over the length, with the shapes below (Przemieniecki, Theory of
+    /// Matrix Structural Analysis, 1968, chapter 15; with shear, v' is the slope of the axis).
+    /// What does not bend at all deflects as a string.
+    fn geometric(&self, length: f64) -> [[f64; 4]; 4] {
+        let phi = self.phi;
+        let (across, side, near, far) = if self.ei > 0.0 {
+            let c = 1.0 / (1.0 + phi).powi(2);
+            let shear = phi / 6.0 + phi * phi / 12.0;
+            (
+                c * (1.2 + 2.0 * phi + phi * phi) / length,
+                c * 0.1,
+                c * length * (2.0 / 15.0 + shear),
+                c * length * (-1.0 / 30.0 - shear),
+            )
+        } else {
+            (1.0 / length, 0.0, 0.0, 0.0)
+        };
+        [
+            [across, side, -across, side],
+            [side, near, -side, far],
+            [-across, -side, across, -side],
+            [side, far, -side, near],
+        ]
+    }
+
     fn stiffness(&self, length: f64) -> [[f64; 4]; 4] {
         let c = self.ei / ((1.0 + self.phi) * length.powi(3));
         let side = 6.0 * length * c;

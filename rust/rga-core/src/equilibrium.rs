@@ -48,6 +48,7 @@ impl Equilibrium<'_> {
             fixed_end,
             displacements,
             unbalanced: Vec::new(),
+            deformed: None,
         };
         self.balance(&mut state);
         Ok(state)

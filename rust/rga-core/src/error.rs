@@ -24,6 +24,20 @@ pub enum Error {
         direction: [f64; 6],
     },
 
+    /// `share` of the load is carried; `direction` as above.
+    #[error(
+        "the structure buckles or snaps through: beyond {share:.4} of the load no stable \
+         equilibrium is reached, node {node} gives way in {name}; lower the load or stiffen the \
+         structure there",
+        name = DOFS[*dof]
+    )]
+    Buckled {
+        share: f64,
+        node: usize,
+        dof: usize,
+        direction: [f64; 6],
+    },
+
     #[error("the stiffnesses of row {row} leave no stable structure; keep them above zero")]
     UnstableSample { row: usize },
 

@@ -17,6 +17,10 @@
 //! `condensed` repeats an analysis for many samples of which few
 //! stiffnesses, or none, vary.
 //!
+//! `nonlinear` finds the equilibrium of the deformed structure, sample by sample, from members
+//! that are `deformed`: loads are combined (`combination`), and tangents go where they belong in
+//! the matrix (`scatter`).
+//!
 //! `gaussian_window` stands on its own: it watches what sensors send.
 
 mod assembly;
@@ -25,9 +29,11 @@ mod bilinear;
 mod check;
 mod check_loads;
 mod check_structure;
+mod combination;
 mod condensed;
 mod connection;
 mod constraint;
+mod deformed;
 mod directions;
 mod element;
 mod equilibrium;
@@ -38,11 +44,13 @@ mod input;
 mod load;
 mod member;
 mod model;
+mod nonlinear;
 mod observe;
 mod parallel;
 mod reduction;
 mod refactor;
 mod respond;
+mod scatter;
 mod solve;
 mod stability;
 mod system;
@@ -53,5 +61,6 @@ pub use error::{Error, Result};
 pub use friction::{Bearings, slide};
 pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
 pub use input::{Array, Loads, Outputs, Structure};
+pub use nonlinear::respond_nonlinear;
 pub use refactor::{Refactored, Samples};
 pub use respond::respond;

@@ -92,6 +92,47 @@ impl PatternLoads {
         }
     }
 
+    /// All patterns as one, and the pattern of each load.
+    pub fn merge(loads: &Loads, members: usize) -> (Self, Vec<usize>) {
+        let mut order: Vec<usize> = (0..loads.member_pattern.len()).collect();
+        let key = |&at: &usize| (loads.member_index.at(at), loads.member_pattern.at(at));
+        order.sort_by_key(key);
+        let merged = Self {
+            first: (0..=members)
+                .map(|member| order.partition_point(|at| key(at).0 < member))
+                .collect(),
+            sorted: order.iter().map(|&at| member_load(loads, at)).collect(),
+        };
+        let patterns = order.iter().map(|at| key(at).1).collect();
+        (merged, patterns)
+    }
+
+    /// The loads of `merged`, each times the coefficient of its pattern.
+    pub fn combine(&mut self, merged: &Self, patterns: &[usize], coefficients: &[f64]) {
+        self.sorted.clear();
+        self.first.clear();
+        self.first.push(0);
+        for ends in merged.first.windows(2) {
+            let own = ends[0]..ends[1];
+            for (load, &pattern) in merged.sorted[own.clone()].iter().zip(&patterns[own]) {
+                let coefficient = coefficients[pattern];
+                if coefficient != 0.0 {
+                    self.sorted.push(MemberLoad {
+                        start: load.start * coefficient,
+                        end: load.end * coefficient,
+                        ..*load
+                    });
+                }
+            }
+            self.first.push(self.sorted.len());
+        }
+    }
+
+    pub fn is_finite(&self) -> bool {
+        let finite = |load: &MemberLoad| load.start.is_finite() && load.end.is_finite();
+        self.sorted.iter().all(finite)
+    }
+
     pub fn of(&self, member: usize) -> &[MemberLoad] {
         &self.sorted[self.first[member]..self.first[member + 1]]
     }

@@ -29,7 +29,7 @@ pub struct Frame {
     /// One of the connections is neither released nor rigid.
     yields: bool,
     /// Between the nodes, in local axes.
-    stiffness: Matrix12,
+    pub stiffness: Matrix12,
 }
 
 impl Member {
@@ -148,11 +148,22 @@ impl Member {
         }
     }
 
+    /// Adds the sizes of local end forces and moments to all dofs that these may act on.
+    pub fn add_sizes(&self, local: &Vector12, total: &mut [f64]) {
+        for block in 0..4 {
+            let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
+            let size = local.fixed_rows::<3>(3 * block).norm();
+            for sum in &mut total[first..first + 3] {
+                *sum += size;
+            }
+        }
+    }
+
     fn axis(&self) -> Vector3<f64> {
         self.axes.row(0).transpose()
     }
 
-    fn to_global(&self, local: &Matrix12) -> Matrix12 {
+    pub fn to_global(&self, local: &Matrix12) -> Matrix12 {
         let mut global = Matrix12::zeros();
         for row in 0..4 {
             for column in 0..4 {
@@ -209,6 +220,11 @@ impl Frame {
         }
     }
 
+    /// Motions of the faces of the rigid zones, from those of the nodes.
+    pub fn node_to_face(&self, motions: &Vector12) -> Vector12 {
+        rigid_arm(self.rigid) * motions
+    }
+
     /// Forces at the faces of the rigid zones, moved to the nodes.
     pub fn face_to_node(&self, forces: &Vector12) -> Vector12 {
         rigid_arm(self.rigid).tr_mul(forces)
@@ -225,6 +241,6 @@ fn rigid_arm(rigid: [f64; 2]) -> Matrix12 {
     arm
 }
 
-fn pairs(size: usize) -> impl Iterator<Item = (usize, usize)> {
+pub fn pairs(size: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..size).flat_map(move |row| (0..size).map(move |column| (row, column)))
 }

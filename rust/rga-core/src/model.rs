@@ -75,6 +75,12 @@ impl Model {
         }
     }
 
+    /// Half the mean length of a member: by it, rotations count as translations.
+    pub fn arm(&self) -> f64 {
+        let lengths: f64 = self.members.iter().map(|member| member.length).sum();
+        0.5 * lengths / self.members.len().max(1) as f64
+    }
+
     pub fn diagonal(&self) -> Result<Vec<f64>> {
         let mut diagonal = vec![0.0; self.dofs];
         self.for_each_stiffness(|row, column, value| {
@@ -126,10 +132,20 @@ impl Model {
 
     /// Forces of the nodes on members and springs: K u + fixed-end forces.
     pub fn internal_forces(&self, displacements: &[f64], fixed_end: &[Vector12]) -> Vec<f64> {
+        let ends = self.members.iter().zip(fixed_end);
+        let ends = ends.map(|(member, fixed_end)| member.end_forces(displacements, fixed_end));
+        self.sum_forces(displacements, ends)
+    }
+
+    /// The same from the local end forces of all members.
+    pub fn sum_forces(
+        &self,
+        displacements: &[f64],
+        ends: impl Iterator<Item = Vector12>,
+    ) -> Vec<f64> {
         let mut total = vec![0.0; self.dofs];
-        for (member, fixed_end) in self.members.iter().zip(fixed_end) {
-            let forces = member.end_forces(displacements, fixed_end);
-            member.for_each_force(&forces, |dof, force| total[dof] += force);
+        for (member, ends) in self.members.iter().zip(ends) {
+            member.for_each_force(&ends, |dof, force| total[dof] += force);
         }
         for spring in &self.springs {
             spring.for_each_force(displacements, |dof, force| total[dof] += force);

@@ -1,6 +1,7 @@
 //! Outputs read off a solved pattern.
 
 use crate::constraint::Constraints;
+use crate::deformed::Deformed;
 use crate::element::Vector12;
 use crate::input::Outputs;
 use crate::load::{MemberLoad, PatternLoads};
@@ -15,6 +16,8 @@ pub struct State<'a> {
     pub displacements: Vec<f64>,
     /// Applied minus internal forces.
     pub unbalanced: Vec<f64>,
+    /// Of each member, where displacements are large.
+    pub deformed: Option<&'a [Deformed]>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -109,18 +112,32 @@ impl<'a> Observer<'a> {
     }
 
     fn end_forces(&self, state: &State, index: usize) -> Vector12 {
-        let member = &self.model.members[index];
-        member.end_forces(&state.displacements, &state.fixed_end[index])
+        match state.deformed {
+            Some(deformed) => deformed[index].end_forces(),
+            None => {
+                self.model.members[index].end_forces(&state.displacements, &state.fixed_end[index])
+            }
+        }
     }
 
     fn section(&self, state: &State, index: usize, x: f64) -> Section {
-        let ends = self.end_forces(state, index);
+        let ends = match state.deformed {
+            Some(deformed) => deformed[index].ends,
+            None => self.end_forces(state, index),
+        };
         let mut section = Section {
             axial: -ends[0],
             moments: [ends[1] * x - ends[5], ends[2] * x + ends[4]],
         };
         for load in state.loads.of(index) {
             section.add(load, x);
+        }
+        if let Some(deformed) = state.deformed {
+            let member = &self.model.members[index];
+            let bow = deformed[index].bow(member, x);
+            for (moment, bow) in section.moments.iter_mut().zip(bow) {
+                *moment += deformed[index].tension * bow;
+            }
         }
         section
     }
@@ -129,8 +146,11 @@ impl<'a> Observer<'a> {
         let member = &self.model.members[index];
         let initial = &state.strain[3 * index..3 * index + 3];
         let Some(frame) = &member.frame else {
-            let elongation = member.elongation(&state.displacements) / member.length;
-            return elongation - if total { 0.0 } else { initial[0] };
+            let elongation = match state.deformed {
+                Some(deformed) => deformed[index].elongation,
+                None => member.elongation(&state.displacements),
+            };
+            return elongation / member.length - if total { 0.0 } else { initial[0] };
         };
         let section = self.section(state, index, place[0] * member.length);
         let fibre = &place[1..];

@@ -262,9 +262,7 @@ fn name_mechanism(
     let unscaled: Vec<f64> = motion.iter().zip(scale).map(|(m, s)| m * s).collect();
     let mut displacements = vec![0.0; model.dofs];
     reduction.expand(&unscaled, &mut displacements);
-    // Rotations count as the deflection at half a member's length.
-    let lengths: f64 = model.members.iter().map(|member| member.length).sum();
-    let arm = 0.5 * lengths / model.members.len().max(1) as f64;
+    let arm = model.arm();
     let size = |dof: usize| {
         let lever = if dof % 6 < 3 { 1.0 } else { arm };
         displacements[dof].abs() * lever

@@ -318,6 +318,7 @@ impl Outputs<'_> {
             fixed_end: vec![Vector12::zeros(); model.members.len()],
             displacements: vec![0.0; model.dofs],
             unbalanced: Vec::new(),
+            deformed: None,
         };
         for node in member.nodes {
             for dof in 6 * node..6 * node + 6 {

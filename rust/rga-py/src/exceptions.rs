@@ -18,7 +18,9 @@ create_exception!(
     "Part of the structure can move freely.\n\n\
      node, dof (0..5 for ux uy uz rx ry rz): what moves most.\n\
      direction: the motion of that node, six numbers of norm 1.\n\
-     row: of `Refactored`, the row of the sample."
+     row: of `Refactored` and `respond_nonlinear`, the row of the sample.\n\
+     share: of `respond_nonlinear`, the part of the load that is carried; None where the\n\
+     structure can move before it is loaded."
 );
 create_exception!(
     rga._core,
@@ -45,15 +47,13 @@ fn raised(py: Python<'_>, error: Error, message: String) -> PyErr {
             node,
             dof,
             direction,
-        } => {
-            let raised = UnstableStructure::new_err(message);
-            let value = raised.value(py);
-            let set = value
-                .setattr("node", node)
-                .and_then(|()| value.setattr("dof", dof))
-                .and_then(|()| value.setattr("direction", direction.to_vec()));
-            set.err().unwrap_or(raised)
-        }
+        } => unstable(py, message, (node, dof, direction), None),
+        Error::Buckled {
+            share,
+            node,
+            dof,
+            direction,
+        } => unstable(py, message, (node, dof, direction), Some(share)),
         Error::UnstableSample { row } => {
             let raised = UnstableSample::new_err(message);
             let set = raised.value(py).setattr("row", row);
@@ -70,4 +70,20 @@ fn raised(py: Python<'_>, error: Error, message: String) -> PyErr {
             set.err().unwrap_or(raised)
         }
     }
+}
+
+fn unstable(
+    py: Python<'_>,
+    message: String,
+    (node, dof, direction): (usize, usize, [f64; 6]),
+    share: Option<f64>,
+) -> PyErr {
+    let raised = UnstableStructure::new_err(message);
+    let value = raised.value(py);
+    let set = value
+        .setattr("node", node)
+        .and_then(|()| value.setattr("dof", dof))
+        .and_then(|()| value.setattr("direction", direction.to_vec()))
+        .and_then(|()| value.setattr("share", share));
+    set.err().unwrap_or(raised)
 }

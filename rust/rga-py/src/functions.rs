@@ -73,6 +73,49 @@ pub fn respond<'py>(
     PyArray1::from_vec(py, results).reshape(shape)
 }
 
+/// Response in the equilibrium of the deformed structure, row by row.
+///
+/// Elongations are those of the chords between moved nodes, with the bow of frame members beside
+/// them; rotations are components, for moderate ones. The load of a row is the sum of its
+/// patterns, grows from nothing, and keeps its directions. Supports, ties and springs act along
+/// the axes as drawn.
+///
+/// Parameters
+/// ----------
+/// structure, loads, outputs : as for `respond`, with p patterns and o outputs
+/// coefficients : f64[n, p]; the load of a row is the sum of coefficients times patterns
+/// threads : how many share the rows; the results do not depend on it
+///
+/// Returns
+/// -------
+/// f64[n, o]
+///
+/// Raises
+/// ------
+/// InvalidInput; UnstableStructure, where a row buckles or snaps through, with its `row` and the
+/// `share` of its load that is carried
+#[pyfunction]
+#[pyo3(signature = (structure, loads, outputs, coefficients, threads=1))]
+pub fn respond_nonlinear<'py>(
+    py: Python<'py>,
+    structure: &Bound<'py, PyDict>,
+    loads: &Bound<'py, PyDict>,
+    outputs: &Bound<'py, PyDict>,
+    coefficients: &Bound<'py, PyAny>,
+    threads: i64,
+) -> PyResult<Matrix<'py>> {
+    read_problem!(model, patterns, wanted from structure, loads, outputs);
+    let coefficients = Held::new(coefficients, "coefficients")?;
+    let coefficients = coefficients.view();
+    // The core refuses 0 as it would refuse what is negative.
+    let threads = usize::try_from(threads).unwrap_or(0);
+    let results = py
+        .detach(|| rga_core::respond_nonlinear(&model, &patterns, &wanted, coefficients, threads))
+        .map_err(|error| to_python(py, error))?;
+    let shape = [coefficients.len(), wanted.kind.len()];
+    PyArray1::from_vec(py, results).reshape(shape)
+}
+
 /// Coulomb friction at b bearings through n_t rows of time, in sequence.
 ///
 /// Displacements are u = free_displacement + flexibility r and normal forces
