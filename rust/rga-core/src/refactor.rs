@@ -204,10 +204,11 @@ impl Refactored {
                 .add_to_weights(g, &solved.unknowns, &mut by_weights);
             system.direct.add_to_weights(g, q, &mut by_weights);
             by_factors.copy_from_slice(&by_weights[..self.elements()]);
-            for member in 0..system.weights.members {
-                let inverse = system.weights.inverse(member);
-                if by_weights[inverse] != 0.0 {
-                    by_factors[member] -= by_weights[inverse] * weights[inverse].powi(2);
+            let inverses = system.weights.inverse(0)..;
+            let inverses = by_weights[inverses.clone()].iter().zip(&weights[inverses]);
+            for (by_factor, (by_inverse, inverse)) in by_factors.iter_mut().zip(inverses) {
+                if *by_inverse != 0.0 {
+                    *by_factor -= by_inverse * inverse.powi(2);
                 }
             }
             Ok(())

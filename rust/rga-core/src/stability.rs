@@ -163,9 +163,10 @@ impl Solver {
             }
             // Written so that NaN is refused as well.
             let small = REFUSE * (applied + self.motion_norm(unknowns));
-            if !(self.force_norm(&left) <= small) {
-                return Ok(false);
+            if self.force_norm(&left) <= small {
+                continue;
             }
+            return Ok(false);
         }
         Ok(true)
     }

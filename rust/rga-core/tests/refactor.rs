@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::samples::{Random, expected, lend, refactored, run};
+use common::samples::{Random, expected, refactored, run};
 use common::*;
-use rga_core::{Array, Error, Result};
+use rga_core::{Error, Result};
 
 /// All rows, each output against the largest of its kind; then threads.
 fn agree(patterns: &[Case], outputs: &[Output], rows: usize, range: (f64, f64)) -> Result<()> {
