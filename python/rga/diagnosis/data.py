@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.diagnosis.covariance import BoolArray
+from rga.diagnosis.row_covariance import BoolArray
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
 from rga.diagnosis.channels import Fault
-from rga.diagnosis.covariance import BoolArray
+from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings

@@ -4,9 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.diagnosis.covariance import Covariance, Noise, RowCovariance
+from rga.diagnosis.covariance import Covariance
 from rga.diagnosis.data import Data
 from rga.diagnosis.noise import estimate_noise, unexplainable
+from rga.diagnosis.row_covariance import Noise, RowCovariance
 from rga.diagnosis.scatter import MEDIANS, Scatter, lines, scatter_effects, scatter_levels
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
@@ -50,7 +51,7 @@ class Problem:
 
     def explained_by_scatter(self, residual: FloatArray) -> FloatArray:
         """The part of a residual that scatter and contexts take up, float[rows, sensors]."""
-        scatter = self.covariance.scatter @ self.covariance.scatter_estimate(residual)
+        scatter = self.covariance.scatter.at(self.covariance.scatter_estimate(residual))
         rows = self.covariance.rows
         error = rows.context_error(residual - scatter)
         return np.asarray(scatter + np.einsum("tsi,ti->ts", rows.context_jacobian, error))
@@ -106,7 +107,7 @@ def pose(
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
     scatter = scatter_effects(simulator, data, simulated, basis, factors)
     levels = before.levels if before is not None else MEDIANS
-    covariance = Covariance(rows, scatter.columns, scatter.spread(levels))
+    covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
     levels = scatter_levels(covariance, scatter, residual, levels)
     covariance = covariance.with_spread(scatter.spread(levels))
     return Problem(data, simulator, simulated, shift, covariance, noise, scatter, levels, factors)
@@ -147,7 +148,7 @@ def relaxed(problem: Problem) -> Data:
     data, belief = problem.data, problem.data.belief
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
-    scatter = problem.covariance.scatter @ estimate
+    scatter = problem.covariance.scatter.at(estimate)
     changes: Values = {}
     moves = lines(data)
     for (name, direction, _), move in zip(
