@@ -1,6 +1,6 @@
 """The part of a record that a diagnosis works on, beside the contexts it has to believe."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,9 +10,12 @@ from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.simulation import Simulator
 from rga.simulation.simulator import Response
+from rga.simulation.vicinity import Vicinity
 
 #: share of its range that a measured context may be off before anything is known of its noise
 FIRST_GUESS = 0.01
+#: simulations about which trials are kept ready
+KEPT = 4
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,7 @@ class Data:
     observed: BoolArray
     belief: Belief
     zero: Values
+    _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, repr=False, compare=False)
 
     @property
     def time(self) -> FloatArray:
@@ -101,18 +105,33 @@ class Data:
 
     def respond(self, simulator: Simulator, changes: Values | None = None) -> Response:
         """The response at the believed contexts, the zero rows in front."""
-        table = {**self.belief.table, **(changes or {})}
-        if len(self.zero["time"]):
-            table = {name: self._with_zero(name, column) for name, column in table.items()}
-        return simulator.respond(table)
+        return simulator.respond(self._contexts(changes or {}))
+
+    def about(self, simulator: Simulator) -> Vicinity:
+        """A simulation at the believed contexts, to try effects on; the last few are kept."""
+        for belief, known in self._about:
+            if belief is self.belief and known.simulator is simulator:
+                return known
+        found = Vicinity(simulator, self._contexts({}))
+        self._about.append((self.belief, found))
+        del self._about[:-KEPT]
+        return found
 
     def read(self, simulator: Simulator, response: Response) -> FloatArray:
         """The channels of a response, less their mean over the zero rows."""
-        simulated = np.nan_to_num(simulator.read(response)[:, self.columns])
+        simulated = simulator.read(response)[:, self.columns]
+        if not np.isfinite(simulated).all():
+            simulated = np.nan_to_num(simulated)
         leading = len(self.zero["time"])
         if leading:
             simulated = simulated[leading:] - simulated[:leading].mean(0)
         return simulated
+
+    def _contexts(self, changes: Values) -> Values:
+        table = {**self.belief.table, **changes}
+        if len(self.zero["time"]):
+            table = {name: self._with_zero(name, column) for name, column in table.items()}
+        return table
 
     def _with_zero(self, name: str, column: FloatArray) -> FloatArray:
         """A context with its values at the zero rows in front; a line is prolonged to them."""

@@ -19,6 +19,7 @@ from rga.diagnosis.covariance import Reduced
 from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.problem import Problem
 from rga.errors import InputError
+from rga.model.effect import Effect
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
@@ -62,15 +63,20 @@ class Fit:
         )
 
 
-def extended(base: Simulator, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Simulator:
-    """A simulator with the effects of hypotheses at coordinates z, named by number."""
+def effects_at(hypotheses: Sequence[Hypothesis], z: FloatArray) -> dict[str, Effect]:
+    """The effects of hypotheses at coordinates z, named by number."""
     effects = {}
     first = 0
     for number, one in enumerate(hypotheses):
         count = len(one.priors)
         effects[f"cause {number + 1}"] = one.effect(z[first : first + count])
         first += count
-    return base.extended(effects)
+    return effects
+
+
+def extended(base: Simulator, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Simulator:
+    """A simulator with the effects of hypotheses at coordinates z."""
+    return base.extended(effects_at(hypotheses, z))
 
 
 def fit(
@@ -92,11 +98,12 @@ def fit(
     Returns:
         The fit; its log evidence is minus infinity where the model cannot be simulated.
     """
-    covariance = problem.covariance
+    covariance, data = problem.covariance, problem.data
+    about = data.about(base)
 
     def simulate(z: FloatArray) -> FloatArray | None:
         try:
-            return problem.data.predict(extended(base, hypotheses, z))
+            return data.read(*about.trial(effects_at(hypotheses, z)))
         except InputError:
             return None
 
@@ -133,7 +140,7 @@ def fit(
         gained, z, simulated, (loss, residual) = loss - lower[0], trial, there, lower
         if gained < ENOUGH:
             break
-    at_nothing, _ = misfit(problem.data.predict(base), np.zeros(0))
+    at_nothing, _ = misfit(data.read(base, about.response), np.zeros(0))
     log_evidence = 0.5 * (at_nothing - loss - float(np.linalg.slogdet(information)[1]))
     log_evidence += sum(one.log_prior for one in hypotheses)
     return Fit(tuple(hypotheses), z, simulated, information, log_evidence)

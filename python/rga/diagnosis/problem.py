@@ -72,7 +72,7 @@ def pose(
         factors: patterns over the sensors that vary for reasons unknown, float[sensors, factors].
     """
     belief = data.belief
-    simulated = data.predict(simulator)
+    simulated = data.read(simulator, data.about(simulator).response)
     jacobian = context_jacobian(simulator, data, simulated)
     offsets = (
         np.stack([belief.centre[n] - belief.table[n] for n in belief.spread], axis=-1)

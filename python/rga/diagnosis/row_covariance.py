@@ -120,7 +120,7 @@ class RowCovariance:
 
 def _over_sensors(one: FloatArray, other: FloatArray) -> FloatArray:
     """Inner products over the sensors, row by row, float[rows, contexts, contexts]."""
-    return np.matmul(one.transpose(1, 2, 0), other.transpose(1, 0, 2))
+    return np.asarray(np.matmul(one.transpose(1, 2, 0), other.transpose(1, 0, 2)))
 
 
 def _solved(factor: FloatArray, right: FloatArray, trans: bytes) -> FloatArray:

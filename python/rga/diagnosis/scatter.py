@@ -1,6 +1,6 @@
 """Scatter: members, gains and patterns that are not quite as modelled, as random effects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,10 +114,16 @@ def scatter_effects(
 
 def _by_members(simulator: Simulator, data: Data, simulated: FloatArray) -> list[FloatArray]:
     """Derivatives by the stiffness of every member, float[rows, sensors] each."""
+    about = data.about(simulator)
+    rates = about.stiffness_rates()
     found = []
-    for member in simulator.model.members:
-        scatter = MemberStiffness(member=member, factor=float(np.exp(STEP)))
-        changed = data.predict(simulator.extended({"scatter": scatter}))
+    for number, member in enumerate(simulator.model.members):
+        if number in rates:
+            moved = about.response.quantities + STEP * rates[number]
+            changed = data.read(simulator, replace(about.response, quantities=moved))
+        else:
+            scatter = MemberStiffness(member=member, factor=float(np.exp(STEP)))
+            changed = data.read(*about.trial({"scatter": scatter}))
         found.append((changed - simulated) / STEP)
     return found
 

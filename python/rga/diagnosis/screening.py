@@ -80,8 +80,8 @@ def screen(
         progress: told the share that is done.
     """
     data = problem.data
-    response = data.respond(simulator)
-    base = data.read(simulator, response)
+    about = data.about(simulator)
+    base = data.read(simulator, about.response)
     weighted = problem.covariance.inverse_times(problem.residual(base))
     onsets = onsets and not data.belief.passing
     best: dict[int, Prospect] = {}
@@ -97,9 +97,7 @@ def screen(
     for number, candidate in enumerate(candidates):
         for z in product(*(prior.trials for prior in candidate.priors.values())):
             try:
-                trial = simulator.extended({"trial": candidate.effect(z)})
-                alone = candidate.kind.on_sensors
-                changed = data.read(trial, response) if alone else data.predict(trial)
+                changed = data.read(*about.trial({"trial": candidate.effect(z)}))
             except InputError:
                 continue
             change = changed - base

@@ -62,12 +62,12 @@ class Condensation:
         )
         found = _core.respond(
             structure,
-            _with_unit_forces(structure, loads, members, springs),
-            _with_elongations(structure, outputs, members, springs),
+            with_unit_forces(structure, loads, members, springs),
+            with_elongations(structure, outputs, members, springs),
         )
         scale = np.concatenate([lengths, np.ones(len(springs))])
         elongations = found[:, count:] * scale
-        self.own = _own_readings(structure, outputs, members, springs)
+        self.own = own_readings(structure, outputs, members, springs)
         unit = elongations[patterns:].copy()
         of_members = np.arange(len(members))
         # A unit initial force lengthens a free member by 1 / k, which its gauge does not read.
@@ -132,7 +132,7 @@ class DependentTerms(ArithmeticError):
     """The elongations of the terms that vary depend on each other."""
 
 
-def _with_unit_forces(
+def with_unit_forces(
     structure: Arrays, loads: Arrays, members: IntArray, springs: IntArray
 ) -> Arrays:
     """The loads, then a pattern for each term: what a unit of pseudo-force does."""
@@ -152,7 +152,7 @@ def _with_unit_forces(
     return extended
 
 
-def _with_elongations(
+def with_elongations(
     structure: Arrays, outputs: Arrays, members: IntArray, springs: IntArray
 ) -> Arrays:
     """The outputs, then the mechanical strain of each member and the elongation of each spring."""
@@ -173,7 +173,7 @@ def _with_elongations(
     }
 
 
-def _own_readings(
+def own_readings(
     structure: Arrays, outputs: Arrays, members: IntArray, springs: IntArray
 ) -> FloatArray:
     """What outputs on a term read of its own pseudo-force, float[terms, outputs].

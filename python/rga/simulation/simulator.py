@@ -222,7 +222,10 @@ class Simulator:
         states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
         if parameters:
             table = np.column_stack([values[name][key] for name, key in parameters])
-            states, state_of_row = np.unique(table, axis=0, return_inverse=True)
+            if rows and (table == table[0]).all():
+                states = table[:1]
+            else:
+                states, state_of_row = np.unique(table, axis=0, return_inverse=True)
 
         def change(state: FloatArray) -> Structure:
             if not structural:

@@ -128,6 +128,7 @@ class UnmodelledLoad(Effect):
     """
 
     kind: Literal["unmodelled_load"] = "unmodelled_load"
+    loads_by_geometry = True
     group: Annotated[str | list[str], Place("group")]
     direction: Annotated[tuple[Number, Number, Number], Place("")]
     context: Annotated[str, Place("context")]
@@ -160,6 +161,7 @@ class DeadLoad(Effect):
     """A permanent load along the members of a group, downward [N/m]."""
 
     kind: Literal["dead_load"] = "dead_load"
+    loads_by_geometry = True
     group: Annotated[str | list[str], Place("group")]
     force_per_length: Annotated[Value, Parameter("N/m", 0.0)] = 0.0
 

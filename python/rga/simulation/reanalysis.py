@@ -1,0 +1,130 @@
+"""A structure solved once: further loads, and a few stiffnesses that differ, cost little more."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga import _core
+from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray, Load, Structure
+from rga.simulation.condensation import own_readings, with_elongations, with_unit_forces
+from rga.simulation.response import patterns, refused
+from rga.simulation.variation import AXIAL, axial_stiffness
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """What load patterns with coefficient one do to a structure.
+
+    Attributes:
+        outputs: float[patterns, outputs] in SI units.
+        elongations: of the terms, float[patterns, terms] [m or rad].
+    """
+
+    outputs: FloatArray
+    elongations: FloatArray
+
+
+class Reanalysis:
+    """The response of one structure, and of those near it.
+
+    What unit pseudo-forces at every truss member and spring do is known from one solve. A term of
+    stiffness k + d and elongation v acts like one of stiffness k with the pseudo-force d v beside
+    it, so that structures that differ in few terms cost a system of as many equations
+    (`condensation` has the algebra and its source).
+
+    Args:
+        structure: must not be changed afterwards.
+
+    Raises:
+        UnstableStructureError: the structure can move; names node and direction.
+        InputError: a property that the core refuses.
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        arrays = structure.arrays
+        members = np.flatnonzero(~arrays["frame"])
+        springs = np.arange(len(arrays["spring_stiffness"]))
+        #: number of each term, springs behind all members
+        self._terms = np.concatenate([members, len(arrays["frame"]) + springs])
+        self._stiffness = axial_stiffness(structure)
+        self._scale = np.concatenate([structure.lengths[members], np.ones(len(springs))])
+        self._outputs = with_elongations(arrays, structure.outputs, members, springs)
+        found = self._solved(with_unit_forces(arrays, patterns(structure, []), members, springs))
+        own = own_readings(arrays, structure.outputs, members, springs)
+        self._influence, self._unit = found.outputs + own, found.elongations
+        # A unit initial force lengthens a free member by 1 / k, which its gauge does not read.
+        of_members = np.arange(len(members))
+        self._unit[of_members, of_members] += 1.0 / self._stiffness[members]
+
+    def under(self, loads: list[Load]) -> Loaded:
+        """The structure under loads; InputError for a property that the core refuses."""
+        return self._solved(patterns(self.structure, loads))
+
+    def differing(self, other: Structure) -> IntArray | None:
+        """Terms whose stiffness differs, or None where more than stiffnesses of terms do."""
+        bends = self.structure.arrays["frame"]
+        for name, array in self.structure.arrays.items():
+            changed = other.arrays[name]
+            if array.shape != changed.shape:
+                return None
+            if name == "spring_stiffness":
+                continue
+            if name in AXIAL:
+                array, changed = array[bends], changed[bends]
+            if not _same(array, changed):
+                return None
+        outputs = self.structure.outputs
+        if not all(_same(outputs[name], other.outputs[name]) for name in outputs):
+            return None
+        return np.flatnonzero((axial_stiffness(other) != self._stiffness)[self._terms])
+
+    def changed(self, loaded: Loaded, other: Structure, terms: IntArray) -> FloatArray:
+        """Outputs of a structure near this one, float[patterns, outputs] in SI units.
+
+        Args:
+            loaded: this structure under the loads.
+            other: the structure near it.
+            terms: in which it differs.
+        """
+        if not len(terms):
+            return loaded.outputs
+        place = self._terms[terms]
+        change = axial_stiffness(other)[place] - self._stiffness[place]
+        matrix = np.eye(len(terms)) + self._unit[np.ix_(terms, terms)] * change
+        elongations = np.linalg.solve(matrix, loaded.elongations[:, terms].T).T
+        return np.asarray(loaded.outputs - (elongations * change) @ self._influence[terms])
+
+    def rates(self, loaded: Loaded) -> dict[int, FloatArray]:
+        """Derivatives of the outputs by the logarithm of the stiffness of truss members.
+
+        Returns:
+            float[patterns, outputs] by the number of the member.
+        """
+        count = len(self.structure.arrays["frame"])
+        return {
+            int(member): -self._stiffness[member]
+            * np.outer(loaded.elongations[:, term], self._influence[term])
+            for term, member in enumerate(self._terms)
+            if member < count
+        }
+
+    def _solved(self, pattern: dict[str, NDArray[Any]]) -> Loaded:
+        try:
+            found = _core.respond(self.structure.arrays, pattern, self._outputs)
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(self.structure, error) from None
+        count = len(self.structure.per_si)
+        return Loaded(found[:, :count].copy(), found[:, count:] * self._scale)
+
+
+def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    """The same bits, NaN included."""
+    if one.dtype.kind == "f":
+        return np.array_equal(
+            np.ascontiguousarray(one).view(np.int64), np.ascontiguousarray(other).view(np.int64)
+        )
+    return np.array_equal(one, other)

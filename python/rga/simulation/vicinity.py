@@ -1,0 +1,219 @@
+"""A simulation at given contexts, and what more effects make of it: many trials about one point."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rga.model.effect import Effect, Values
+from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray, Load, Structure
+from rga.simulation.plan import APART, coefficients
+from rga.simulation.reanalysis import Loaded, Reanalysis
+from rga.simulation.response import respond
+
+if TYPE_CHECKING:
+    from rga.simulation.simulator import Response, Simulator
+
+
+@dataclass(frozen=True)
+class Centre:
+    """One of the structures of a simulation.
+
+    Attributes:
+        near: that structure and those near it.
+        own: loads of every effect on it, before any other effect changes them.
+        loads: all of them, changed.
+        loaded: the structure under `loads`.
+    """
+
+    near: Reanalysis
+    own: dict[str, list[Load]]
+    loads: list[Load]
+    loaded: Loaded
+
+
+class Vicinity:
+    """A simulation at given contexts, to which effects are added in turn.
+
+    What an effect leaves alone is not worked out again: parameters of the other effects, their
+    loads, and the structure where only some of its stiffnesses differ (`Reanalysis`).
+
+    Args:
+        simulator: of a model.
+        contexts: as for `Simulator.predict`.
+
+    Attributes:
+        response: of the simulation without more effects.
+    """
+
+    def __init__(self, simulator: "Simulator", contexts: Mapping[str, ArrayLike]) -> None:
+        self.simulator = simulator
+        self.contexts = contexts
+        self.response = simulator.respond(contexts)
+        effects = simulator.model.effects.values()
+        self._true = dict(self.response.contexts)
+        for effect in effects:
+            effect.change_contexts(self._true, effect.values(self.response.contexts, self._rows))
+        self._settled = not any(_overrides(effect, "change_values") for effect in effects)
+        self._centres: list[Centre] = []
+        self._of_row = np.zeros(self._rows, np.int64)
+        self._find_centres()
+
+    @property
+    def _rows(self) -> int:
+        return len(self.response.contexts["time"])
+
+    def _find_centres(self) -> None:
+        values = self.response.values
+        request = self.simulator.request(values, self._rows)
+        if len(request.states) > APART:
+            return
+        structures = [request.change(state) for state in request.states]
+        if any(one.bearings or one.laws for one in structures):
+            return
+        self._of_row = request.state_of_row
+        effects = self.simulator.model.effects
+        for structure in structures:
+            own = {
+                name: effect.loads(structure, values[name], values)
+                for name, effect in effects.items()
+            }
+            loads = _changed(effects, own, structure, values)
+            if not loads:
+                self._centres.clear()
+                return
+            near = Reanalysis(structure)
+            self._centres.append(Centre(near, own, loads, near.under(loads)))
+        parts = [coefficients(one.loads) @ one.loaded.outputs for one in self._centres]
+        self.response = replace(self.response, quantities=self._joined(parts, self._of_row))
+
+    def trial(self, effects: Mapping[str, Effect]) -> tuple["Simulator", "Response"]:
+        """The simulation with more effects, and its response as `Simulator.respond` gives it.
+
+        Args:
+            effects: by names that are new to the model.
+
+        Raises:
+            InputError, UnstableStructureError: as `Simulator.respond`.
+        """
+        trial = self.simulator.extended(effects)
+        return trial, self._respond(trial, effects)
+
+    def _respond(self, trial: "Simulator", effects: Mapping[str, Effect]) -> "Response":
+        if not self._centres:
+            return trial.respond(self.contexts)
+        if all(effect.on_sensors for effect in effects.values()):
+            return self.response
+        apart = self._settled and not any(map(_meddles, effects.values()))
+        if apart:
+            more = {name: one.values(self._true, self._rows) for name, one in effects.items()}
+            values = {**self.response.values, **more}
+        else:
+            values = trial.resolve(self.response.contexts)
+        request = trial.request(values, self._rows)
+        if len(request.states) > APART:
+            return trial.respond(self.contexts)
+        parts = []
+        for state in request.states:
+            structure = request.change(state)
+            if structure.bearings or structure.laws:
+                return trial.respond(self.contexts)
+            parts.append(self._quantities(trial, structure, values, apart))
+        quantities = self._joined(parts, request.state_of_row)
+        return replace(self.response, values=values, quantities=quantities)
+
+    def stiffness_rates(self) -> dict[int, FloatArray]:
+        """Derivatives by the logarithm of the stiffness of truss members, by their numbers.
+
+        Returns:
+            float[rows, sensors] of each member, in the sensors' units; none where the structure
+            varies in too many ways.
+        """
+        parts = []
+        for centre in self._centres:
+            q = coefficients(centre.loads)
+            parts.append({m: q @ rate for m, rate in centre.near.rates(centre.loaded).items()})
+        members = set(parts[0]).intersection(*parts[1:]) if parts else set()
+        return {
+            member: self._joined([part[member] for part in parts], self._of_row)
+            for member in sorted(members)
+        }
+
+    def _joined(self, parts: list[FloatArray], of_row: IntArray) -> FloatArray:
+        """Rows taken from the part of their state, in the sensors' units."""
+        per_si = self._centres[0].near.structure.per_si
+        if len(parts) == 1:
+            return np.asarray(parts[0] * per_si)
+        return np.asarray(np.stack(parts)[of_row, np.arange(len(of_row))] * per_si)
+
+    def _quantities(
+        self, trial: "Simulator", structure: Structure, values: dict[str, Values], apart: bool
+    ) -> FloatArray:
+        """What the sensors are to read of a structure under all rows, in SI units."""
+        effects = trial.model.effects
+        known: dict[str, list[Load]] = {}
+        near = None
+        for centre in self._centres:
+            terms = centre.near.differing(structure)
+            if terms is not None:
+                near = centre, terms
+                if apart and _warms_alike(centre.near.structure, structure):
+                    known = {
+                        name: loads
+                        for name, loads in centre.own.items()
+                        if effects[name].loads_by_geometry
+                    }
+                break
+        own = {
+            name: known[name] if name in known else effect.loads(structure, values[name], values)
+            for name, effect in effects.items()
+        }
+        loads = _changed(effects, own, structure, values)
+        if near is None:
+            return coefficients(loads) @ respond(structure, loads, structure.outputs)
+        centre, terms = near
+        return coefficients(loads) @ centre.near.changed(_under(centre, loads), structure, terms)
+
+
+def _under(centre: Centre, loads: list[Load]) -> Loaded:
+    """The centre under loads, of which it knows most."""
+    place = {id(load): number for number, load in enumerate(centre.loads)}
+    new = [load for load in loads if id(load) not in place]
+    if not new and len(loads) == len(place):
+        return centre.loaded
+    place |= {id(load): len(centre.loads) + number for number, load in enumerate(new)}
+    parts = [centre.loaded, *([centre.near.under(new)] if new else [])]
+    order = [place[id(load)] for load in loads]
+    return Loaded(
+        np.concatenate([part.outputs for part in parts])[order],
+        np.concatenate([part.elongations for part in parts])[order],
+    )
+
+
+def _changed(
+    effects: Mapping[str, Effect],
+    own: Mapping[str, list[Load]],
+    structure: Structure,
+    values: dict[str, Values],
+) -> list[Load]:
+    """Loads of all effects, as other effects change them."""
+    loads = dict(own)
+    for name, effect in effects.items():
+        effect.change_loads(loads, structure, values[name])
+    return [load for of_effect in loads.values() for load in of_effect]
+
+
+def _warms_alike(one: Structure, other: Structure) -> bool:
+    return np.array_equal(one.alpha, other.alpha) and np.array_equal(one.host, other.host)
+
+
+def _meddles(effect: Effect) -> bool:
+    """True where an effect may change contexts, or parameters of other effects."""
+    return _overrides(effect, "change_contexts") or _overrides(effect, "change_values")
+
+
+def _overrides(effect: Effect, method: str) -> bool:
+    return getattr(type(effect), method) is not getattr(Effect, method)
