@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lstsq
-from scipy.signal import lombscargle
 from scipy.stats import spearmanr
 
 from rga.diagnosis.noise import unexplainable
@@ -180,6 +179,9 @@ def _follows(amplitude: FloatArray, time: FloatArray, contexts: Values) -> str:
 
 def _period(amplitude: FloatArray, time: FloatArray) -> tuple[float, float]:
     """Period of the strongest oscillation [s], and its share of the variance."""
+    # Slow to load, and few records come here.
+    from scipy.signal import lombscargle
+
     span, step = float(np.ptp(time)), float(np.median(np.diff(time)))
     frequencies = np.arange(3, max(4, int(span / step / 3))) / span
     power = lombscargle(time, amplitude, 2 * np.pi * frequencies, normalize=True)

@@ -11,7 +11,10 @@ from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import own_readings, with_elongations, with_unit_forces
 from rga.simulation.response import patterns, refused
-from rga.simulation.variation import AXIAL, axial_stiffness
+from rga.simulation.variation import AXIAL
+
+#: arrays that may differ between structures near each other
+STIFFNESS = {*AXIAL, "spring_stiffness"}
 
 
 @dataclass(frozen=True)
@@ -50,8 +53,10 @@ class Reanalysis:
         springs = np.arange(len(arrays["spring_stiffness"]))
         #: number of each term, springs behind all members
         self._terms = np.concatenate([members, len(arrays["frame"]) + springs])
-        self._stiffness = axial_stiffness(structure)
-        self._scale = np.concatenate([structure.lengths[members], np.ones(len(springs))])
+        self._lengths = structure.lengths
+        self._stiffness = self._stiffness_of(structure)
+        self._scale = np.concatenate([self._lengths[members], np.ones(len(springs))])
+        self._content = self._but_stiffness(structure)
         self._outputs = with_elongations(arrays, structure.outputs, members, springs)
         found = self._solved(with_unit_forces(arrays, patterns(structure, []), members, springs))
         own = own_readings(arrays, structure.outputs, members, springs)
@@ -66,21 +71,9 @@ class Reanalysis:
 
     def differing(self, other: Structure) -> IntArray | None:
         """Terms whose stiffness differs, or None where more than stiffnesses of terms do."""
-        bends = self.structure.arrays["frame"]
-        for name, array in self.structure.arrays.items():
-            changed = other.arrays[name]
-            if array.shape != changed.shape:
-                return None
-            if name == "spring_stiffness":
-                continue
-            if name in AXIAL:
-                array, changed = array[bends], changed[bends]
-            if not _same(array, changed):
-                return None
-        outputs = self.structure.outputs
-        if not all(_same(outputs[name], other.outputs[name]) for name in outputs):
+        if self._but_stiffness(other) != self._content:
             return None
-        return np.flatnonzero((axial_stiffness(other) != self._stiffness)[self._terms])
+        return np.flatnonzero((self._stiffness_of(other) != self._stiffness)[self._terms])
 
     def changed(self, loaded: Loaded, other: Structure, terms: IntArray) -> FloatArray:
         """Outputs of a structure near this one, float[patterns, outputs] in SI units.
@@ -93,7 +86,7 @@ class Reanalysis:
         if not len(terms):
             return loaded.outputs
         place = self._terms[terms]
-        change = axial_stiffness(other)[place] - self._stiffness[place]
+        change = self._stiffness_of(other)[place] - self._stiffness[place]
         matrix = np.eye(len(terms)) + self._unit[np.ix_(terms, terms)] * change
         elongations = np.linalg.solve(matrix, loaded.elongations[:, terms].T).T
         return np.asarray(loaded.outputs - (elongations * change) @ self._influence[terms])
@@ -112,6 +105,21 @@ class Reanalysis:
             if member < count
         }
 
+    def _stiffness_of(self, structure: Structure) -> FloatArray:
+        """EA / L of every member, then the stiffness of every spring."""
+        arrays = structure.arrays
+        axial = arrays["E"] * arrays["A"] / self._lengths
+        return np.concatenate([axial, arrays["spring_stiffness"]])
+
+    @staticmethod
+    def _but_stiffness(structure: Structure) -> list[bytes]:
+        """All of a structure and its outputs but the stiffness of truss members and springs."""
+        arrays, bends = structure.arrays, structure.arrays["frame"]
+        parts = [array for name, array in arrays.items() if name not in STIFFNESS]
+        if bends.any():
+            parts += [arrays[name][bends] for name in AXIAL]
+        return [array.tobytes() for array in (*parts, *structure.outputs.values())]
+
     def _solved(self, pattern: dict[str, NDArray[Any]]) -> Loaded:
         try:
             found = _core.respond(self.structure.arrays, pattern, self._outputs)
@@ -119,12 +127,3 @@ class Reanalysis:
             raise refused(self.structure, error) from None
         count = len(self.structure.per_si)
         return Loaded(found[:, :count].copy(), found[:, count:] * self._scale)
-
-
-def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
-    """The same bits, NaN included."""
-    if one.dtype.kind == "f":
-        return np.array_equal(
-            np.ascontiguousarray(one).view(np.int64), np.ascontiguousarray(other).view(np.int64)
-        )
-    return np.array_equal(one, other)

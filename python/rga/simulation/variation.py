@@ -42,7 +42,7 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
         states: parameters, float[states, parameters]; two states or more.
     """
     start = change(states[0])
-    first = axial_stiffness(start)
+    first = _stiffness(start)
     slope = np.zeros((states.shape[1], len(first)))
     for column in np.flatnonzero(np.ptp(states, axis=0) > 0):
         low, high = states[:, column].min(), states[:, column].max()
@@ -53,14 +53,14 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
             other = change(state)
             if not _only_stiffness_differs(start, other):
                 return None
-            found.append(axial_stiffness(other))
+            found.append(_stiffness(other))
         if not np.allclose(found[1], (found[0] + found[2]) / 2, rtol=1e-12, atol=0):
             return None
         slope[column] = (found[2] - found[0]) / (high - low)
     stiffness = first + (states - states[0]) @ slope
     for row in np.unique(np.linspace(0, len(states) - 1, CHECKED).astype(int)):
         other = change(states[row])
-        if not np.allclose(axial_stiffness(other), stiffness[row], rtol=1e-12, atol=0):
+        if not np.allclose(_stiffness(other), stiffness[row], rtol=1e-12, atol=0):
             return None
     terms = np.flatnonzero(slope.any(axis=0))
     count = len(start.arrays["ends"])
@@ -68,7 +68,7 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
     return Variation(start, members, springs, first[terms], stiffness[:, terms], slope[:, terms])
 
 
-def axial_stiffness(structure: Structure) -> FloatArray:
+def _stiffness(structure: Structure) -> FloatArray:
     """EA / L of every member, then the stiffness of every spring."""
     arrays = structure.arrays
     axial = arrays["E"] * arrays["A"] / structure.lengths

@@ -154,28 +154,37 @@ class Vicinity:
     ) -> FloatArray:
         """What the sensors are to read of a structure under all rows, in SI units."""
         effects = trial.model.effects
-        known: dict[str, list[Load]] = {}
-        near = None
-        for centre in self._centres:
-            terms = centre.near.differing(structure)
+        terms, centre = None, self._centres[0]
+        for one in self._centres:
+            terms = one.near.differing(structure)
             if terms is not None:
-                near = centre, terms
-                if apart and _warms_alike(centre.near.structure, structure):
-                    known = {
-                        name: loads
-                        for name, loads in centre.own.items()
-                        if effects[name].loads_by_geometry
-                    }
+                centre = one
                 break
+        known = _known(centre, effects, structure, terms is not None) if apart else {}
         own = {
             name: known[name] if name in known else effect.loads(structure, values[name], values)
             for name, effect in effects.items()
         }
         loads = _changed(effects, own, structure, values)
-        if near is None:
+        if terms is None:
             return coefficients(loads) @ respond(structure, loads, structure.outputs)
-        centre, terms = near
         return coefficients(loads) @ centre.near.changed(_under(centre, loads), structure, terms)
+
+
+def _known(
+    centre: Centre, effects: Mapping[str, Effect], structure: Structure, near: bool
+) -> dict[str, list[Load]]:
+    """Loads that are on a structure what they are on a centre, by effect."""
+    first = centre.near.structure
+    points = first.arrays["coordinates"]
+    if not np.array_equal(points, structure.arrays["coordinates"][: len(points)]):
+        return {}
+    warms = near and np.array_equal(first.alpha, structure.alpha)
+    return {
+        name: loads
+        for name, loads in centre.own.items()
+        if effects[name].loads_by_geometry and (warms or all(load.strain is None for load in loads))
+    }
 
 
 def _under(centre: Centre, loads: list[Load]) -> Loaded:
@@ -204,10 +213,6 @@ def _changed(
     for name, effect in effects.items():
         effect.change_loads(loads, structure, values[name])
     return [load for of_effect in loads.values() for load in of_effect]
-
-
-def _warms_alike(one: Structure, other: Structure) -> bool:
-    return np.array_equal(one.alpha, other.alpha) and np.array_equal(one.host, other.host)
 
 
 def _meddles(effect: Effect) -> bool:
