@@ -8,7 +8,7 @@ are random effects B, a dense system beside the rows: Woodbury's identity once m
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_solve, cholesky, lapack
 
 from rga.diagnosis.row_covariance import RowCovariance
 from rga.model.parameter import FloatArray
@@ -46,11 +46,13 @@ class Reduced:
         white: whitened, float[k, channels, rows].
         context: on the contexts' errors, float[rows * contexts, k].
         score: on the random effects, float[effects, k].
+        scattered: the same on the factor of their precision, float[effects, k].
     """
 
     white: FloatArray
     context: FloatArray
     score: FloatArray
+    scattered: FloatArray
 
 
 class Covariance:
@@ -100,9 +102,8 @@ class Covariance:
 
     def _spread_as(self, spread: FloatArray) -> None:
         self.spread = spread
-        self._solve = cho_factor(
-            self.information + np.diag(spread**-2.0), overwrite_a=True, check_finite=False
-        )
+        precision = self.information + np.diag(spread**-2.0)
+        self._factor = cholesky(precision, lower=True, overwrite_a=True, check_finite=False)
 
     def with_spread(self, spread: FloatArray) -> "Covariance":
         """The same with another scatter."""
@@ -129,17 +130,19 @@ class Covariance:
                 which, place = np.nonzero(channels == sensor)
                 along[sensor, which] = white[which, place] @ self._courses[sensor]
         along = along.transpose(0, 2, 1).reshape(sensors * courses, len(white))
-        return Reduced(white, context, self._flat @ along - self._context.T @ context)
+        score = self._flat @ along - self._context.T @ context
+        scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
+        return Reduced(white, context, score, scattered)
 
     def product(self, a: Reduced, b: Reduced) -> FloatArray:
         """x' C^-1 y of all pairs of columns on the same channels."""
         own = a.white.reshape(len(a.white), -1) @ b.white.reshape(len(b.white), -1).T
-        return np.asarray(own - a.context.T @ b.context - a.score.T @ self._solved(b.score))
+        return np.asarray(own - a.context.T @ b.context - a.scattered.T @ b.scattered)
 
     def squares(self, a: Reduced) -> FloatArray:
         """x' C^-1 x of every column."""
         own = np.einsum("kct,kct->k", a.white, a.white) - (a.context**2).sum(0)
-        return np.asarray(own - (a.score * self._solved(a.score)).sum(0))
+        return np.asarray(own - (a.scattered**2).sum(0))
 
     def scatter_estimate(self, residual: FloatArray) -> FloatArray:
         """Most likely random effects, float[effects], given a residual float[rows, sensors]."""
@@ -154,8 +157,8 @@ class Covariance:
 
     def log_likelihood(self, score: FloatArray) -> float:
         """Log likelihood of the scatter up to a constant; `score` is B' R^-1 residual."""
-        logdet = 2 * np.log(np.diag(self._solve[0])).sum() + 2 * np.log(self.spread).sum()
+        logdet = 2 * np.log(np.diag(self._factor)).sum() + 2 * np.log(self.spread).sum()
         return float(0.5 * score @ self._solved(score) - 0.5 * logdet)
 
     def _solved(self, right: FloatArray) -> FloatArray:
-        return np.asarray(cho_solve(self._solve, right, check_finite=False))
+        return np.asarray(cho_solve((self._factor, True), right, check_finite=False))

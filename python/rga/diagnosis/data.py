@@ -5,9 +5,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rga.diagnosis.row_covariance import BoolArray
-from rga.model.effect import Values
+from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
+from rga.model.structure import IntArray
 from rga.simulation import Simulator
 from rga.simulation.simulator import Response
 from rga.simulation.vicinity import Vicinity
@@ -119,13 +120,34 @@ class Data:
 
     def read(self, simulator: Simulator, response: Response) -> FloatArray:
         """The channels of a response, less their mean over the zero rows."""
-        simulated = simulator.read(response)[:, self.columns]
+        return self._told(simulator.read(response)[:, self.columns])
+
+    def change(self, about: Vicinity, effect: Effect) -> tuple[IntArray, FloatArray]:
+        """What an effect changes about a simulation, on the channels that it touches.
+
+        Returns:
+            Numbers of the channels, int[c], and their change, float[rows, c].
+
+        Raises:
+            InputError: the effect cannot be simulated.
+        """
+        if effect.on_sensors:
+            changed = about.read_with(effect)
+            touched = (changed != about.read).any(0)[self.columns]
+            channels = np.flatnonzero(touched)
+            columns = [self.columns[channel] for channel in channels]
+            return channels, self._told(changed[:, columns]) - self._told(about.read[:, columns])
+        changed = self.read(*about.trial({"trial": effect}))
+        change = changed - self._told(about.read[:, self.columns])
+        channels = np.flatnonzero(change.any(0))
+        return channels, change[:, channels]
+
+    def _told(self, simulated: FloatArray) -> FloatArray:
+        """Channels less their mean over the zero rows; zero where unknown."""
         if not np.isfinite(simulated).all():
             simulated = np.nan_to_num(simulated)
         leading = len(self.zero["time"])
-        if leading:
-            simulated = simulated[leading:] - simulated[:leading].mean(0)
-        return simulated
+        return simulated[leading:] - simulated[:leading].mean(0) if leading else simulated
 
     def _contexts(self, changes: Values) -> Values:
         table = {**self.belief.table, **changes}

@@ -62,6 +62,7 @@ class RowCovariance:
         self.weight = np.where(observed.T, 1.0 / spread, 0.0)
         self._passing = self.weight * memory
         self._by_sensor = np.ascontiguousarray(context_jacobian.transpose(1, 0, 2))
+        self._by_row = np.ascontiguousarray(context_jacobian.transpose(0, 2, 1))
         self._factor = self._context_factor()
 
     def _context_factor(self) -> FloatArray:
@@ -100,12 +101,14 @@ class RowCovariance:
 
     def project(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
         """Whitened columns on the contexts' errors, float[rows * contexts, k]."""
-        here = slice(None) if channels is None else channels
-        back = np.einsum(
-            "...ct,...ctj->...tj", self.unwhiten(white, channels), self._by_sensor[here]
-        )
-        _, rows, contexts = back.shape
-        return self.solve_contexts(back.reshape(len(white), rows * contexts).T)
+        back = self.unwhiten(white, channels)
+        _, rows, contexts = self._by_sensor.shape
+        if channels is None:
+            along = np.matmul(self._by_row, back.transpose(2, 1, 0)).reshape(-1, len(white))
+        else:
+            found = np.einsum("kct,kctj->ktj", back, self._by_sensor[channels])
+            along = found.reshape(len(white), rows * contexts).T
+        return self.solve_contexts(along)
 
     def solve_contexts(self, right: FloatArray) -> FloatArray:
         """The contexts' factor solved for right sides, float[rows * contexts, k]."""

@@ -97,15 +97,15 @@ def screen(
     for number, candidate in enumerate(candidates):
         for z in product(*(prior.trials for prior in candidate.priors.values())):
             try:
-                changed = data.read(*about.trial({"trial": candidate.effect(z)}))
+                touched, change = data.change(about, candidate.effect(z))
             except InputError:
                 continue
-            change = changed - base
-            touched = np.flatnonzero(change.any(0))
-            if len(touched) > FEW:
-                one = Signature(number, candidate, z, None, change.T)
+            if len(touched) <= FEW:
+                one = Signature(number, candidate, z, touched, change.T)
             else:
-                one = Signature(number, candidate, z, touched, change[:, touched].T)
+                values = np.zeros((len(data.sensors), len(change)))
+                values[touched] = change.T
+                one = Signature(number, candidate, z, None, values)
             together = waiting.setdefault(len(one.values), [])
             together.append(one)
             if len(together) * one.values.size > CHUNK:

@@ -113,6 +113,10 @@ class Simulator:
         Args:
             response: of this model, or of the same model with other effects on its sensors.
         """
+        return self.zeroed(self.shown(response))
+
+    def shown(self, response: Response) -> Readings:
+        """What the sensors show, before the logger's zero is taken off (`zeroed`)."""
         time, values = response.contexts["time"], response.values
         rows = len(time)
         readings = Readings(
@@ -124,7 +128,7 @@ class Simulator:
         for name, effect in self.model.effects.items():
             own = values[name] if name in values else effect.values(response.contexts, rows)
             effect.change_readings(readings, own)
-        return self._zeroed(readings)
+        return readings
 
     def load_coefficients(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
         """Coefficients of all load patterns: what any linear structure responds to.
@@ -254,7 +258,8 @@ class Simulator:
             effect.change_loads(loads, structure, values[name])
         return [load for of_effect in loads.values() for load in of_effect]
 
-    def _zeroed(self, readings: Readings) -> FloatArray:
+    def zeroed(self, readings: Readings) -> FloatArray:
+        """Readings less the logger's zero, float[rows, sensors]; in place."""
         for name, sensor in self.model.sensors.items():
             if sensor.zero is not None:
                 first, last = (seconds(moment) for moment in sensor.zero)

@@ -47,6 +47,7 @@ class Vicinity:
 
     Attributes:
         response: of the simulation without more effects.
+        read: what its sensors show, float[rows, sensors].
     """
 
     def __init__(self, simulator: "Simulator", contexts: Mapping[str, ArrayLike]) -> None:
@@ -61,6 +62,8 @@ class Vicinity:
         self._centres: list[Centre] = []
         self._of_row = np.zeros(self._rows, np.int64)
         self._find_centres()
+        self._shown = simulator.shown(self.response)
+        self.read = simulator.read(self.response)
 
     @property
     def _rows(self) -> int:
@@ -89,6 +92,12 @@ class Vicinity:
             self._centres.append(Centre(near, own, loads, near.under(loads)))
         parts = [coefficients(one.loads) @ one.loaded.outputs for one in self._centres]
         self.response = replace(self.response, quantities=self._joined(parts, self._of_row))
+
+    def read_with(self, effect: Effect) -> FloatArray:
+        """What the sensors show with an effect on them alone, float[rows, sensors]."""
+        readings = replace(self._shown, values=self._shown.values.copy())
+        effect.change_readings(readings, effect.values(self.response.contexts, self._rows))
+        return self.simulator.zeroed(readings)
 
     def trial(self, effects: Mapping[str, Effect]) -> tuple["Simulator", "Response"]:
         """The simulation with more effects, and its response as `Simulator.respond` gives it.
