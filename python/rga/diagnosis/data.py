@@ -15,8 +15,8 @@ from rga.simulation.vicinity import Vicinity
 
 #: share of its range that a measured context may be off before anything is known of its noise
 FIRST_GUESS = 0.01
-#: simulations about which trials are kept ready
-KEPT = 4
+#: simulations about which trials are kept ready, and simulations of trials that are kept
+KEPT, TRIALS = 4, 64
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,10 @@ class Data:
     observed: BoolArray
     belief: Belief
     zero: Values
-    _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, repr=False, compare=False)
+    _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, init=False, compare=False)
+    _tried: dict[tuple[Vicinity, str], FloatArray] = field(
+        default_factory=dict, init=False, compare=False
+    )
 
     @property
     def time(self) -> FloatArray:
@@ -121,6 +124,20 @@ class Data:
     def read(self, simulator: Simulator, response: Response) -> FloatArray:
         """The channels of a response, less their mean over the zero rows."""
         return self._told(simulator.read(response)[:, self.columns])
+
+    def tried(self, about: Vicinity, effects: dict[str, Effect]) -> FloatArray:
+        """Simulated channels with effects, float[rows, sensors]; the last few are kept.
+
+        Raises:
+            InputError: the effects cannot be simulated.
+        """
+        key = repr(effects)
+        known = self._tried
+        if (about, key) not in known:
+            known[about, key] = self.read(*about.trial(effects))
+            if len(known) > TRIALS:
+                del known[next(iter(known))]
+        return known[about, key]
 
     def change(self, about: Vicinity, effect: Effect) -> tuple[IntArray, FloatArray]:
         """What an effect changes about a simulation, on the channels that it touches.
@@ -175,7 +192,11 @@ class Data:
     def without(self, sensors: set[str]) -> "Data":
         """The same rows with some channels taken as missing."""
         hidden = np.array([name in sensors for name in self.sensors])
-        return replace(self, observed=self.observed & ~hidden)
+        other = replace(self, observed=self.observed & ~hidden)
+        # What is simulated does not depend on what is seen.
+        other._about.extend(self._about)
+        object.__setattr__(other, "_tried", self._tried)
+        return other
 
 
 def first_belief(model: Model, time: FloatArray, measured: Values) -> Belief:

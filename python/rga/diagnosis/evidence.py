@@ -103,7 +103,7 @@ def fit(
 
     def simulate(z: FloatArray) -> FloatArray | None:
         try:
-            return data.read(*about.trial(effects_at(hypotheses, z)))
+            return data.tried(about, effects_at(hypotheses, z))
         except InputError:
             return None
 
@@ -140,8 +140,12 @@ def fit(
         gained, z, simulated, (loss, residual) = loss - lower[0], trial, there, lower
         if gained < ENOUGH:
             break
-    at_nothing, _ = misfit(data.read(base, about.response), np.zeros(0))
-    log_evidence = 0.5 * (at_nothing - loss - float(np.linalg.slogdet(information)[1]))
+    if base not in problem.at_nothing:
+        nothing, _ = misfit(data.read(base, about.response), np.zeros(0))
+        problem.at_nothing[base] = nothing
+    log_evidence = 0.5 * (
+        problem.at_nothing[base] - loss - float(np.linalg.slogdet(information)[1])
+    )
     log_evidence += sum(one.log_prior for one in hypotheses)
     return Fit(tuple(hypotheses), z, simulated, information, log_evidence)
 

@@ -1,6 +1,6 @@
 """A record about a simulation: the residual, its derivatives and its covariance."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,6 +33,7 @@ class Problem:
         levels: of the families of the scatter: members, gains, patterns [-].
         factors: patterns over the sensors that vary from row to row for reasons unknown,
             float[sensors, factors].
+        at_nothing: r' C^-1 r without any cause, by the simulator without causes, once known.
     """
 
     data: Data
@@ -44,6 +45,7 @@ class Problem:
     scatter: Scatter
     levels: FloatArray
     factors: FloatArray
+    at_nothing: dict[Simulator, float] = field(default_factory=dict, init=False, compare=False)
 
     def residual(self, simulated: FloatArray) -> FloatArray:
         """Readings less a simulation, zero where missing, float[rows, sensors]."""

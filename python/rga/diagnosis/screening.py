@@ -16,7 +16,7 @@ from rga.simulation import Simulator
 #: channels that a signature may name; one that touches more is written on all
 FEW = 2
 #: numbers in the signatures that are judged together
-CHUNK = 1 << 20
+CHUNK = 1 << 19
 #: an onset leaves at least this share of a signature out of reach of constant scatter
 OUT_OF_REACH = 0.08
 
@@ -89,9 +89,11 @@ def screen(
 
     def judge(several: list[Signature]) -> None:
         for prospect, one in _judged(problem, weighted, several, onsets):
-            known = best.get(one.number, prospect)
-            better = max(known, prospect, key=lambda each: each.score)
-            best[one.number] = replace(better, largest=max(known.largest, prospect.largest))
+            known = best.get(one.number)
+            if known is not None:
+                better = max(known, prospect, key=lambda each: each.score)
+                prospect = replace(better, largest=max(known.largest, prospect.largest))
+            best[one.number] = prospect
         several.clear()
 
     for number, candidate in enumerate(candidates):
