@@ -27,12 +27,14 @@ class Centre:
         own: loads of every effect on it, before any other effect changes them.
         loads: all of them, changed.
         loaded: the structure under `loads`.
+        coefficients: of `loads`, float[rows, patterns].
     """
 
     near: Reanalysis
     own: dict[str, list[Load]]
     loads: list[Load]
     loaded: Loaded
+    coefficients: FloatArray
 
 
 class Vicinity:
@@ -89,8 +91,9 @@ class Vicinity:
                 self._centres.clear()
                 return
             near = Reanalysis(structure)
-            self._centres.append(Centre(near, own, loads, near.under(loads)))
-        parts = [coefficients(one.loads) @ one.loaded.outputs for one in self._centres]
+            found = Centre(near, own, loads, near.under(loads), coefficients(loads))
+            self._centres.append(found)
+        parts = [one.coefficients @ one.loaded.outputs for one in self._centres]
         self.response = replace(self.response, quantities=self._joined(parts, self._of_row))
 
     def read_with(self, effect: Effect) -> FloatArray:
@@ -143,7 +146,7 @@ class Vicinity:
         """
         parts = []
         for centre in self._centres:
-            q = coefficients(centre.loads)
+            q = centre.coefficients
             parts.append({m: q @ rate for m, rate in centre.near.rates(centre.loaded).items()})
         members = set(parts[0]).intersection(*parts[1:]) if parts else set()
         return {
@@ -176,8 +179,10 @@ class Vicinity:
         }
         loads = _changed(effects, own, structure, values)
         if terms is None:
-            return coefficients(loads) @ respond(structure, loads, structure.outputs)
-        return coefficients(loads) @ centre.near.changed(_under(centre, loads), structure, terms)
+            few = _together(loads)
+            return coefficients(few) @ respond(structure, few, structure.outputs)
+        q, loaded = _under(centre, loads)
+        return q @ centre.near.changed(loaded, structure, terms)
 
 
 def _known(
@@ -196,19 +201,18 @@ def _known(
     }
 
 
-def _under(centre: Centre, loads: list[Load]) -> Loaded:
-    """The centre under loads, of which it knows most."""
+def _under(centre: Centre, loads: list[Load]) -> tuple[FloatArray, Loaded]:
+    """Coefficients of loads, and the centre under them; it knows most of them."""
     place = {id(load): number for number, load in enumerate(centre.loads)}
     new = [load for load in loads if id(load) not in place]
     if not new and len(loads) == len(place):
-        return centre.loaded
+        return centre.coefficients, centre.loaded
     place |= {id(load): len(centre.loads) + number for number, load in enumerate(new)}
     parts = [centre.loaded, *([centre.near.under(new)] if new else [])]
     order = [place[id(load)] for load in loads]
-    return Loaded(
-        np.concatenate([part.outputs for part in parts])[order],
-        np.concatenate([part.elongations for part in parts])[order],
-    )
+    outputs = np.concatenate([part.outputs for part in parts])[order]
+    elongations = np.concatenate([part.elongations for part in parts])[order]
+    return coefficients(loads), Loaded(outputs, elongations)
 
 
 def _changed(
@@ -227,6 +231,25 @@ def _changed(
 def _meddles(effect: Effect) -> bool:
     """True where an effect may change contexts, or parameters of other effects."""
     return _overrides(effect, "change_contexts") or _overrides(effect, "change_values")
+
+
+def _together(loads: list[Load]) -> list[Load]:
+    """The same loads, with nodal forces that have the same coefficients put into one."""
+    found: list[Load] = []
+    place: dict[bytes, int] = {}
+    for load in loads:
+        if load.strain is not None or load.prescribed or load.spread:
+            found.append(load)
+            continue
+        key = load.coefficient.tobytes()
+        if key not in place:
+            place[key] = len(found)
+            found.append(replace(load, forces=dict(load.forces)))
+            continue
+        forces = found[place[key]].forces
+        for node, force in load.forces.items():
+            forces[node] = forces[node] + force if node in forces else force
+    return found
 
 
 def _overrides(effect: Effect, method: str) -> bool:

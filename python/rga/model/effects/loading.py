@@ -184,9 +184,10 @@ def line_forces(
     """Nodal forces of a unit load per length on a group: half of each member to each end."""
     unit = np.array([*direction, 0.0, 0.0, 0.0]) / np.linalg.norm(direction)
     forces: dict[int, FloatArray] = {}
+    lengths = structure.lengths
     for member in structure.named(None, group):
         for node in structure.arrays["ends"][member]:
-            share = unit * structure.lengths[member] / 2
+            share = unit * lengths[member] / 2
             forces[int(node)] = forces.get(int(node), np.zeros(6)) + share
     return forces
 
