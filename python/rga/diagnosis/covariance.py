@@ -8,7 +8,7 @@ are random effects B, a dense system beside the rows: Woodbury's identity once m
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve, cholesky, lapack
+from scipy.linalg import cho_solve, lapack
 
 from rga.diagnosis.row_covariance import RowCovariance
 from rga.model.parameter import FloatArray
@@ -77,6 +77,7 @@ class Covariance:
         half = np.matmul(scatter.shares.transpose(1, 0, 2), grams).transpose(1, 0, 2)
         self.information = half.reshape(self._flat.shape) @ self._flat.T
         self.information -= self._context.T @ self._context
+        self.information = np.asfortranarray(self.information)
         self._spread_as(spread)
 
     def _on_contexts(self, courses: FloatArray) -> FloatArray:
@@ -102,8 +103,11 @@ class Covariance:
 
     def _spread_as(self, spread: FloatArray) -> None:
         self.spread = spread
-        precision = self.information + np.diag(spread**-2.0)
-        self._factor = cholesky(precision, lower=True, overwrite_a=True, check_finite=False)
+        precision = self.information.copy(order="F")
+        precision[np.diag_indices_from(precision)] += spread**-2.0
+        self._factor, failed = lapack.dpotrf(precision, lower=1, clean=0, overwrite_a=1)
+        if failed:
+            raise np.linalg.LinAlgError("the precision of the scatter is not positive definite")
 
     def with_spread(self, spread: FloatArray) -> "Covariance":
         """The same with another scatter."""

@@ -153,12 +153,16 @@ def _courses(known: FloatArray, changes: list[FloatArray]) -> FloatArray:
     together = (together / np.where(scale > 0, scale, 1.0)).reshape(len(known), -1)
     courses = _orthonormal(known)
     rest = together - courses @ (courses.T @ together)
-    rest -= courses @ (courses.T @ rest)
-    if np.abs(rest).max() > EXACT * np.abs(together).max():
+    if _largest(rest) > EXACT * _largest(together):
+        rest -= courses @ (courses.T @ rest)
         values, vectors = np.linalg.eigh(rest @ rest.T)
         further = vectors[:, values > EXACT**2 * (together**2).sum()]
         courses = _orthonormal(np.hstack([courses, further]))
     return courses
+
+
+def _largest(values: FloatArray) -> float:
+    return max(float(values.max()), -float(values.min()))
 
 
 def _orthonormal(columns: FloatArray) -> FloatArray:
