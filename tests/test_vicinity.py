@@ -30,7 +30,11 @@ def models(content: dict[str, Any]) -> Iterator[Model]:
     model = read_model(content, "small bridge")
     yield model
     found: dict[str, dict[str, Any]] = {
-        "stiff": {"kind": "joint_rigidity", "group": "verticals", "stiffness": 1e6},
+        "stiff": {
+            "kind": "joint_rigidity",
+            "group": ["verticals", "bottom chord"],
+            "stiffness": 1e6,
+        },
         "soft": {"kind": "support_flexibility", "support": "east", "dof": "uz", "stiffness": 1e7},
         "sinks": {
             "kind": "support_settlement",
@@ -82,7 +86,7 @@ def test_stiffness_rates_are_the_derivatives(about: Vicinity) -> None:
     model, step = about.simulator.model, 1e-4
     rates = about.stiffness_rates()
     scale = np.abs(about.response.quantities).max(0)
-    assert len(rates) >= 8
+    assert len(rates) >= 6
     names = list(model.members)
     for member, rate in rates.items():
         sides = []

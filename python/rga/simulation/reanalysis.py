@@ -10,11 +10,14 @@ from rga import _core
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import own_readings, with_elongations, with_unit_forces
+from rga.simulation.frame_change import Alone, change, motions
 from rga.simulation.response import patterns, refused
 from rga.simulation.variation import AXIAL
 
 #: arrays that may differ between structures near each other
 STIFFNESS = {*AXIAL, "spring_stiffness"}
+#: frame members that may differ, beyond which a solve of the whole structure is no dearer
+FEW = 4
 
 
 @dataclass(frozen=True)
@@ -24,10 +27,22 @@ class Loaded:
     Attributes:
         outputs: float[patterns, outputs] in SI units.
         elongations: of the terms, float[patterns, terms] [m or rad].
+        displacements: of the nodes of frame members, float[patterns, 6 nodes] [m and rad].
+        pattern: the loads as the core takes them.
     """
 
     outputs: FloatArray
     elongations: FloatArray
+    displacements: FloatArray
+    pattern: dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Where the stiffness of a structure differs: terms, and numbers of frame members."""
+
+    terms: IntArray
+    frames: IntArray
 
 
 class Reanalysis:
@@ -57,7 +72,14 @@ class Reanalysis:
         self._stiffness = self._stiffness_of(structure)
         self._scale = np.concatenate([self._lengths[members], np.ones(len(springs))])
         self._content = self._but_stiffness(structure)
-        self._outputs = with_elongations(arrays, structure.outputs, members, springs)
+        self._nodes = np.unique(arrays["ends"][arrays["frame"]])
+        wanted = with_elongations(arrays, structure.outputs, members, springs)
+        moved = motions(self._nodes)
+        self._outputs = {
+            name: np.concatenate([column, moved[name].astype(column.dtype)])
+            for name, column in wanted.items()
+        }
+        self._forced: Loaded | None = None
         found = self._solved(with_unit_forces(arrays, patterns(structure, []), members, springs))
         own = own_readings(arrays, structure.outputs, members, springs)
         self._influence, self._unit = found.outputs + own, found.elongations
@@ -69,27 +91,57 @@ class Reanalysis:
         """The structure under loads; InputError for a property that the core refuses."""
         return self._solved(patterns(self.structure, loads))
 
-    def differing(self, other: Structure) -> IntArray | None:
-        """Terms whose stiffness differs, or None where more than stiffnesses of terms do."""
+    def differing(self, other: Structure) -> Difference | None:
+        """Where stiffnesses differ; None where more than few stiffnesses do."""
         if self._but_stiffness(other) != self._content:
             return None
-        return np.flatnonzero((self._stiffness_of(other) != self._stiffness)[self._terms])
+        terms = np.flatnonzero((self._stiffness_of(other) != self._stiffness)[self._terms])
+        own, theirs = self.structure.arrays, other.arrays
+        differs = np.any([own[name] != theirs[name] for name in AXIAL], axis=0)
+        frames = np.flatnonzero(differs & own["frame"])
+        if len(frames) > FEW or (len(frames) and len(terms)):
+            return None
+        return Difference(terms, frames)
 
-    def changed(self, loaded: Loaded, other: Structure, terms: IntArray) -> FloatArray:
+    def changed(self, loaded: Loaded, other: Structure, where: Difference) -> FloatArray:
         """Outputs of a structure near this one, float[patterns, outputs] in SI units.
 
         Args:
             loaded: this structure under the loads.
             other: the structure near it.
-            terms: in which it differs.
+            where: it differs.
         """
+        if len(where.frames):
+            return self._with_frames(loaded, other, where.frames)
+        terms = where.terms
         if not len(terms):
             return loaded.outputs
         place = self._terms[terms]
-        change = self._stiffness_of(other)[place] - self._stiffness[place]
-        matrix = np.eye(len(terms)) + self._unit[np.ix_(terms, terms)] * change
+        stiffer = self._stiffness_of(other)[place] - self._stiffness[place]
+        matrix = np.eye(len(terms)) + self._unit[np.ix_(terms, terms)] * stiffer
         elongations = np.linalg.solve(matrix, loaded.elongations[:, terms].T).T
-        return np.asarray(loaded.outputs - (elongations * change) @ self._influence[terms])
+        return np.asarray(loaded.outputs - (elongations * stiffer) @ self._influence[terms])
+
+    def _with_frames(self, loaded: Loaded, other: Structure, frames: IntArray) -> FloatArray:
+        if self._forced is None:
+            unit = patterns(self.structure, [])
+            count = 6 * len(self._nodes)
+            unit |= {
+                name: np.zeros((count, *unit[name].shape[1:]))
+                for name in ("forces", "strain", "prescribed", "prescribed_inclined")
+            }
+            node, dof = np.repeat(self._nodes, 6), np.tile(np.arange(6), len(self._nodes))
+            unit["forces"][np.arange(count), node, dof] = 1.0
+            self._forced = self._solved(unit)
+        first = 6 * np.searchsorted(self._nodes, self.structure.arrays["ends"][frames])
+        ends = (first[:, :, None] + np.arange(6)).ravel()
+        return loaded.outputs + change(
+            Alone(self.structure, frames, loaded.pattern),
+            Alone(other, frames, loaded.pattern),
+            loaded.displacements[:, ends],
+            self._forced.displacements[np.ix_(ends, ends)],
+            self._forced.outputs[ends],
+        )
 
     def rates(self, loaded: Loaded) -> dict[int, FloatArray]:
         """Derivatives of the outputs by the logarithm of the stiffness of truss members.
@@ -113,11 +165,8 @@ class Reanalysis:
 
     @staticmethod
     def _but_stiffness(structure: Structure) -> list[bytes]:
-        """All of a structure and its outputs but the stiffness of truss members and springs."""
-        arrays, bends = structure.arrays, structure.arrays["frame"]
-        parts = [array for name, array in arrays.items() if name not in STIFFNESS]
-        if bends.any():
-            parts += [arrays[name][bends] for name in AXIAL]
+        """All of a structure and its outputs but E, G and A of members and springs."""
+        parts = [array for name, array in structure.arrays.items() if name not in STIFFNESS]
         return [array.tobytes() for array in (*parts, *structure.outputs.values())]
 
     def _solved(self, pattern: dict[str, NDArray[Any]]) -> Loaded:
@@ -125,5 +174,8 @@ class Reanalysis:
             found = _core.respond(self.structure.arrays, pattern, self._outputs)
         except (_core.UnstableStructure, _core.InvalidInput) as error:
             raise refused(self.structure, error) from None
-        count = len(self.structure.per_si)
-        return Loaded(found[:, :count].copy(), found[:, count:] * self._scale)
+        first = len(self.structure.per_si)
+        last = first + len(self._terms)
+        return Loaded(
+            found[:, :first].copy(), found[:, first:last] * self._scale, found[:, last:], pattern
+        )

@@ -12,7 +12,7 @@ from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.plan import APART, coefficients
 from rga.simulation.reanalysis import Loaded, Reanalysis
-from rga.simulation.response import respond
+from rga.simulation.response import patterns, respond
 
 if TYPE_CHECKING:
     from rga.simulation.simulator import Response, Simulator
@@ -166,23 +166,23 @@ class Vicinity:
     ) -> FloatArray:
         """What the sensors are to read of a structure under all rows, in SI units."""
         effects = trial.model.effects
-        terms, centre = None, self._centres[0]
+        where, centre = None, self._centres[0]
         for one in self._centres:
-            terms = one.near.differing(structure)
-            if terms is not None:
+            where = one.near.differing(structure)
+            if where is not None:
                 centre = one
                 break
-        known = _known(centre, effects, structure, terms is not None) if apart else {}
+        known = _known(centre, effects, structure, where is not None) if apart else {}
         own = {
             name: known[name] if name in known else effect.loads(structure, values[name], values)
             for name, effect in effects.items()
         }
         loads = _changed(effects, own, structure, values)
-        if terms is None:
+        if where is None:
             few = _together(loads)
             return coefficients(few) @ respond(structure, few, structure.outputs)
         q, loaded = _under(centre, loads)
-        return q @ centre.near.changed(loaded, structure, terms)
+        return q @ centre.near.changed(loaded, structure, where)
 
 
 def _known(
@@ -210,9 +210,12 @@ def _under(centre: Centre, loads: list[Load]) -> tuple[FloatArray, Loaded]:
     place |= {id(load): len(centre.loads) + number for number, load in enumerate(new)}
     parts = [centre.loaded, *([centre.near.under(new)] if new else [])]
     order = [place[id(load)] for load in loads]
-    outputs = np.concatenate([part.outputs for part in parts])[order]
-    elongations = np.concatenate([part.elongations for part in parts])[order]
-    return coefficients(loads), Loaded(outputs, elongations)
+    outputs, elongations, displacements = (
+        np.concatenate([getattr(part, name) for part in parts])[order]
+        for name in ("outputs", "elongations", "displacements")
+    )
+    pattern = patterns(centre.near.structure, loads)
+    return coefficients(loads), Loaded(outputs, elongations, displacements, pattern)
 
 
 def _changed(
