@@ -8,12 +8,15 @@ from numpy.typing import NDArray
 from rga import _core
 from rga.model.parameter import FloatArray
 from rga.model.structure import OUTPUT_KIND, IntArray, Structure
+from rga.simulation.response import patterns
 
 Arrays = dict[str, NDArray[Any]]
 DISPLACEMENT, REACTION = OUTPUT_KIND["displacement"], OUTPUT_KIND["reaction"]
 #: properties of the members, one a member
 OF_MEMBERS = ["frame", "E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz"]
 OF_MEMBERS += ["local_y", "connection", "rigid_end"]
+#: share of a node's largest stiffness against turning that counts as none
+LOOSE = 1e-9
 
 
 def motions(nodes: IntArray, kind: int = DISPLACEMENT) -> Arrays:
@@ -40,13 +43,14 @@ class Alone:
         stiffness: forces of the nodes by displacements of the ends, float[members, 12, 12].
         forces: the same under the loads with ends that do not move, float[patterns, members, 12].
         sensors: numbers of the outputs that read these members.
-        shape: those outputs by displacements of the ends, float[members, 12, sensors].
+        owner: place of the member that each of them reads, int[sensors].
+        shape: those outputs by displacements of the ends, float[12, sensors].
         read: the same under the loads with ends that do not move, float[patterns, sensors].
     """
 
     def __init__(self, structure: Structure, members: IntArray, pattern: Arrays) -> None:
         arrays, wanted = structure.arrays, structure.outputs
-        count, patterns = len(members), len(pattern["forces"])
+        count, loaded = len(members), len(pattern["forces"])
         on_members = (wanted["kind"] == OUTPUT_KIND["strain"]) | (
             wanted["kind"] == OUTPUT_KIND["force"]
         )
@@ -54,7 +58,7 @@ class Alone:
         nodes = np.arange(2 * count)
         reactions = motions(nodes, REACTION)
         gauges = {name: column[self.sensors] for name, column in wanted.items()}
-        gauges["index"] = np.searchsorted(members, gauges["index"])
+        self.owner = gauges["index"] = np.searchsorted(members, gauges["index"])
         outputs = {
             name: np.concatenate([reactions[name], gauges[name]]).astype(wanted[name].dtype)
             for name in wanted
@@ -71,10 +75,11 @@ class Alone:
                 if name.startswith(("inclined_", "spring_", "tie_"))
             },
         }
-        moves = 12 * count
-        prescribed = np.zeros((moves + patterns, 2 * count, 6))
-        prescribed[:moves] = np.eye(moves).reshape(moves, 2 * count, 6)
-        strain = np.zeros((moves + patterns, count, 3))
+        # Nothing joins them: one motion of all serves each of them.
+        moves = 12
+        prescribed = np.zeros((moves + loaded, count, 12))
+        prescribed[:moves] = np.eye(moves)[:, None]
+        strain = np.zeros((moves + loaded, count, 3))
         strain[moves:] = pattern["strain"][:, members]
         here = _among(pattern["member_index"], members)
         spread = {
@@ -83,19 +88,39 @@ class Alone:
         spread["member_pattern"] = spread["member_pattern"] + moves
         spread["member_index"] = np.searchsorted(members, spread["member_index"])
         loads = {
-            "forces": np.zeros((moves + patterns, 2 * count, 6)),
+            "forces": np.zeros((moves + loaded, 2 * count, 6)),
             "strain": strain,
-            "prescribed": prescribed,
-            "prescribed_inclined": np.zeros((moves + patterns, 0)),
+            "prescribed": prescribed.reshape(-1, 2 * count, 6),
+            "prescribed_inclined": np.zeros((moves + loaded, 0)),
             **spread,
         }
         found = _core.respond(cut, loads, outputs)
-        every = np.arange(count)
-        held = found[:moves, :moves].reshape(count, 12, count, 12)
-        self.stiffness = held[every, :, every].transpose(0, 2, 1)
-        self.forces = found[moves:, :moves].reshape(patterns, count, 12)
-        self.shape = found[:moves, moves:].reshape(count, 12, -1)
-        self.read = found[moves:, moves:]
+        held = found[:, : 12 * count].reshape(-1, count, 12)
+        self.stiffness = held[:moves].transpose(1, 2, 0)
+        self.forces = held[moves:]
+        self.shape, self.read = found[:moves, 12 * count :], found[moves:, 12 * count :]
+
+
+def stiffened(structure: Structure, nodes: IntArray) -> FloatArray:
+    """Unit forces and moments on nodes of frame members that something resists.
+
+    Returns:
+        float[forces, 6 nodes]; no moment about an axis that no member stiffens.
+    """
+    frames = np.flatnonzero(structure.arrays["frame"])
+    stiffness = Alone(structure, frames, patterns(structure, [])).stiffness
+    turning = np.zeros((len(nodes), 3, 3))
+    place = np.searchsorted(nodes, structure.arrays["ends"][frames])
+    for end in range(2):
+        here = slice(6 * end + 3, 6 * end + 6)
+        np.add.at(turning, place[:, end], stiffness[:, here, here])
+    values, axes = np.linalg.eigh(turning)
+    units = np.zeros((len(nodes), 6, len(nodes), 6))
+    for node, own in enumerate(axes):
+        units[node, :3, node, :3] = np.eye(3)
+        units[node, 3:, node, 3:] = own.T * (values[node] > LOOSE * values[node, -1])[:, None]
+    flat = units.reshape(6 * len(nodes), 6 * len(nodes))
+    return np.asarray(flat[flat.any(axis=1)])
 
 
 def _among(numbers: IntArray, members: IntArray) -> NDArray[np.bool_]:
@@ -128,6 +153,7 @@ def change(
     matrix = np.eye(12 * count) + flexibility @ stiffer
     moved = np.linalg.solve(matrix, (displacements - more @ flexibility).T).T
     found = -(moved @ stiffer.T + more) @ influence
-    shape = (after.shape - before.shape).reshape(12 * count, -1)
-    found[:, before.sensors] += moved @ shape + after.read - before.read
+    ends = moved.reshape(-1, count, 12)[:, before.owner]
+    bent = np.einsum("psd,ds->ps", ends, after.shape - before.shape)
+    found[:, before.sensors] += bent + after.read - before.read
     return np.asarray(found)

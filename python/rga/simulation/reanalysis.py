@@ -1,6 +1,6 @@
 """A structure solved once: further loads, and a few stiffnesses that differ, cost little more."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from rga import _core
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
 from rga.simulation.condensation import own_readings, with_elongations, with_unit_forces
-from rga.simulation.frame_change import Alone, change, motions
+from rga.simulation.frame_change import Alone, change, motions, stiffened
 from rga.simulation.response import patterns, refused
 from rga.simulation.variation import AXIAL
 
@@ -124,15 +124,7 @@ class Reanalysis:
 
     def _with_frames(self, loaded: Loaded, other: Structure, frames: IntArray) -> FloatArray:
         if self._forced is None:
-            unit = patterns(self.structure, [])
-            count = 6 * len(self._nodes)
-            unit |= {
-                name: np.zeros((count, *unit[name].shape[1:]))
-                for name in ("forces", "strain", "prescribed", "prescribed_inclined")
-            }
-            node, dof = np.repeat(self._nodes, 6), np.tile(np.arange(6), len(self._nodes))
-            unit["forces"][np.arange(count), node, dof] = 1.0
-            self._forced = self._solved(unit)
+            self._forced = self._under_forces()
         first = 6 * np.searchsorted(self._nodes, self.structure.arrays["ends"][frames])
         ends = (first[:, :, None] + np.arange(6)).ravel()
         return loaded.outputs + change(
@@ -141,6 +133,20 @@ class Reanalysis:
             loaded.displacements[:, ends],
             self._forced.displacements[np.ix_(ends, ends)],
             self._forced.outputs[ends],
+        )
+
+    def _under_forces(self) -> Loaded:
+        """The structure under unit forces and moments on the nodes of frame members."""
+        units = stiffened(self.structure, self._nodes)
+        unit = patterns(self.structure, [])
+        unit |= {
+            name: np.zeros((len(units), *unit[name].shape[1:]))
+            for name in ("forces", "strain", "prescribed", "prescribed_inclined")
+        }
+        unit["forces"][:, self._nodes] = units.reshape(len(units), -1, 6)
+        found = self._solved(unit)
+        return replace(
+            found, outputs=units.T @ found.outputs, displacements=units.T @ found.displacements
         )
 
     def rates(self, loaded: Loaded) -> dict[int, FloatArray]:
