@@ -1,6 +1,6 @@
 """A structure solved once: further loads, and a few stiffnesses that differ, cost little more."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from rga.simulation.variation import AXIAL
 STIFFNESS = {*AXIAL, "spring_stiffness"}
 #: frame members that may differ, beyond which a solve of the whole structure is no dearer
 FEW = 4
+#: loads that are remembered
+KEPT = 32
 
 
 @dataclass(frozen=True)
@@ -29,12 +31,14 @@ class Loaded:
         elongations: of the terms, float[patterns, terms] [m or rad].
         displacements: of the nodes of frame members, float[patterns, 6 nodes] [m and rad].
         pattern: the loads as the core takes them.
+        alone: frame members cut out under these loads, by their numbers, once known.
     """
 
     outputs: FloatArray
     elongations: FloatArray
     displacements: FloatArray
     pattern: dict[str, NDArray[Any]]
+    alone: dict[bytes, Alone] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -80,6 +84,7 @@ class Reanalysis:
             for name, column in wanted.items()
         }
         self._forced: Loaded | None = None
+        self._known: dict[bytes, Loaded] = {}
         found = self._solved(with_unit_forces(arrays, patterns(structure, []), members, springs))
         own = own_readings(arrays, structure.outputs, members, springs)
         self._influence, self._unit = found.outputs + own, found.elongations
@@ -89,7 +94,13 @@ class Reanalysis:
 
     def under(self, loads: list[Load]) -> Loaded:
         """The structure under loads; InputError for a property that the core refuses."""
-        return self._solved(patterns(self.structure, loads))
+        pattern = patterns(self.structure, loads)
+        content = b"".join(array.tobytes() for array in pattern.values())
+        if content not in self._known:
+            self._known[content] = self._solved(pattern)
+            if len(self._known) > KEPT:
+                del self._known[next(iter(self._known))]
+        return self._known[content]
 
     def differing(self, other: Structure) -> Difference | None:
         """Where stiffnesses differ; None where more than few stiffnesses do."""
@@ -127,8 +138,11 @@ class Reanalysis:
             self._forced = self._under_forces()
         first = 6 * np.searchsorted(self._nodes, self.structure.arrays["ends"][frames])
         ends = (first[:, :, None] + np.arange(6)).ravel()
+        key = frames.tobytes()
+        if key not in loaded.alone:
+            loaded.alone[key] = Alone(self.structure, frames, loaded.pattern)
         return loaded.outputs + change(
-            Alone(self.structure, frames, loaded.pattern),
+            loaded.alone[key],
             Alone(other, frames, loaded.pattern),
             loaded.displacements[:, ends],
             self._forced.displacements[np.ix_(ends, ends)],
