@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rga.diagnosis.covariance import BoolArray
+from rga.diagnosis.row_covariance import BoolArray
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lstsq
 
-from rga.diagnosis.covariance import BoolArray
+from rga.diagnosis.row_covariance import BoolArray
 from rga.model.parameter import FloatArray
 
 #: share of rows that repeat the last one exactly, beyond which a channel is stuck

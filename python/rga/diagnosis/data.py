@@ -1,18 +1,22 @@
 """The part of a record that a diagnosis works on, beside the contexts it has to believe."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from rga.diagnosis.covariance import BoolArray
-from rga.model.effect import Values
+from rga.diagnosis.row_covariance import BoolArray
+from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
+from rga.model.structure import IntArray
 from rga.simulation import Simulator
 from rga.simulation.simulator import Response
+from rga.simulation.vicinity import Vicinity
 
 #: share of its range that a measured context may be off before anything is known of its noise
 FIRST_GUESS = 0.01
+#: simulations about which trials are kept ready, and simulations of trials that are kept
+KEPT, TRIALS = 4, 64
 
 
 @dataclass(frozen=True)
@@ -84,6 +88,10 @@ class Data:
     observed: BoolArray
     belief: Belief
     zero: Values
+    _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, init=False, compare=False)
+    _tried: dict[tuple[Vicinity, str], FloatArray] = field(
+        default_factory=dict, init=False, compare=False
+    )
 
     @property
     def time(self) -> FloatArray:
@@ -101,18 +109,68 @@ class Data:
 
     def respond(self, simulator: Simulator, changes: Values | None = None) -> Response:
         """The response at the believed contexts, the zero rows in front."""
-        table = {**self.belief.table, **(changes or {})}
-        if len(self.zero["time"]):
-            table = {name: self._with_zero(name, column) for name, column in table.items()}
-        return simulator.respond(table)
+        return simulator.respond(self._contexts(changes or {}))
+
+    def about(self, simulator: Simulator) -> Vicinity:
+        """A simulation at the believed contexts, to try effects on; the last few are kept."""
+        for belief, known in self._about:
+            if belief is self.belief and known.simulator is simulator:
+                return known
+        found = Vicinity(simulator, self._contexts({}))
+        self._about.append((self.belief, found))
+        del self._about[:-KEPT]
+        return found
 
     def read(self, simulator: Simulator, response: Response) -> FloatArray:
         """The channels of a response, less their mean over the zero rows."""
-        simulated = np.nan_to_num(simulator.read(response)[:, self.columns])
+        return self._told(simulator.read(response)[:, self.columns])
+
+    def tried(self, about: Vicinity, effects: dict[str, Effect]) -> FloatArray:
+        """Simulated channels with effects, float[rows, sensors]; the last few are kept.
+
+        Raises:
+            InputError: the effects cannot be simulated.
+        """
+        key = repr(effects)
+        known = self._tried
+        if (about, key) not in known:
+            known[about, key] = self.read(*about.trial(effects))
+            if len(known) > TRIALS:
+                del known[next(iter(known))]
+        return known[about, key]
+
+    def change(self, about: Vicinity, effect: Effect) -> tuple[IntArray, FloatArray]:
+        """What an effect changes about a simulation, on the channels that it touches.
+
+        Returns:
+            Numbers of the channels, int[c], and their change, float[rows, c].
+
+        Raises:
+            InputError: the effect cannot be simulated.
+        """
+        if effect.on_sensors:
+            changed = about.read_with(effect)
+            touched = (changed != about.read).any(0)[self.columns]
+            channels = np.flatnonzero(touched)
+            columns = [self.columns[channel] for channel in channels]
+            return channels, self._told(changed[:, columns]) - self._told(about.read[:, columns])
+        changed = self.read(*about.trial({"trial": effect}))
+        change = changed - self._told(about.read[:, self.columns])
+        channels = np.flatnonzero(change.any(0))
+        return channels, change[:, channels]
+
+    def _told(self, simulated: FloatArray) -> FloatArray:
+        """Channels less their mean over the zero rows; zero where unknown."""
+        if not np.isfinite(simulated).all():
+            simulated = np.nan_to_num(simulated)
         leading = len(self.zero["time"])
-        if leading:
-            simulated = simulated[leading:] - simulated[:leading].mean(0)
-        return simulated
+        return simulated[leading:] - simulated[:leading].mean(0) if leading else simulated
+
+    def _contexts(self, changes: Values) -> Values:
+        table = {**self.belief.table, **changes}
+        if len(self.zero["time"]):
+            table = {name: self._with_zero(name, column) for name, column in table.items()}
+        return table
 
     def _with_zero(self, name: str, column: FloatArray) -> FloatArray:
         """A context with its values at the zero rows in front; a line is prolonged to them."""
@@ -134,7 +192,11 @@ class Data:
     def without(self, sensors: set[str]) -> "Data":
         """The same rows with some channels taken as missing."""
         hidden = np.array([name in sensors for name in self.sensors])
-        return replace(self, observed=self.observed & ~hidden)
+        other = replace(self, observed=self.observed & ~hidden)
+        # What is simulated does not depend on what is seen.
+        other._about.extend(self._about)
+        object.__setattr__(other, "_tried", self._tried)
+        return other
 
 
 def first_belief(model: Model, time: FloatArray, measured: Values) -> Belief:

@@ -15,9 +15,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from rga.diagnosis.covariance import Reduced
 from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.problem import Problem
 from rga.errors import InputError
+from rga.model.effect import Effect
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
@@ -37,7 +39,6 @@ class Fit:
         simulated: float[rows, sensors].
         information: I + S' C^-1 S, float[parameters, parameters].
         log_evidence: against no effect at all.
-        signatures: derivatives of the simulation by z, float[rows, sensors, parameters].
     """
 
     hypotheses: tuple[Hypothesis, ...]
@@ -45,7 +46,6 @@ class Fit:
     simulated: FloatArray
     information: FloatArray
     log_evidence: float
-    signatures: FloatArray
 
     def slices(self) -> list[slice]:
         """The parameters of each hypothesis in z."""
@@ -63,15 +63,20 @@ class Fit:
         )
 
 
-def extended(base: Simulator, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Simulator:
-    """A simulator with the effects of hypotheses at coordinates z, named by number."""
+def effects_at(hypotheses: Sequence[Hypothesis], z: FloatArray) -> dict[str, Effect]:
+    """The effects of hypotheses at coordinates z, named by number."""
     effects = {}
     first = 0
     for number, one in enumerate(hypotheses):
         count = len(one.priors)
         effects[f"cause {number + 1}"] = one.effect(z[first : first + count])
         first += count
-    return base.extended(effects)
+    return effects
+
+
+def extended(base: Simulator, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Simulator:
+    """A simulator with the effects of hypotheses at coordinates z."""
+    return base.extended(effects_at(hypotheses, z))
 
 
 def fit(
@@ -93,71 +98,70 @@ def fit(
     Returns:
         The fit; its log evidence is minus infinity where the model cannot be simulated.
     """
-    covariance = problem.covariance
+    covariance, data = problem.covariance, problem.data
+    about = data.about(base)
 
     def simulate(z: FloatArray) -> FloatArray | None:
         try:
-            return problem.data.predict(extended(base, hypotheses, z))
+            return data.tried(about, effects_at(hypotheses, z))
         except InputError:
             return None
 
-    def misfit(simulated: FloatArray, z: FloatArray) -> float:
-        reduced = covariance.reduce(problem.residual(simulated)[:, :, None])
-        return float(covariance.squares(reduced)[0] + z @ z)
+    def misfit(simulated: FloatArray, z: FloatArray) -> tuple[float, Reduced]:
+        residual = covariance.reduce(problem.residual(simulated).T[None])
+        return float(covariance.squares(residual)[0] + z @ z), residual
 
     z = np.array(start, dtype=float)
     simulated = simulate(z)
     if simulated is None:
         return _impossible(problem, hypotheses, z)
-    loss = misfit(simulated, z)
-    for step in range(steps + 1):
-        signatures = _signatures(simulate, problem, simulated, z)
+    loss, residual = misfit(simulated, z)
+    information = np.eye(len(z))
+    for step in range(steps + 1 if len(z) else 0):
+        signatures = _signatures(simulate, simulated, z)
         if signatures is None:
             return _impossible(problem, hypotheses, z)
         reduced = covariance.reduce(signatures)
         information = covariance.product(reduced, reduced) + np.eye(len(z))
-        if step == steps or not len(z):
+        if step == steps:
             break
-        residual = covariance.reduce(problem.residual(simulated)[:, :, None])
         move = np.linalg.solve(information, covariance.product(reduced, residual)[:, 0] - z)
         move *= min(1.0, LONGEST / max(np.abs(move).max(), 1e-12))
         lower = None
         for _ in range(SHORTENED):
             trial = np.clip(z + move, -FARTHEST, FARTHEST)
             there = simulate(trial)
-            if there is not None and (found := misfit(there, trial)) < loss:
+            if there is not None and (found := misfit(there, trial))[0] < loss:
                 lower = found
                 break
             move = move / 3
         if lower is None or there is None:
             break
-        gained, z, simulated, loss = loss - lower, trial, there, lower
+        gained, z, simulated, (loss, residual) = loss - lower[0], trial, there, lower
         if gained < ENOUGH:
             break
-    nothing = problem.data.predict(base)
-    at_nothing = misfit(nothing, np.zeros(0))
-    assert signatures is not None  # every way out of the loop has them
-    log_evidence = 0.5 * (at_nothing - loss - float(np.linalg.slogdet(information)[1]))
+    if base not in problem.at_nothing:
+        nothing, _ = misfit(data.read(base, about.response), np.zeros(0))
+        problem.at_nothing[base] = nothing
+    log_evidence = 0.5 * (
+        problem.at_nothing[base] - loss - float(np.linalg.slogdet(information)[1])
+    )
     log_evidence += sum(one.log_prior for one in hypotheses)
-    return Fit(tuple(hypotheses), z, simulated, information, log_evidence, signatures)
+    return Fit(tuple(hypotheses), z, simulated, information, log_evidence)
 
 
 def _signatures(
-    simulate: Callable[[FloatArray], FloatArray | None],
-    problem: Problem,
-    simulated: FloatArray,
-    z: FloatArray,
+    simulate: Callable[[FloatArray], FloatArray | None], simulated: FloatArray, z: FloatArray
 ) -> FloatArray | None:
-    columns = []
-    for number in range(len(z)):
-        ahead = simulate(z + STEP * np.eye(len(z))[number])
+    """Derivatives of the simulation by z, float[parameters, sensors, rows]."""
+    columns = np.zeros((len(z), *simulated.T.shape))
+    for number, along in enumerate(np.eye(len(z))):
+        ahead = simulate(z + STEP * along)
         if ahead is None:
             return None
-        columns.append(np.where(problem.data.observed, (ahead - simulated) / STEP, 0.0))
-    return np.stack(columns, axis=2) if columns else np.zeros((*simulated.shape, 0))
+        columns[number] = (ahead - simulated).T / STEP
+    return columns
 
 
 def _impossible(problem: Problem, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Fit:
-    rows, sensors = problem.simulated.shape
-    nothing = np.zeros((rows, sensors, len(z)))
-    return Fit(tuple(hypotheses), z, problem.simulated, np.eye(len(z)), -np.inf, nothing)
+    return Fit(tuple(hypotheses), z, problem.simulated, np.eye(len(z)), -np.inf)

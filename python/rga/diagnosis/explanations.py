@@ -10,10 +10,11 @@ from itertools import product
 
 import numpy as np
 
-from rga.diagnosis.covariance import Covariance, RowCovariance
+from rga.diagnosis.covariance import Covariance
 from rga.diagnosis.evidence import Fit, fit
 from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.problem import Problem
+from rga.diagnosis.row_covariance import RowCovariance
 from rga.diagnosis.screening import Prospect, screen
 from rga.diagnosis.search import Found, evidence
 from rga.model.parameter import FloatArray
@@ -112,8 +113,7 @@ def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
     old = problem.covariance
     jacobian = np.where(data.observed[:, :, None], old.rows.context_jacobian, 0.0)
     rows = RowCovariance(problem.noise, data.time, data.observed, jacobian)
-    scatter = np.where(data.observed[:, :, None], old.scatter, 0.0)
-    return replace(problem, data=data, covariance=Covariance(rows, scatter, old.spread))
+    return replace(problem, data=data, covariance=Covariance(rows, old.scatter, old.spread))
 
 
 def variance(problem: Problem) -> FloatArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import bootstrap
 
-from rga.diagnosis.covariance import BoolArray
+from rga.diagnosis.row_covariance import BoolArray
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
-from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.data import Data
+from rga.diagnosis.row_covariance import BoolArray
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lstsq
-from scipy.signal import lombscargle
 from scipy.stats import spearmanr
 
-from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.noise import unexplainable
 from rga.diagnosis.problem import Problem, load_basis, pose
+from rga.diagnosis.row_covariance import BoolArray
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 
@@ -80,7 +79,7 @@ def innovations(problem: Problem) -> tuple[FloatArray, BoolArray]:
     rows = problem.covariance.rows
     error = rows.context_error(left)
     left = left - np.einsum("tsi,ti->ts", rows.context_jacobian, error)
-    return rows.reduce(left[:, :, None]).white.reshape(left.shape), data.observed
+    return rows.whiten(left.T).T, data.observed
 
 
 def share_left(problem: Problem) -> float:
@@ -102,7 +101,9 @@ def bent_contexts(problem: Problem) -> list[str]:
     belief = problem.data.belief
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
-    error = problem.covariance.rows.context_error(residual - problem.covariance.scatter @ estimate)
+    error = problem.covariance.rows.context_error(
+        residual - problem.covariance.scatter.at(estimate)
+    )
     told = []
     for number, name in enumerate(belief.spread):
         if name in belief.latent:
@@ -138,7 +139,7 @@ def in_words(problem: Problem, contexts: Values) -> str:
     rows = problem.covariance.rows
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
-    error = rows.context_error(residual - problem.covariance.scatter @ estimate)
+    error = rows.context_error(residual - problem.covariance.scatter.at(estimate))
     first = error.shape[1] - problem.factors.shape[1]
     told = []
     for number, direction in enumerate(problem.factors.T):
@@ -178,6 +179,9 @@ def _follows(amplitude: FloatArray, time: FloatArray, contexts: Values) -> str:
 
 def _period(amplitude: FloatArray, time: FloatArray) -> tuple[float, float]:
     """Period of the strongest oscillation [s], and its share of the variance."""
+    # Slow to load, and few records come here.
+    from scipy.signal import lombscargle
+
     span, step = float(np.ptp(time)), float(np.median(np.diff(time)))
     frequencies = np.arange(3, max(4, int(span / step / 3))) / span
     power = lombscargle(time, amplitude, 2 * np.pi * frequencies, normalize=True)

@@ -9,7 +9,7 @@ time may pass for a little of it.
 import numpy as np
 from scipy.linalg import lstsq
 
-from rga.diagnosis.covariance import BoolArray, Noise, RowCovariance
+from rga.diagnosis.row_covariance import BoolArray, Noise, RowCovariance
 from rga.model.parameter import FloatArray
 
 ITERATIONS = 12
@@ -98,7 +98,7 @@ def estimate_noise(
         rows = RowCovariance(noise, time, observed, context_jacobian)
         error = rows.context_error(left)
         # The posterior variance of a context in its own row, neighbours left out.
-        precise = np.einsum("ts,tsi,tsj->tij", rows.weight**2, context_jacobian, context_jacobian)
+        precise = np.einsum("ts,tsi,tsj->tij", rows.weight.T**2, context_jacobian, context_jacobian)
         variance = np.linalg.inv(precise + np.diag(noise.context_sigma**-2.0))
         rest = np.where(observed, left - np.einsum("tsi,ti->ts", context_jacobian, error), 0.0)
         hidden = np.einsum("tsi,tij,tsj->ts", context_jacobian, variance, context_jacobian)

@@ -10,7 +10,6 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
 from rga.diagnosis.channels import Fault
-from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
@@ -19,6 +18,7 @@ from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
 from rga.diagnosis.problem import Problem, pose, relaxed
 from rga.diagnosis.robustness import with_hanging_leads, without_unhelpful
+from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.screening import screen
 from rga.diagnosis.search import ROUNDS, Found, search, settled, weighed
 from rga.model.effect import Effect

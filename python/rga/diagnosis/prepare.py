@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.diagnosis.channels import Fault, find_faults, lone_spikes
-from rga.diagnosis.covariance import BoolArray
 from rga.diagnosis.data import Data, first_belief
 from rga.diagnosis.latent import guess_lines, guess_rows
 from rga.diagnosis.problem import load_basis
+from rga.diagnosis.row_covariance import BoolArray
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model

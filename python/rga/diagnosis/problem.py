@@ -1,12 +1,13 @@
 """A record about a simulation: the residual, its derivatives and its covariance."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from rga.diagnosis.covariance import Covariance, Noise, RowCovariance
+from rga.diagnosis.covariance import Covariance
 from rga.diagnosis.data import Data
 from rga.diagnosis.noise import estimate_noise, unexplainable
+from rga.diagnosis.row_covariance import Noise, RowCovariance
 from rga.diagnosis.scatter import MEDIANS, Scatter, lines, scatter_effects, scatter_levels
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
@@ -32,6 +33,7 @@ class Problem:
         levels: of the families of the scatter: members, gains, patterns [-].
         factors: patterns over the sensors that vary from row to row for reasons unknown,
             float[sensors, factors].
+        at_nothing: r' C^-1 r without any cause, by the simulator without causes, once known.
     """
 
     data: Data
@@ -43,6 +45,7 @@ class Problem:
     scatter: Scatter
     levels: FloatArray
     factors: FloatArray
+    at_nothing: dict[Simulator, float] = field(default_factory=dict, init=False, compare=False)
 
     def residual(self, simulated: FloatArray) -> FloatArray:
         """Readings less a simulation, zero where missing, float[rows, sensors]."""
@@ -50,7 +53,7 @@ class Problem:
 
     def explained_by_scatter(self, residual: FloatArray) -> FloatArray:
         """The part of a residual that scatter and contexts take up, float[rows, sensors]."""
-        scatter = self.covariance.scatter @ self.covariance.scatter_estimate(residual)
+        scatter = self.covariance.scatter.at(self.covariance.scatter_estimate(residual))
         rows = self.covariance.rows
         error = rows.context_error(residual - scatter)
         return np.asarray(scatter + np.einsum("tsi,ti->ts", rows.context_jacobian, error))
@@ -71,7 +74,7 @@ def pose(
         factors: patterns over the sensors that vary for reasons unknown, float[sensors, factors].
     """
     belief = data.belief
-    simulated = data.predict(simulator)
+    simulated = data.read(simulator, data.about(simulator).response)
     jacobian = context_jacobian(simulator, data, simulated)
     offsets = (
         np.stack([belief.centre[n] - belief.table[n] for n in belief.spread], axis=-1)
@@ -106,7 +109,7 @@ def pose(
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
     scatter = scatter_effects(simulator, data, simulated, basis, factors)
     levels = before.levels if before is not None else MEDIANS
-    covariance = Covariance(rows, scatter.columns, scatter.spread(levels))
+    covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
     levels = scatter_levels(covariance, scatter, residual, levels)
     covariance = covariance.with_spread(scatter.spread(levels))
     return Problem(data, simulator, simulated, shift, covariance, noise, scatter, levels, factors)
@@ -147,7 +150,7 @@ def relaxed(problem: Problem) -> Data:
     data, belief = problem.data, problem.data.belief
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
-    scatter = problem.covariance.scatter @ estimate
+    scatter = problem.covariance.scatter.at(estimate)
     changes: Values = {}
     moves = lines(data)
     for (name, direction, _), move in zip(

@@ -1,12 +1,12 @@
 """Scatter: members, gains and patterns that are not quite as modelled, as random effects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from rga.diagnosis.covariance import Covariance
+from rga.diagnosis.covariance import Covariance, RandomEffects
 from rga.diagnosis.data import Data
 from rga.model.effects.stiffness import MemberStiffness
 from rga.model.parameter import FloatArray
@@ -20,6 +20,8 @@ APART = 10.0
 ROUNDS = 3
 #: prior spread of the mean and of the trend of a pattern of unknown origin [its own deviation]
 FACTOR_MEAN = 3.0
+#: share of an effect that may be left out of its courses
+EXACT = 1e-9
 
 
 @dataclass(frozen=True)
@@ -48,12 +50,12 @@ class Scatter:
     """Random effects.
 
     Attributes:
-        columns: derivatives by each of them, float[rows, sensors, effects].
+        effects: derivatives by each of them.
         family: of each: 0 members, 1 gains, 2 patterns; -1 those with a spread of their own.
         fixed: prior standard deviation of those of family -1.
     """
 
-    columns: FloatArray
+    effects: RandomEffects
     family: NDArray[np.int64]
     fixed: FloatArray
 
@@ -78,41 +80,94 @@ def scatter_effects(
         basis: load coefficients, float[rows, patterns].
         factors: patterns of unknown origin; their mean and their trend are random effects too.
     """
-    rows, sensors = simulated.shape
-    columns: list[FloatArray] = []
-    family: list[int] = []
-    for member in simulator.model.members:
-        scatter = MemberStiffness(member=member, factor=float(np.exp(STEP)))
-        changed = data.predict(simulator.extended({"scatter": scatter}))
-        columns.append((changed - simulated) / STEP)
-        family.append(0)
+    sensors = simulated.shape[1]
     size = np.sqrt((simulated**2).mean(0))
     patterns = basis[:, : min(PATTERNS, max(2, ALL_PATTERNS // sensors))]
-    for sensor in range(sensors):
-        shapes = [simulated[:, sensor], *(size[sensor] * patterns.T)]
-        for number, shape in enumerate(shapes):
-            alone = np.zeros((rows, sensors))
-            alone[:, sensor] = shape
-            columns.append(alone)
-            family.append(min(number, 1) + 1)
-    fixed = [0.0] * len(columns)
     clock = data.time - data.time.mean()
-    for factor in factors.T:
-        for course in (np.ones(rows), clock / max(float(clock.std()), 1e-12)):
-            columns.append(course[:, None] * factor)
-            family.append(-1)
-            fixed.append(FACTOR_MEAN)
-    for name, direction, spread in lines(data):
+    drift = np.stack([np.ones(len(clock)), clock / max(float(clock.std()), 1e-12)])
+    members = _by_members(simulator, data, simulated)
+    moved = _by_lines(simulator, data)
+    known = [basis, *([drift.T] if factors.size else [])]
+    courses = _courses(np.hstack(known), [simulated, *members, *moved])
+
+    def share(course: FloatArray) -> FloatArray:
+        return np.asarray(courses.T @ course)
+
+    own = np.zeros((sensors, 1 + patterns.shape[1], sensors, courses.shape[1]))
+    every = np.arange(sensors)
+    own[every, 0, every] = share(simulated).T
+    own[every, 1:, every] = size[:, None, None] * share(patterns).T
+    shares = [
+        *(share(change).T for change in members),
+        *own.reshape(-1, *own.shape[2:]),
+        *(np.outer(factor, share(course)) for factor in factors.T for course in drift),
+        *(share(change).T for change in moved),
+    ]
+    family = [0] * len(members) + [1, *[2] * patterns.shape[1]] * sensors
+    fixed = [FACTOR_MEAN] * (2 * factors.shape[1]) + [spread for *_, spread in lines(data)]
+    return Scatter(
+        RandomEffects(courses, np.stack(shares)),
+        np.array(family + [-1] * len(fixed)),
+        np.array([0.0] * len(family) + fixed),
+    )
+
+
+def _by_members(simulator: Simulator, data: Data, simulated: FloatArray) -> list[FloatArray]:
+    """Derivatives by the stiffness of every member, float[rows, sensors] each."""
+    about = data.about(simulator)
+    rates = about.stiffness_rates()
+    found = []
+    for number, member in enumerate(simulator.model.members):
+        if number in rates:
+            moved = about.response.quantities + STEP * rates[number]
+            changed = data.read(simulator, replace(about.response, quantities=moved))
+        else:
+            scatter = MemberStiffness(member=member, factor=float(np.exp(STEP)))
+            changed = data.read(*about.trial({"scatter": scatter}))
+        found.append((changed - simulated) / STEP)
+    return found
+
+
+def _by_lines(simulator: Simulator, data: Data) -> list[FloatArray]:
+    """Derivatives along the `lines`, float[rows, sensors] each."""
+    found = []
+    for name, direction, _ in lines(data):
         low, high = simulator.model.context[name].range
         step = 0.1 * STEP * (high - low) / np.abs(direction).max()
         value = data.belief.table[name]
         ahead = data.predict(simulator, {name: value + step * direction})
         behind = data.predict(simulator, {name: value - step * direction})
-        columns.append((ahead - behind) / (2 * step))
-        family.append(-1)
-        fixed.append(spread)
-    seen = np.where(data.observed[:, :, None], np.stack(columns, axis=2), 0.0)
-    return Scatter(seen, np.array(family), np.array(fixed))
+        found.append((ahead - behind) / (2 * step))
+    return found
+
+
+def _courses(known: FloatArray, changes: list[FloatArray]) -> FloatArray:
+    """Orthonormal courses over the rows that all changes are sums of, float[rows, courses].
+
+    Args:
+        known: courses that are expected, float[rows, k]: those of the loads.
+        changes: float[rows, sensors] each.
+    """
+    together = np.stack(changes, axis=1)
+    scale = np.sqrt((together**2).mean((0, 1)))
+    together = (together / np.where(scale > 0, scale, 1.0)).reshape(len(known), -1)
+    courses = _orthonormal(known)
+    rest = together - courses @ (courses.T @ together)
+    if _largest(rest) > EXACT * _largest(together):
+        rest -= courses @ (courses.T @ rest)
+        values, vectors = np.linalg.eigh(rest @ rest.T)
+        further = vectors[:, values > EXACT**2 * (together**2).sum()]
+        courses = _orthonormal(np.hstack([courses, further]))
+    return courses
+
+
+def _largest(values: FloatArray) -> float:
+    return max(float(values.max()), -float(values.min()))
+
+
+def _orthonormal(columns: FloatArray) -> FloatArray:
+    u, s, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(u[:, s > 1e-12 * s.max(initial=0.0)])
 
 
 def lines(data: Data) -> list[tuple[str, FloatArray, float]]:
@@ -134,7 +189,7 @@ def scatter_levels(
     A random effect that stands out of its family is left out of the estimate: it may be the effect
     that is looked for, and must not raise the level that it has to stand out of.
     """
-    score = covariance.reduce(residual[:, :, None])[1][:, 0]
+    score = covariance.reduce(residual.T[None]).score[:, 0]
     apart = np.zeros(len(scatter.family), dtype=bool)
     levels = start
     for _ in range(ROUNDS):
@@ -157,10 +212,10 @@ def level_evidence(
     An effect that is not in the simulation raises the scatter that a record seems to have. What it
     gains by lowering that again belongs to its evidence.
     """
-    reduced = covariance.reduce(residual[:, :, None])
-    score = reduced[1][:, 0]
+    reduced = covariance.reduce(residual.T[None])
+    score = reduced.score[:, 0]
     levels = _most_likely(covariance, scatter, score, start, np.zeros(len(score), dtype=bool))
-    own = float((reduced[0].white ** 2).sum() - (reduced[0].context ** 2).sum())
+    own = float((reduced.white**2).sum() - (reduced.context**2).sum())
     gained = covariance.with_spread(scatter.spread(levels)).log_likelihood(score)
     return gained - 0.5 * own - 0.5 * float(_surprise(levels))
 

@@ -10,9 +10,13 @@ from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.problem import Problem
 from rga.errors import InputError
 from rga.model.parameter import FloatArray, Normal
+from rga.model.structure import IntArray
 from rga.simulation import Simulator
 
-CHUNK = 128
+#: channels that a signature may name; one that touches more is written on all
+FEW = 2
+#: numbers in the signatures that are judged together
+CHUNK = 1 << 19
 #: an onset leaves at least this share of a signature out of reach of constant scatter
 OUT_OF_REACH = 0.08
 
@@ -32,6 +36,25 @@ class Prospect:
     z: tuple[float, ...]
     score: float
     largest: float
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What a hypothesis changes at trial values of its parameters.
+
+    Attributes:
+        number: of the hypothesis among the candidates.
+        hypothesis: with its onset.
+        z: coordinates of the trial.
+        channels: those that it changes, int[channels]; None: all.
+        values: float[channels, rows].
+    """
+
+    number: int
+    hypothesis: Hypothesis
+    z: tuple[float, ...]
+    channels: IntArray | None
+    values: FloatArray
 
 
 def screen(
@@ -57,71 +80,101 @@ def screen(
         progress: told the share that is done.
     """
     data = problem.data
-    response = data.respond(simulator)
-    base = data.read(simulator, response)
-    residual = problem.residual(base)
-    weighted = problem.covariance.inverse_times(residual)
+    about = data.about(simulator)
+    base = data.read(simulator, about.response)
+    weighted = problem.covariance.inverse_times(problem.residual(base))
     onsets = onsets and not data.belief.passing
     best: dict[int, Prospect] = {}
-    waiting: list[tuple[int, tuple[float, ...], float | None, FloatArray]] = []
+    waiting: dict[int, list[Signature]] = {}
 
-    def judge() -> None:
-        if not waiting:
-            return
-        columns = np.stack([column for *_, column in waiting], axis=2)
-        sizes = problem.covariance.squares(problem.covariance.reduce(columns))
-        for (number, z, onset, column), size in zip(waiting, sizes, strict=True):
-            along = float((column * weighted).sum())
-            prospect = _prospect(candidates[number].beginning(onset), z, along, float(size))
-            if number in best:
-                better = max(best[number], prospect, key=lambda one: one.score)
-                largest = max(best[number].largest, prospect.largest)
-                prospect = replace(better, largest=largest)
-            best[number] = prospect
-        waiting.clear()
+    def judge(several: list[Signature]) -> None:
+        for prospect, one in _judged(problem, weighted, several, onsets):
+            known = best.get(one.number)
+            if known is not None:
+                better = max(known, prospect, key=lambda each: each.score)
+                prospect = replace(better, largest=max(known.largest, prospect.largest))
+            best[one.number] = prospect
+        several.clear()
 
     for number, candidate in enumerate(candidates):
         for z in product(*(prior.trials for prior in candidate.priors.values())):
             try:
-                trial = simulator.extended({"trial": candidate.effect(z)})
-                alone = candidate.kind.on_sensors
-                changed = data.read(trial, response) if alone else data.predict(trial)
+                touched, change = data.change(about, candidate.effect(z))
             except InputError:
                 continue
-            signature = np.where(data.observed, changed - base, 0.0)
-            waiting.append((number, z, candidate.onset, signature))
-            if onsets and (row := _likely_onset(problem, signature, weighted, candidate)):
-                later = signature.copy()
-                later[:row] = 0.0
-                waiting.append((number, z, float(data.time[row]), later))
-        if len(waiting) >= CHUNK:
-            judge()
-            progress((number + 1) / len(candidates))
-    judge()
-    return sorted(best.values(), key=lambda prospect: -prospect.score)
+            if len(touched) <= FEW:
+                one = Signature(number, candidate, z, touched, change.T)
+            else:
+                values = np.zeros((len(data.sensors), len(change)))
+                values[touched] = change.T
+                one = Signature(number, candidate, z, None, values)
+            together = waiting.setdefault(len(one.values), [])
+            together.append(one)
+            if len(together) * one.values.size > CHUNK:
+                judge(together)
+                progress((number + 1) / len(candidates))
+    for together in waiting.values():
+        judge(together)
+    return [best[number] for number in sorted(best, key=lambda k: (-best[k].score, k))]
 
 
-def _likely_onset(
-    problem: Problem, signature: FloatArray, weighted: FloatArray, candidate: Hypothesis
-) -> int:
-    """Row at which an onset of the signature promises most; 0 where none can pay.
+def _judged(
+    problem: Problem, weighted: FloatArray, several: Sequence[Signature], onsets: bool
+) -> list[tuple[Prospect, Signature]]:
+    """Prospects of signatures on the same number of channels, and of onsets that may pay.
+
+    Args:
+        weighted: C^-1 of the residual, float[sensors, rows].
+    """
+    if not several:
+        return []
+    covariance = problem.covariance
+    columns = np.stack([one.values for one in several])
+    channels = None
+    if several[0].channels is not None:
+        channels = np.stack([one.channels for one in several if one.channels is not None])
+    reduced = covariance.reduce(columns, channels)
+    along = columns * (weighted if channels is None else weighted[channels])
+    sizes = covariance.squares(reduced)
+    judged = [
+        (_prospect(one.hypothesis, one.z, float(sum_), float(size)), one)
+        for one, sum_, size in zip(several, along.sum((1, 2)), sizes, strict=True)
+    ]
+    if onsets:
+        time = problem.data.time
+        likely = _likely_onsets(along.sum(1), (reduced.white**2).sum(1), several)
+        later = [
+            _beginning(one, row, time) for one, row in zip(several, likely, strict=True) if row
+        ]
+        judged += _judged(problem, weighted, later, onsets=False)
+    return judged
+
+
+def _beginning(one: Signature, row: int, time: FloatArray) -> Signature:
+    values = one.values.copy()
+    values[:, :row] = 0.0
+    return replace(one, hypothesis=one.hypothesis.beginning(float(time[row])), values=values)
+
+
+def _likely_onsets(along: FloatArray, size: FloatArray, several: Sequence[Signature]) -> list[int]:
+    """Row at which an onset of each signature promises most; 0 where none can pay.
 
     Sums from the last row backwards give x' C^-1 r for every onset at once, and bound x' C^-1 x.
+
+    Args:
+        along, size: x' C^-1 r and x' W' W x of every row, float[signatures, rows].
     """
-    rows = problem.covariance.rows
-    white = signature.copy()
-    white[1:] -= rows.memory[1:] * signature[:-1]
-    white *= rows.weight
-    along = np.cumsum((signature * weighted).sum(1)[::-1])[::-1]
-    size = np.cumsum((white**2).sum(1)[::-1])[::-1]
-    margin = max(2, len(along) // 50)
-    inner = slice(margin, len(along) - margin)
-    gain = along[inner] ** 2 / np.maximum(size[inner], 1e-300)
-    if not len(gain):
-        return 0
-    row = int(np.argmax(gain)) + margin
-    promise = gain[row - margin] / (2 * OUT_OF_REACH) + candidate.beginning(1.0).log_prior
-    return row if promise > 0 else 0
+    rows = along.shape[1]
+    margin = max(2, rows // 50)
+    if rows <= 2 * margin:
+        return [0] * len(several)
+    inner = slice(margin, rows - margin)
+    along = np.cumsum(along[:, ::-1], axis=1)[:, ::-1][:, inner]
+    size = np.cumsum(size[:, ::-1], axis=1)[:, ::-1][:, inner]
+    gain = along**2 / np.maximum(size, 1e-300)
+    promise = gain.max(1) / (2 * OUT_OF_REACH)
+    prior = [one.hypothesis.beginning(1.0).log_prior for one in several]
+    return [int(row) for row in np.where(promise + prior > 0, gain.argmax(1) + margin, 0)]
 
 
 def _prospect(hypothesis: Hypothesis, z: tuple[float, ...], along: float, size: float) -> Prospect:

@@ -161,10 +161,10 @@ def onset_chances(
     time = problem.data.time
     rows = np.unique(np.linspace(1, len(time) - 1, 400).astype(int))
     change = np.where(problem.data.observed, full - without, 0.0)
-    steps = time[:, None] >= time[rows]
+    steps = time >= time[rows][:, None]
     covariance = problem.covariance
-    columns = covariance.reduce(change[:, :, None] * steps[:, None, :])
-    residual = covariance.reduce(problem.residual(without)[:, :, None])
+    columns = covariance.reduce(change.T * steps[:, None, :])
+    residual = covariance.reduce(problem.residual(without).T[None])
     log_chance = covariance.product(columns, residual)[:, 0] - covariance.squares(columns) / 2
     chances = np.exp(log_chance - log_chance.max())
     return time[rows], chances / chances.sum()
@@ -193,7 +193,7 @@ def _lower_scatter(problem: Problem, current: Fit, one: Fit) -> float:
     for simulated in (one.simulated, current.simulated):
         residual = problem.residual(simulated)
         free = level_evidence(problem.covariance, problem.scatter, residual, problem.levels)
-        reduced = problem.covariance.reduce(residual[:, :, None])
+        reduced = problem.covariance.reduce(residual.T[None])
         gains.append(free + 0.5 * float(problem.covariance.squares(reduced)[0]))
     return gains[0] - gains[1]
 

@@ -308,14 +308,11 @@ def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[floa
     hypotheses = [one for k, one in enumerate(found.fit.hypotheses) if k != number]
     z = np.delete(found.fit.z, found.fit.slices()[number])
     without = problem.data.predict(extended(found.base, hypotheses, z))
-    seen = problem.data.observed[:, :, None]
-    signature = np.where(seen, (found.fit.simulated - without)[:, :, None], 0.0)
-    own = covariance.reduce(signature)
+    own = covariance.reduce((found.fit.simulated - without).T[None])
     size = float(covariance.squares(own)[0])
     if nearest is None:
         return float(np.sqrt(size)), float(np.sqrt(size))
-    rival = np.where(seen, (nearest.fit.simulated - without)[:, :, None], 0.0)
-    other = covariance.reduce(rival)
+    other = covariance.reduce((nearest.fit.simulated - without).T[None])
     across = float(covariance.product(own, other)[0, 0])
     rest = size - across**2 / max(float(covariance.squares(other)[0]), 1e-300)
     return float(np.sqrt(size)), float(np.sqrt(max(rest, 0.0)))

@@ -167,10 +167,14 @@ class Structure:
 
     def add_spring(self, node: int, to: int, dof: int, stiffness: float) -> None:
         """Add a spring between two nodes, or to the ground (to = -1) [N/m or N m/rad]."""
-        arrays = self.arrays
-        arrays["spring_node"] = np.vstack([arrays["spring_node"], [[node, to]]])
-        arrays["spring_dof"] = np.append(arrays["spring_dof"], dof)
-        arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], stiffness)
+        self.add_springs(np.array([[node, to]]), dof, stiffness)
+
+    def add_springs(self, nodes: IntArray, dof: int, stiffness: float) -> None:
+        """Add a spring between each pair of nodes, int[k, 2] [N/m or N m/rad]."""
+        arrays, more = self.arrays, len(nodes)
+        arrays["spring_node"] = np.concatenate([arrays["spring_node"], nodes])
+        arrays["spring_dof"] = np.append(arrays["spring_dof"], np.full(more, dof))
+        arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], np.full(more, stiffness))
 
 
 def check_direction(direction: Vector) -> None:

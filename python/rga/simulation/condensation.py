@@ -7,10 +7,16 @@ import numpy as np
 from rga import _core
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray
+from rga.simulation.pseudo_forces import (
+    at_rest,
+    own_readings,
+    parting,
+    with_motions,
+    with_unit_forces,
+)
 from rga.simulation.rates import along
-from rga.simulation.terms import Arrays, Terms, stiffness_terms
+from rga.simulation.terms import Arrays, stiffness_terms
 
-DISPLACEMENT, ROTATION, FORCE, REACTION_FORCE, REACTION_MOMENT, END_FORCE = 0, 1, 3, 4, 5, 6
 #: the elongations under unit pseudo-forces must be independent to at least this share
 INDEPENDENT = 1e-7
 
@@ -57,18 +63,18 @@ class Condensation:
         members, springs = np.asarray(members, np.int64), np.asarray(springs, np.int64)
         terms, held = stiffness_terms(structure, outputs, members, springs, axial)
         moved = loads["prescribed"][:, held.nodes] * held.motion.reshape(-1, 2, 6)
-        if (moved.sum(axis=(2, 3)) != _at_rest(loads, held)).any():
+        if (moved.sum(axis=(2, 3)) != at_rest(loads, held)).any():
             raise DependentTerms
         patterns, count = len(loads["forces"]), len(outputs["kind"])
         found = _core.respond(
-            structure, _with_unit_forces(loads, terms), _with_motions(outputs, terms)
+            structure, with_unit_forces(loads, terms), with_motions(outputs, terms)
         )
-        elongations = found[:, count:].reshape(len(found), 3, len(terms)).sum(axis=1)
+        elongations = parting(found[:, count:])
         unit = elongations[patterns:].copy()
         self.stiffness, self.element = terms.stiffness, terms.element
         self.loaded = found[:patterns, :count].copy()
-        self.stretched = elongations[:patterns] - _at_rest(loads, terms)
-        self.influence = found[patterns:, :count] + _own_readings(outputs, terms)
+        self.stretched = elongations[:patterns] - at_rest(loads, terms)
+        self.influence = found[patterns:, :count] + own_readings(outputs, terms)
         gauges = np.flatnonzero(terms.gauge >= 0)
         if len(gauges):
             read = terms.gauge[gauges]
@@ -166,63 +172,6 @@ class Condensation:
 
 class DependentTerms(ArithmeticError):
     """The elongations of the terms that vary depend on each other, or are prescribed."""
-
-
-def _at_rest(loads: Arrays, terms: Terms) -> FloatArray:
-    """Elongations that initial strains bring without any force, float[patterns, terms]."""
-    elongations = np.zeros((len(loads["strain"]), len(terms)))
-    of_members = terms.member >= 0
-    strain = loads["strain"][:, terms.member[of_members]]
-    elongations[:, of_members] = (strain * terms.rest[of_members]).sum(axis=2)
-    return elongations
-
-
-def _with_unit_forces(loads: Arrays, terms: Terms) -> Arrays:
-    """The loads, then a pattern for each term: what a unit of pseudo-force does."""
-    extended = dict(loads)
-    for name in ("forces", "strain", "prescribed", "prescribed_inclined"):
-        none = np.zeros((len(terms), *loads[name].shape[1:]))
-        extended[name] = np.concatenate([loads[name], none])
-    rows = len(loads["forces"]) + np.arange(len(terms))
-    for end, first in enumerate((0, 6)):
-        extended["forces"][rows, terms.nodes[:, end]] += terms.motion[:, first : first + 6]
-    return extended
-
-
-def _with_motions(outputs: Arrays, terms: Terms) -> Arrays:
-    """The outputs, then what adds up to elongations: how the ends part, how each of them turns."""
-    start, end = terms.nodes.T
-    nothing = np.full(len(terms), -1)
-    vectors = [terms.motion[:, first : first + 3] for first in (6, 3, 9)]
-    added = {
-        "kind": np.repeat([DISPLACEMENT, ROTATION, ROTATION], len(terms)),
-        "index": np.maximum(np.concatenate([end, start, end]), 0),
-        "other": np.concatenate([start, nothing, nothing]),
-        "vector": np.concatenate(vectors),
-        "total": np.zeros(3 * len(terms), dtype=bool),
-    }
-    return {
-        name: np.concatenate([outputs[name], column.astype(outputs[name].dtype)])
-        for name, column in added.items()
-    }
-
-
-def _own_readings(outputs: Arrays, terms: Terms) -> FloatArray:
-    """What outputs on a term read of its pseudo-force itself, float[terms, outputs].
-
-    That of a member is a part of its end forces; that of a spring to the ground is a part of the
-    reaction there.
-    """
-    kind, index, vector = outputs["kind"], outputs["index"], outputs["vector"]
-    on = terms.member[:, None] == index
-    own = np.where(on & (kind == FORCE), terms.local[:, :1], 0.0)
-    ends = np.where(kind == END_FORCE, outputs["other"], 0)
-    own -= np.where(on & (kind == END_FORCE), terms.local[:, ends], 0.0)
-    under = (terms.nodes[:, :1] < 0) & (terms.nodes[:, 1:] == index)
-    for of_kind, first in ((REACTION_FORCE, 6), (REACTION_MOMENT, 9)):
-        part = terms.motion[:, first : first + 3] @ vector.T
-        own += np.where(under & (kind == of_kind), part, 0.0)
-    return own
 
 
 def _between_held_ends(

@@ -113,6 +113,10 @@ class Simulator:
         Args:
             response: of this model, or of the same model with other effects on its sensors.
         """
+        return self.zeroed(self.shown(response))
+
+    def shown(self, response: Response) -> Readings:
+        """What the sensors show, before the logger's zero is taken off (`zeroed`)."""
         time, values = response.contexts["time"], response.values
         rows = len(time)
         readings = Readings(
@@ -124,7 +128,7 @@ class Simulator:
         for name, effect in self.model.effects.items():
             own = values[name] if name in values else effect.values(response.contexts, rows)
             effect.change_readings(readings, own)
-        return self._zeroed(readings)
+        return readings
 
     def load_coefficients(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
         """Coefficients of all load patterns: what any linear structure responds to.
@@ -256,7 +260,10 @@ class Simulator:
         states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
         if parameters:
             table = np.column_stack([values[name][key] for name, key in parameters])
-            states, state_of_row = np.unique(table, axis=0, return_inverse=True)
+            if rows and (table == table[0]).all():
+                states = table[:1]
+            else:
+                states, state_of_row = np.unique(table, axis=0, return_inverse=True)
 
         def change(state: FloatArray) -> Structure:
             if not structural:
@@ -285,7 +292,8 @@ class Simulator:
             effect.change_loads(loads, structure, values[name])
         return [load for of_effect in loads.values() for load in of_effect]
 
-    def _zeroed(self, readings: Readings) -> FloatArray:
+    def zeroed(self, readings: Readings) -> FloatArray:
+        """Readings less the logger's zero, float[rows, sensors]; in place."""
         for name, sensor in self.model.sensors.items():
             if sensor.zero is not None:
                 first, last = (seconds(moment) for moment in sensor.zero)

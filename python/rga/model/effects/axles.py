@@ -24,6 +24,7 @@ class AxleLoad(Effect):
     """
 
     kind: Literal["axle_load"] = "axle_load"
+    loads_by_geometry = True
     path: Annotated[list[str], Field(min_length=2)]
     forces: Annotated[list[Number], Field(min_length=1)]
     offsets: list[Number]

@@ -76,10 +76,10 @@ class FloorParticipation(Effect):
         parallel = structure.add_nodes(coordinates[beside])
         axis = coordinates[ends[0, 1]] - coordinates[ends[0, 0]]
         along = int(np.argmax(np.abs(axis)))
-        for node, twin in zip(beside, parallel, strict=True):
-            structure.arrays["fixed"][twin] = True
-            structure.arrays["fixed"][twin, along] = False
-            structure.add_spring(int(node), int(twin), along, value["connector_stiffness"])
+        structure.arrays["fixed"][parallel] = True
+        structure.arrays["fixed"][parallel, along] = False
+        ties = np.column_stack([beside, parallel])
+        structure.add_springs(ties, along, value["connector_stiffness"])
         structure.add_bars(parallel[numbers.reshape(-1, 2)], value["area"], chosen)
 
 

@@ -142,6 +142,7 @@ class UnmodelledLoad(Effect):
     """
 
     kind: Literal["unmodelled_load"] = "unmodelled_load"
+    loads_by_geometry = True
     group: Annotated[str | list[str], Place("group")]
     direction: Annotated[tuple[Number, Number, Number], Place("")]
     context: Annotated[str, Place("context")]
@@ -177,6 +178,7 @@ class DeadLoad(Effect):
     """A permanent load along the members of a group, downward [N/m]."""
 
     kind: Literal["dead_load"] = "dead_load"
+    loads_by_geometry = True
     group: Annotated[str | list[str], Place("group")]
     force_per_length: Annotated[Value, Parameter("N/m", 0.0)] = 0.0
 
@@ -199,9 +201,10 @@ def line_forces(
     """Nodal forces of a unit load per length on a group: half of each member to each end."""
     unit = np.append(unit_vector(direction), np.zeros(3))
     forces: dict[int, FloatArray] = {}
+    lengths = structure.lengths
     for member in structure.named(None, group):
         for node in structure.arrays["ends"][member]:
-            share = unit * structure.lengths[member] / 2
+            share = unit * lengths[member] / 2
             forces[int(node)] = forces.get(int(node), np.zeros(6)) + share
     return forces
 

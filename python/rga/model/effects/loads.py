@@ -16,6 +16,7 @@ class NodalLoad(Effect):
     """Forces [N] and moments [N m] at nodes, times a factor."""
 
     kind: Literal["nodal_load"] = "nodal_load"
+    loads_by_geometry = True
     forces: dict[str, list[Number]]
     factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
 
@@ -49,6 +50,7 @@ class MemberLoad(Effect):
     """
 
     kind: Literal["member_load"] = "member_load"
+    loads_by_geometry = True
     member: Annotated[str | list[str], Place("member")]
     uniform: tuple[Number, Number, Number] | None = None
     axis: Literal["x", "y", "z"] = "y"

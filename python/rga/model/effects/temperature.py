@@ -17,6 +17,7 @@ class Temperature(Effect):
     """Warming of groups of members: kelvin per group times delta."""
 
     kind: Literal["temperature"] = "temperature"
+    loads_by_geometry = True
     groups: dict[str, Number]
     delta: Annotated[Value, Parameter("K", 0.0)] = 1.0
 

@@ -46,6 +46,7 @@ class ThermalGradient(Effect):
     """
 
     kind: Literal["thermal_gradient"] = "thermal_gradient"
+    loads_by_geometry = True
     axis: Annotated[Literal["vertical", "lateral"], Place("")]
     ratio: Annotated[Value | None, Parameter("K/K", 0.0)] = None
     difference: Annotated[Value | None, Parameter("K", 0.0)] = None

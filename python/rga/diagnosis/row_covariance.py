@@ -1,0 +1,133 @@
+"""The covariance of a record row by row: sensor noise with memory, and errors of the contexts.
+
+With the noise whitened by W and the contexts' errors marginalised row after row (derivatives J, a
+block tridiagonal system), the product x' R^-1 y needs no matrix of the size of the record:
+Woodbury's identity. Columns are float[k, sensors, rows], or float[k, channels, rows] with the
+channels that each of them touches, int[k, channels]: what changes one sensor costs no more.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cholesky_banded, lapack
+
+from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray
+
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Sensor noise with memory, and the errors of the measured contexts.
+
+    Attributes:
+        sigma: standard deviation of each sensor's noise, float[sensors] [its unit].
+        phi: correlation from one row to the next at the typical interval, float[sensors].
+        context_sigma: standard deviation of each context's error, float[contexts].
+    """
+
+    sigma: FloatArray
+    phi: FloatArray
+    context_sigma: FloatArray
+
+
+class RowCovariance:
+    """Noise with memory and errors of the contexts: all of the covariance but the scatter.
+
+    Args:
+        noise: the noise.
+        time: float[rows] [s].
+        observed: bool[rows, sensors], False where a reading is missing.
+        context_jacobian: float[rows, sensors, contexts], derivatives by the uncertain contexts.
+
+    Attributes:
+        weight: of an innovation, float[sensors, rows]; 0 where a reading is missing.
+    """
+
+    def __init__(
+        self, noise: Noise, time: FloatArray, observed: BoolArray, context_jacobian: FloatArray
+    ) -> None:
+        self.noise = noise
+        self.observed = observed
+        self.context_jacobian = context_jacobian
+        step = np.diff(time, prepend=time[0] - 1.0)
+        typical = float(np.median(step[1:])) if len(step) > 1 else 1.0
+        memory = noise.phi[:, None] ** (step / max(typical, 1e-12))
+        # After a missing reading the memory starts anew: a little information is given up.
+        memory[:, 1:][~observed.T[:, :-1]] = 0.0
+        memory[:, 0] = 0.0
+        spread = noise.sigma[:, None] * np.sqrt(1.0 - memory**2)
+        self.weight = np.where(observed.T, 1.0 / spread, 0.0)
+        self._passing = self.weight * memory
+        self._by_sensor = np.ascontiguousarray(context_jacobian.transpose(1, 0, 2))
+        self._by_row = np.ascontiguousarray(context_jacobian.transpose(0, 2, 1))
+        self._factor = self._context_factor()
+
+    def _context_factor(self) -> FloatArray:
+        """Cholesky factor of the contexts' precision, its lower band."""
+        jacobian = self._by_sensor
+        _, rows, contexts = jacobian.shape
+        if contexts == 0:
+            return np.zeros((1, 0))
+        now = self.weight[:, :, None] * jacobian
+        later = self._passing[:, 1:, None] * jacobian[:, :-1]
+        own = _over_sensors(now, now)
+        own[:-1] += _over_sensors(later, later)
+        own += np.diag(self.noise.context_sigma**-2.0)
+        cross = -_over_sensors(later, now[:, 1:])
+        lower = np.zeros((2 * contexts, rows * contexts))
+        for i in range(contexts):
+            for j in range(contexts):
+                if i >= j:
+                    lower[i - j, j::contexts] = own[:, i, j]
+                lower[contexts + i - j, j : (rows - 1) * contexts : contexts] = cross[:, j, i]
+        return np.asfortranarray(cholesky_banded(lower, lower=True))
+
+    def whiten(self, columns: FloatArray, channels: IntArray | None = None) -> FloatArray:
+        """W x of columns, of their shape."""
+        here = slice(None) if channels is None else channels
+        white = columns * self.weight[here]
+        white[..., 1:] -= self._passing[here][..., 1:] * columns[..., :-1]
+        return np.asarray(white)
+
+    def unwhiten(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
+        """W' x of whitened columns, of their shape."""
+        here = slice(None) if channels is None else channels
+        back = white * self.weight[here]
+        back[..., :-1] -= (white * self._passing[here])[..., 1:]
+        return np.asarray(back)
+
+    def project(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
+        """Whitened columns on the contexts' errors, float[rows * contexts, k]."""
+        back = self.unwhiten(white, channels)
+        _, rows, contexts = self._by_sensor.shape
+        if channels is None:
+            along = np.matmul(self._by_row, back.transpose(2, 1, 0)).reshape(-1, len(white))
+        else:
+            found = np.einsum("kct,kctj->ktj", back, self._by_sensor[channels])
+            along = found.reshape(len(white), rows * contexts).T
+        return self.solve_contexts(along)
+
+    def solve_contexts(self, right: FloatArray) -> FloatArray:
+        """The contexts' factor solved for right sides, float[rows * contexts, k]."""
+        return _solved(self._factor, right, b"N")
+
+    def context_error(self, residual: FloatArray) -> FloatArray:
+        """Most likely errors of the contexts, float[rows, contexts], given float[rows, sensors]."""
+        rows, _, contexts = self.context_jacobian.shape
+        half = self.project(self.whiten(residual.T[None]))
+        return _solved(self._factor, half, b"T").reshape(rows, contexts)
+
+
+def _over_sensors(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Inner products over the sensors, row by row, float[rows, contexts, contexts]."""
+    return np.asarray(np.matmul(one.transpose(1, 2, 0), other.transpose(1, 0, 2)))
+
+
+def _solved(factor: FloatArray, right: FloatArray, trans: bytes) -> FloatArray:
+    if not right.size:
+        return right
+    found, _ = lapack.dtbtrs(factor, right, uplo=b"L", trans=trans)
+    return np.asarray(found)

@@ -1,0 +1,91 @@
+"""Products under the covariance of a record are those of the whole matrix, written out."""
+
+import numpy as np
+import pytest
+
+from rga.diagnosis.covariance import Covariance, RandomEffects
+from rga.diagnosis.row_covariance import Noise, RowCovariance
+
+ROWS, SENSORS, CONTEXTS, EFFECTS, COURSES = 14, 4, 2, 5, 3
+DRAW = np.random.default_rng(8)
+NOISE = Noise(
+    sigma=np.array([0.5, 1.0, 2.0, 0.8]),
+    phi=np.array([0.0, 0.6, 0.9, 0.3]),
+    context_sigma=np.array([0.7, 1.3]),
+)
+TIME = 600.0 * np.arange(ROWS)
+JACOBIAN = DRAW.standard_normal((ROWS, SENSORS, CONTEXTS))
+SCATTER = RandomEffects(
+    DRAW.standard_normal((ROWS, COURSES)), DRAW.standard_normal((EFFECTS, SENSORS, COURSES))
+)
+SPREAD = np.array([0.1, 0.5, 1.0, 2.0, 0.3])
+
+
+def written_out() -> np.ndarray:
+    """The covariance as a matrix over sensors times rows: AR(1), contexts, scatter."""
+    lag = np.abs(np.arange(ROWS)[:, None] - np.arange(ROWS))
+    whole = np.zeros((SENSORS, ROWS, SENSORS, ROWS))
+    for sensor in range(SENSORS):
+        whole[sensor, :, sensor] = NOISE.sigma[sensor] ** 2 * NOISE.phi[sensor] ** lag
+    for row in range(ROWS):
+        jacobian = JACOBIAN[row] * NOISE.context_sigma
+        whole[:, row, :, row] += jacobian @ jacobian.T
+    for effect, spread in enumerate(SPREAD):
+        column = SCATTER.at(np.eye(EFFECTS)[effect]).T
+        whole += spread**2 * np.multiply.outer(column, column)
+    return whole.reshape(SENSORS * ROWS, SENSORS * ROWS)
+
+
+@pytest.fixture(scope="module")
+def covariance() -> Covariance:
+    observed = np.ones((ROWS, SENSORS), dtype=bool)
+    return Covariance(RowCovariance(NOISE, TIME, observed, JACOBIAN), SCATTER, SPREAD)
+
+
+def test_products_are_those_of_the_matrix(covariance: Covariance) -> None:
+    a, b = DRAW.standard_normal((2, 3, SENSORS, ROWS))
+    inverse = np.linalg.inv(written_out())
+    expected = a.reshape(3, -1) @ inverse @ b.reshape(3, -1).T
+    one, other = covariance.reduce(a), covariance.reduce(b)
+    assert covariance.product(one, other) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    own = np.diag(a.reshape(3, -1) @ inverse @ a.reshape(3, -1).T)
+    assert covariance.squares(one) == pytest.approx(own, rel=1e-9)
+
+
+def test_columns_on_few_channels_are_columns_with_zeros(covariance: Covariance) -> None:
+    channels = np.array([[0, 2], [3, 1], [1, 2]])
+    few = DRAW.standard_normal((3, 2, ROWS))
+    whole = np.zeros((3, SENSORS, ROWS))
+    whole[np.arange(3)[:, None], channels] = few
+    expected = covariance.squares(covariance.reduce(whole))
+    assert covariance.squares(covariance.reduce(few, channels)) == pytest.approx(expected)
+
+
+def test_inverse_and_estimates_are_those_of_the_matrix(covariance: Covariance) -> None:
+    residual = DRAW.standard_normal((ROWS, SENSORS))
+    weighted = np.linalg.solve(written_out(), residual.T.ravel())
+    found = covariance.inverse_times(residual)
+    assert found.ravel() == pytest.approx(weighted, rel=1e-9, abs=1e-9)
+    columns = np.stack([SCATTER.at(one).T.ravel() for one in np.eye(EFFECTS)])
+    expected = SPREAD**2 * (columns @ weighted)
+    assert covariance.scatter_estimate(residual) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+def test_another_spread_is_another_matrix(covariance: Covariance) -> None:
+    wider = covariance.with_spread(3 * SPREAD)
+    a = DRAW.standard_normal((2, SENSORS, ROWS))
+    again = Covariance(covariance.rows, SCATTER, 3 * SPREAD)
+    assert wider.squares(wider.reduce(a)) == pytest.approx(again.squares(again.reduce(a)))
+    assert (wider.squares(wider.reduce(a)) < covariance.squares(covariance.reduce(a))).all()
+
+
+def test_a_missing_reading_says_nothing() -> None:
+    observed = np.ones((ROWS, SENSORS), dtype=bool)
+    observed[5, 1] = observed[6, 1] = False
+    rows = RowCovariance(NOISE, TIME, observed, JACOBIAN)
+    covariance = Covariance(rows, SCATTER, SPREAD)
+    a = DRAW.standard_normal((1, SENSORS, ROWS))
+    other = a.copy()
+    other[0, 1, 5:7] = 1e6
+    sizes = [covariance.squares(covariance.reduce(columns))[0] for columns in (a, other)]
+    assert sizes[0] == pytest.approx(sizes[1], rel=1e-9)
