@@ -77,7 +77,7 @@ class Vicinity:
         if len(request.states) > APART:
             return
         structures = [request.change(state) for state in request.states]
-        if any(one.bearings or one.laws for one in structures):
+        if any(one.bearings or one.laws or one.nonlinear for one in structures):
             return
         self._of_row = request.state_of_row
         effects = self.simulator.model.effects
