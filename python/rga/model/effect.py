@@ -56,6 +56,8 @@ class Effect(BaseModel):
     loads_by_geometry: ClassVar[bool] = False
     #: True where a row depends on the rows before it.
     remembers: ClassVar[bool] = False
+    #: Values that follow from all rows at once, and no context of one row changes.
+    of_all_rows: ClassVar[frozenset[str]] = frozenset()
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:

@@ -1,7 +1,8 @@
 """A structure as arrays: what effects change and what the core solves."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,10 @@ from rga.model.parameter import FloatArray, listed
 from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
 
+T = TypeVar("T")
 IntArray = NDArray[np.int64]
+#: what a structure remembers of effects
+REMEMBERED = 512
 OUTPUT_KIND = {"displacement": 0, "rotation": 1, "strain": 2, "force": 3, "reaction": 4}
 HELD_BY_PLANE = {"xz": (1, 3, 5), "xy": (2, 3, 4), "yz": (0, 4, 5)}
 
@@ -34,6 +38,11 @@ class Load:
     prescribed: dict[tuple[int, int], float] = field(default_factory=dict)
     spread: list[tuple[int, int, float, float, float, float]] = field(default_factory=list)
     permanent: bool = False
+
+    @property
+    def pattern(self) -> tuple[object, ...]:
+        """What the load does where its coefficient is one, as objects; None for nothing."""
+        return self.forces or None, self.strain, self.prescribed or None, self.spread or None
 
 
 @dataclass(frozen=True)
@@ -94,6 +103,23 @@ class Structure:
     bearings: list[Bearing]
     laws: list[Law]
     nonlinear: bool
+    _built: dict[tuple[int, ...], tuple[tuple[object, ...], Any]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
+
+    def once(self, build: Callable[[], T], *of: object) -> T:
+        """What `build` makes of some objects and this structure, built at the first call.
+
+        For what no parameter changes, once the structure is as it is to be: a load pattern, say.
+        """
+        key = tuple(map(id, of))
+        if key not in self._built:
+            if len(self._built) >= REMEMBERED:
+                self._built.clear()
+            # With the objects: while they live, no others have their numbers.
+            self._built[key] = of, build()
+        found: T = self._built[key][1]
+        return found
 
     def copy(self) -> "Structure":
         """An independent copy: effects change copies only."""

@@ -27,8 +27,6 @@ APART = 4
 MOST_TERMS = 32
 #: condensed structures that a simulator keeps
 KEPT = 8
-#: arrays of structures, outputs and loads, and what they were condensed to
-Prepared = list[tuple[list[NDArray[Any]], Condensation]]
 Path = Literal["C1", "C2", "C3", "C4"]
 WORDS: dict[Path, str] = {
     "C1": "one structure for all rows: a matrix times the coefficients of the loads",
@@ -36,6 +34,38 @@ WORDS: dict[Path, str] = {
     "C3": "the structure varies: one factorisation for each of its states",
     "C4": "friction, play, slack or large displacements: solved row by row",
 }
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """What was condensed once.
+
+    Attributes:
+        structure: as an object; no effect changes one after it was condensed.
+        patterns: of the loads, as objects.
+        content: copies of all arrays that tell what was condensed.
+        found: the condensation.
+    """
+
+    structure: Structure
+    patterns: list[tuple[object, ...]]
+    content: list[NDArray[Any]]
+    found: Condensation
+
+    def is_of(
+        self, structure: Structure, loads: list[Load], apart: tuple[NDArray[Any], ...]
+    ) -> bool:
+        """Whether the very same objects are asked for again: quicker to tell than by content."""
+        return (
+            structure is self.structure
+            and len(loads) == len(self.patterns)
+            and all(map(_same, self.content[-len(apart) :], apart))
+            and all(
+                one is other
+                for load, known in zip(loads, self.patterns, strict=True)
+                for one, other in zip(load.pattern, known, strict=True)
+            )
+        )
 
 
 @dataclass(frozen=True)
@@ -55,7 +85,7 @@ class Request:
     state_of_row: IntArray
     change: Callable[[FloatArray], Structure]
     loads: Callable[[Structure, IntArray], list[Load]]
-    prepared: Prepared
+    prepared: list[Prepared]
 
     @property
     def of_rows(self) -> FloatArray:
@@ -125,12 +155,12 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
 
 
 def linear_paths(
-    prepared: Prepared, varied: Variation, loads: list[Load]
+    prepared: list[Prepared], varied: Variation, loads: list[Load]
 ) -> Iterator[tuple[Path, Condensation | Factorisation]]:
     """Ways to the response when nothing but these stiffnesses and loads vary, cheapest first."""
     structure, members, springs = varied.start, varied.members, varied.springs
     count = len(members) + len(springs)
-    if count <= MOST_TERMS and varied.terms <= MOST_TERMS:
+    if not count or (count <= MOST_TERMS and varied.terms <= MOST_TERMS):
         with suppress(DependentTerms):
             path: Path = "C2" if count else "C1"
             yield path, condensed(prepared, structure, loads, members, springs)
@@ -195,7 +225,7 @@ def _combined(responses: FloatArray, loads: list[Load]) -> FloatArray:
 
 
 def condensed(
-    prepared: Prepared,
+    prepared: list[Prepared],
     structure: Structure,
     loads: list[Load],
     members: IntArray = NOTHING,
@@ -203,17 +233,21 @@ def condensed(
     axial: bool = False,
 ) -> Condensation:
     """A structure condensed onto its loads, sensors, and the members and springs that vary."""
+    apart = (members, springs, np.array(axial))
+    for known in prepared:
+        if known.is_of(structure, loads, apart):
+            return known.found
     of_loads = patterns(structure, loads)
-    given = [*structure.arrays.values(), *structure.outputs.values(), *of_loads.values()]
-    given += [members, springs, np.array(axial)]
-    for known, found in prepared:
-        if len(known) == len(given) and all(map(_same, known, given)):
-            return found
+    given = [*structure.arrays.values(), *structure.outputs.values(), *of_loads.values(), *apart]
+    for known in prepared:
+        if len(known.content) == len(given) and all(map(_same, known.content, given)):
+            return known.found
     try:
         found = Condensation(structure.arrays, of_loads, structure.outputs, members, springs, axial)
     except (_core.UnstableStructure, _core.InvalidInput) as error:
         raise refused(structure, error) from None
-    prepared.append(([array.copy() for array in given], found))
+    copied = [array.copy() for array in given]
+    prepared.append(Prepared(structure, [load.pattern for load in loads], copied, found))
     del prepared[:-KEPT]
     return found
 

@@ -52,7 +52,7 @@ def with_motions(outputs: Arrays, terms: Terms) -> Arrays:
 
 def parting(motions: FloatArray) -> FloatArray:
     """Elongations, float[patterns, terms], from the outputs that `with_motions` adds."""
-    return np.asarray(motions.reshape(len(motions), 3, -1).sum(axis=1))
+    return np.asarray(sum(np.split(motions, 3, axis=1)))
 
 
 def own_readings(outputs: Arrays, terms: Terms) -> FloatArray:

@@ -52,7 +52,7 @@ class Simulator:
     def __init__(self, model: Model, _structure: Structure | None = None) -> None:
         self.model = model
         self._structure = build_structure(model) if _structure is None else _structure
-        self._prepared: Prepared = []
+        self._prepared: list[Prepared] = []
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects."""

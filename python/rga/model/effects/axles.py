@@ -1,5 +1,6 @@
 """Axles that move along a path of nodes."""
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 import numpy as np
@@ -24,6 +25,7 @@ class AxleLoad(Effect):
     """
 
     kind: Literal["axle_load"] = "axle_load"
+    of_all_rows = frozenset({"heading"})
     loads_by_geometry = True
     path: Annotated[list[str], Field(min_length=2)]
     forces: Annotated[list[Number], Field(min_length=1)]
@@ -46,30 +48,39 @@ class AxleLoad(Effect):
         """Nodes that must be in the model."""
         return self.path
 
+    def values(self, contexts: Mapping[str, FloatArray], rows: int) -> Values:
+        """Parameters of every row, and the `heading` of the train in all of them, 1 or -1."""
+        resolved = super().values(contexts, rows)
+        backwards = rows > 1 and bool(np.all(np.diff(resolved["position"]) < 0))
+        return {**resolved, "heading": np.full(rows, -1.0 if backwards else 1.0)}
+
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
+        stations, forces = structure.once(lambda: self._path(structure), self)
+        shares = self._shares(values, stations) * values["factor"]
+        permanent = not self.drivers()
+        return [
+            Load(share, forces=force, permanent=permanent)
+            for share, force in zip(shares, forces, strict=True)
+        ]
+
+    def _path(self, structure: Structure) -> tuple[FloatArray, list[dict[int, FloatArray]]]:
+        """Where the nodes stand along the path [m], and a unit load on each of them."""
         numbers = [structure.nodes[node] for node in self.path]
         points = structure.arrays["coordinates"][numbers]
         stations = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-        shares = self._shares(values["position"], stations) * values["factor"][:, None]
         force = np.append(unit_vector(self.direction), np.zeros(3))
-        fast = not self.drivers()
-        return [
-            Load(shares[:, k], forces={number: force}, permanent=fast)
-            for k, number in enumerate(numbers)
-        ]
+        return stations, [{number: force} for number in numbers]
 
-    def _shares(self, position: FloatArray, stations: FloatArray) -> FloatArray:
-        """Force that each node of the path takes, float[rows, nodes] [N]."""
-        reversed_train = len(position) > 1 and bool(np.all(np.diff(position) < 0))
-        offsets = np.array(self.offsets) * (1 if reversed_train else -1)
-        stands = position[:, None] + offsets
+    def _shares(self, values: Values, stations: FloatArray) -> FloatArray:
+        """Force that each node of the path takes, float[nodes, rows] [N]."""
+        stands = values["position"] - np.array(self.offsets)[:, None] * values["heading"]
         on_path = (stands >= 0) & (stands <= stations[-1])
         segment = np.clip(np.searchsorted(stations, stands, side="right") - 1, 0, len(stations) - 2)
         ratio = (stands - stations[segment]) / np.diff(stations)[segment]
-        force = np.where(on_path, np.array(self.forces), 0.0)
-        nodes = len(stations)
-        first = segment + nodes * np.arange(len(position))[:, None]
-        cells = np.concatenate([first.ravel(), first.ravel() + 1])
-        weights = np.concatenate([(force * (1 - ratio)).ravel(), (force * ratio).ravel()])
-        shares = np.bincount(cells, weights, minlength=nodes * len(position))
-        return np.asarray(shares, dtype=float).reshape(len(position), nodes)
+        force = np.where(on_path, np.array(self.forces)[:, None], 0.0)
+        rows = stands.shape[1]
+        cells = segment * rows + np.arange(rows)
+        weights = force * ratio
+        shares = np.bincount(cells.ravel(), (force - weights).ravel(), len(stations) * rows)
+        shares += np.bincount((cells + rows).ravel(), weights.ravel(), len(stations) * rows)
+        return np.asarray(shares, dtype=float).reshape(len(stations), rows)

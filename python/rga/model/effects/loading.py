@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -113,23 +114,30 @@ class LoadEccentricity(Effect):
     def change_loads(
         self, loads: dict[str, list[Load]], structure: Structure, values: Values
     ) -> None:
-        y = structure.arrays["coordinates"][:, 1]
-        side = np.sign(np.round(y - (y.min() + y.max()) / 2, 9))
-        of_member = side[structure.arrays["ends"]].mean(axis=1)
         for name in listed(self.effect):
             shifted = [
                 replace(
-                    load,
+                    structure.once(partial(_shifted, structure, load), *load.pattern),
                     coefficient=2 * values["share"] * load.coefficient,
-                    forces={node: side[node] * force for node, force in load.forces.items()},
-                    spread=[
-                        (member, *along, of_member[member] * start, of_member[member] * end)
-                        for member, *along, start, end in load.spread
-                    ],
                 )
                 for load in loads[name]
             ]
             loads[name] = [*loads[name], *shifted]
+
+
+def _shifted(structure: Structure, load: Load) -> Load:
+    """A load that is full at the +y side of the structure and turned round at the -y side."""
+    y = structure.arrays["coordinates"][:, 1]
+    side = np.sign(np.round(y - (y.min() + y.max()) / 2, 9))
+    of_member = side[structure.arrays["ends"]].mean(axis=1)
+    return replace(
+        load,
+        forces={node: side[node] * force for node, force in load.forces.items()},
+        spread=[
+            (member, *along, of_member[member] * start, of_member[member] * end)
+            for member, *along, start, end in load.spread
+        ],
+    )
 
 
 class UnmodelledLoad(Effect):

@@ -33,10 +33,13 @@ class NodalLoad(Effect):
         return list(self.forces)
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        forces = {
-            structure.nodes[node]: np.array([*force, 0.0, 0.0, 0.0][:6])
-            for node, force in self.forces.items()
-        }
+        forces = structure.once(
+            lambda: {
+                structure.nodes[node]: np.array([*force, 0.0, 0.0, 0.0][:6])
+                for node, force in self.forces.items()
+            },
+            self,
+        )
         return [Load(values["factor"], forces=forces, permanent=not self.drivers())]
 
 
@@ -67,7 +70,11 @@ class MemberLoad(Effect):
         return self
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        spread = []
+        spread = structure.once(lambda: self._spread(structure), self)
+        return [Load(values["factor"], spread=spread, permanent=not self.drivers())]
+
+    def _spread(self, structure: Structure) -> list[tuple[int, int, float, float, float, float]]:
+        spread: list[tuple[int, int, float, float, float, float]] = []
         for name in listed(self.member):
             member = structure.members[name]
             length = float(structure.lengths[member])
@@ -80,4 +87,4 @@ class MemberLoad(Effect):
                 spread += [
                     (member, a, self.x, self.x, p, 0.0) for a, p in enumerate(self.point) if p
                 ]
-        return [Load(values["factor"], spread=spread, permanent=not self.drivers())]
+        return spread

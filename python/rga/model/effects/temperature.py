@@ -50,4 +50,5 @@ class Temperature(Effect):
         return kelvin[structure.host]
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        return [Load(values["delta"], strain=structure.alpha * self.field(structure))]
+        strain = structure.once(lambda: structure.alpha * self.field(structure), self)
+        return [Load(values["delta"], strain=strain)]

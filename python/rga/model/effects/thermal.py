@@ -70,12 +70,7 @@ class ThermalGradient(Effect):
         return {"ratio": Normal(0.0, 0.3)}
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        column = AXES[self.axis]
-        points = structure.arrays["coordinates"][:, column]
-        middle = points[structure.arrays["ends"]].mean(axis=1)
-        low, high = points.min(), points.max()
-        share = (middle - (low + high) / 2) / max(high - low, 1e-12)
-        strain = structure.alpha * share[structure.host]
+        strain = structure.once(lambda: self._strain(structure), self)
         loads = []
         if "difference" in values:
             loads.append(Load(values["difference"], strain=strain))
@@ -83,6 +78,14 @@ class ThermalGradient(Effect):
             deltas = [other["delta"] for other in others.values() if "delta" in other]
             loads.append(Load(values["ratio"] * sum(deltas), strain=strain))
         return loads
+
+    def _strain(self, structure: Structure) -> FloatArray:
+        """Of every member per kelvin of difference, float[members]."""
+        points = structure.arrays["coordinates"][:, AXES[self.axis]]
+        middle = points[structure.arrays["ends"]].mean(axis=1)
+        low, high = points.min(), points.max()
+        share = (middle - (low + high) / 2) / max(high - low, 1e-12)
+        return np.asarray(structure.alpha * share[structure.host])
 
 
 class ThermalLag(Effect):
