@@ -39,6 +39,12 @@ class Load:
     spread: list[tuple[int, int, float, float, float, float]] = field(default_factory=list)
     permanent: bool = False
 
+    def times(self, coefficient: FloatArray) -> "Load":
+        """The same pattern with other coefficients."""
+        return Load(
+            coefficient, self.forces, self.strain, self.prescribed, self.spread, self.permanent
+        )
+
     @property
     def pattern(self) -> tuple[object, ...]:
         """What the load does where its coefficient is one, as objects; None for nothing."""

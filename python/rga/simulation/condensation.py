@@ -131,6 +131,11 @@ class Condensation:
         Raises:
             DependentTerms: as `respond`.
         """
+        if not self.terms:
+            rates = np.moveaxis(coefficient_rates, 2, 0)
+            many = np.ascontiguousarray(rates).reshape(-1, rates.shape[2])
+            found = self._core.respond(many, np.zeros((len(many), 0)), threads)
+            return np.moveaxis(found.reshape(*rates.shape[:2], -1), 0, 2)
         loads, of_loads = along(coefficient_rates)
         terms, of_terms = along(stiffness_rates[:, self.element])
         changes, directions = self._changes(stiffness), coefficient_rates.shape[2]

@@ -35,13 +35,22 @@ class Sides:
     Attributes:
         columns: which contexts, among all of the model.
         steps: how far, in their units.
-        tables, values: contexts and parameters of all effects, ahead and behind in turn.
+        tables: contexts of all rows, ahead and behind in turn.
+        values: parameters of all effects in all these tables, one behind the other.
     """
 
     columns: list[int]
     steps: FloatArray
     tables: list[Values]
-    values: list[dict[str, Values]]
+    values: dict[str, Values]
+
+    def of(self, number: int, rows: int) -> dict[str, Values]:
+        """Parameters in one of the tables."""
+        own = slice(number * rows, (number + 1) * rows)
+        return {
+            name: {key: column[own] for key, column in values.items()}
+            for name, values in self.values.items()
+        }
 
 
 @dataclass(frozen=True)
@@ -73,10 +82,10 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
     """
     model = simulator.model
     out = np.zeros((len(table["time"]), len(model.sensors), len(model.context)))
-    sides = _sides(simulator, table)
-    if not sides.columns:
+    if not (contexts := _followed(simulator)):
         return out
     response = simulator.respond(table)
+    sides = _sides(simulator, response, contexts)
     rates = None
     for tangent in _tangents(simulator, response, sides):
         try:
@@ -90,14 +99,18 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
             continue  # the next path decides
         rates = found * tangent.per_si[:, None]
         break
+    if rates is not None and simulator.reads_plainly:
+        out[:, :, sides.columns] = rates / sides.steps
+        return out
     shown = []
-    for number, (one, of_one) in enumerate(zip(sides.tables, sides.values, strict=True)):
+    for number, one in enumerate(sides.tables):
         if rates is None:
             shown.append(simulator.predict(one))
             continue
         moved = response.quantities + SIGNS[number % 2] * rates[:, :, number // 2]
+        values = sides.of(number, len(moved))
         shown.append(
-            simulator.read(replace(response, contexts=one, values=of_one, quantities=moved))
+            simulator.read(replace(response, contexts=one, values=values, quantities=moved))
         )
     ahead, behind = np.stack(shown[::2], 2), np.stack(shown[1::2], 2)
     out[:, :, sides.columns] = (ahead - behind) / (2 * sides.steps)
@@ -116,12 +129,12 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
     """
     model = simulator.model
     out = np.zeros((len(table["time"]), len(model.context)))
-    sides = _sides(simulator, table)
-    if not sides.columns:
+    if not (contexts := _followed(simulator)):
         return out
     if not simulator.reads_plainly:
         return _product(gradients, jacobian(simulator, table))
     response = simulator.respond(table)
+    sides = _sides(simulator, response, contexts)
     for tangent in _tangents(simulator, response, sides):
         try:
             found = tangent.system.pull_back(
@@ -137,23 +150,42 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
     return _product(gradients, jacobian(simulator, table))
 
 
-def _sides(simulator: "Simulator", table: Values) -> Sides:
-    columns, steps, tables = [], [], []
-    for number, (name, variable) in enumerate(simulator.model.context.items()):
-        if name in simulator.needed:
-            step = STEP * (variable.range[1] - variable.range[0])
-            columns.append(number)
-            steps.append(step)
-            tables += [{**table, name: table[name] + sign * step} for sign in SIGNS]
-    return Sides(columns, np.array(steps), tables, [simulator.resolve(one) for one in tables])
+def _followed(simulator: "Simulator") -> list[str]:
+    """Contexts that drive something."""
+    return [name for name in simulator.model.context if name in simulator.needed]
+
+
+def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) -> Sides:
+    model, table = simulator.model, response.contexts
+    steps, tables = [], []
+    for name in contexts:
+        low, high = model.context[name].range
+        steps.append(STEP * (high - low))
+        tables += [{**table, name: table[name] + sign * steps[-1]} for sign in SIGNS]
+    if any(effect.remembers for effect in model.effects.values()):
+        apart = [simulator.resolve(one) for one in tables]
+        values = {
+            name: {key: np.concatenate([one[name][key] for one in apart]) for key in own}
+            for name, own in response.values.items()
+        }
+    else:
+        values = simulator.resolve(
+            {name: np.concatenate([one[name] for one in tables]) for name in table}
+        )
+        for name, effect in model.effects.items():
+            for key in effect.of_all_rows:
+                values[name][key] = np.tile(response.values[name][key], len(tables))
+    columns = [list(model.context).index(name) for name in contexts]
+    return Sides(columns, np.array(steps), tables, values)
 
 
 def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Iterator[Tangent]:
     """Linear paths at the rows, the cheapest first; none where there is no tangent."""
     rows = len(response.contexts["time"])
     middle = simulator.request(response.values, rows)
-    around = [simulator.request(values, rows) for values in sides.values]
-    states = np.unique(np.concatenate([one.states for one in (middle, *around)]), axis=0)
+    every = np.arange(rows * len(sides.tables))
+    around = simulator.request(sides.values, len(every))
+    states = np.unique(np.concatenate([middle.states, around.states]), axis=0)
     start = middle.change(states[0])
     loads = middle.loads(start, np.arange(rows))
     if start.bearings or start.laws or start.nonlinear or not loads:
@@ -165,15 +197,14 @@ def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Ite
             return
         varied = found
     first, slope = varied.elements[0], varied.slope
-    ends = np.stack([coefficients(one.loads(start, np.arange(rows))) for one in around], 2)
-    moved = np.stack([one.of_rows @ slope for one in around], 2)
+    ends, moved = coefficients(around.loads(start, every)), around.of_rows @ slope
     for _, system in linear_paths(middle.prepared, varied, loads):
         yield Tangent(
             system,
             coefficients(loads),
             first + (middle.of_rows - states[0]) @ slope,
-            _halves(ends),
-            _halves(moved),
+            _halves(ends, rows),
+            _halves(moved, rows),
             start.per_si,
         )
 
@@ -183,5 +214,7 @@ def _product(gradients: FloatArray, derivatives: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("ts,tsc->tc", gradients, np.nan_to_num(derivatives)))
 
 
-def _halves(sides: FloatArray) -> FloatArray:
-    return np.ascontiguousarray((sides[:, :, ::2] - sides[:, :, 1::2]) / 2)
+def _halves(sides: FloatArray, rows: int) -> FloatArray:
+    """Half the differences between ahead and behind, float[rows, entries, contexts]."""
+    apart = sides.reshape(len(sides) // (2 * rows), 2, rows, sides.shape[1])
+    return np.asarray(((apart[:, 0] - apart[:, 1]) / 2).transpose(1, 2, 0))

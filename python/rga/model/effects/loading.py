@@ -116,9 +116,8 @@ class LoadEccentricity(Effect):
     ) -> None:
         for name in listed(self.effect):
             shifted = [
-                replace(
-                    structure.once(partial(_shifted, structure, load), *load.pattern),
-                    coefficient=2 * values["share"] * load.coefficient,
+                structure.once(partial(_shifted, structure, load), *load.pattern).times(
+                    2 * values["share"] * load.coefficient
                 )
                 for load in loads[name]
             ]
