@@ -392,3 +392,20 @@ def test_arrays_of_a_box_bridge_are_stable() -> None:
     assert len(bridge.structure["coordinates"]) == 84
     arrays: tuple[Arrays, ...] = (bridge.structure, bridge.loads, bridge.outputs)
     assert np.isfinite(_core.respond(*arrays)).all()
+
+
+def test_a_settlement_pushes_on_a_spring_that_varies(two_bars: dict[str, Any]) -> None:
+    two_bars["context"]["bearing"] = {"unit": "N/m", "range": [1e6, 1e9]}
+    two_bars["effects"] |= {
+        "soft": {
+            "kind": "support_flexibility", "support": "E", "dof": "uz",
+            "stiffness": {"context": "bearing"},
+        },
+        "sunk": {"kind": "support_settlement", "support": "E", "dof": "uz", "displacement": -0.01},
+    }  # fmt: skip
+    simulator = rga.Simulator(read_model(two_bars, "test"))
+    rows = {"temperature": 10.0, "load": 2e4, "bearing": np.linspace(2e7, 9e8, 8)}
+    together = simulator.predict(rows)
+    apart = [simulator.predict({**rows, "bearing": one})[0] for one in rows["bearing"]]
+    np.testing.assert_allclose(together, apart, rtol=1e-10)
+    assert simulator.plan(rows).path == "C3"

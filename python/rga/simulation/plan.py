@@ -78,6 +78,7 @@ class Request:
         change: makes the structure of a state.
         loads: load patterns on a structure, with coefficients of the rows that are named. What a
             pattern is depends on the structure alone.
+        fixed_patterns: no stiffness changes a load pattern.
         prepared: what earlier requests of the same model have condensed, by content.
     """
 
@@ -85,6 +86,7 @@ class Request:
     state_of_row: IntArray
     change: Callable[[FloatArray], Structure]
     loads: Callable[[Structure, IntArray], list[Load]]
+    fixed_patterns: bool
     prepared: list[Prepared]
 
     @property
@@ -140,7 +142,7 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
     if len(request.states) == 1:
         varied = unvaried(structure, request.states.shape[1])
     elif len(request.states) > APART:
-        varied = variation(request.change, request.states)
+        varied = variation_under(request, request.states)
     if varied is None:
         return plan("C3"), _each_state(request)
     q, stiffness = coefficients(loads), varied.elements[request.state_of_row]
@@ -152,6 +154,21 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
         except (_core.UnstableStructure, _core.InvalidInput) as error:
             raise refused(structure, error) from None
     return plan("C3"), _each_state(request)
+
+
+def variation_under(request: Request, states: FloatArray) -> Variation | None:
+    """What varies between states, or None where it is more than straight stiffnesses.
+
+    Where a spring stands for a support, a settlement pushes on it: its load follows a stiffness.
+    """
+    varied = variation(request.change, states)
+    if varied is None or request.fixed_patterns:
+        return varied
+    low, high = states.min(axis=0), states.max(axis=0)
+    far = request.change(np.where(high > states[0], high, low))
+    here, there = (patterns(one, request.loads(one, NOTHING)) for one in (varied.start, far))
+    same = all(np.array_equal(here[name], there[name]) for name in here)
+    return varied if same else None
 
 
 def linear_paths(

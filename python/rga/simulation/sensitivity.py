@@ -17,8 +17,8 @@ from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.factorisation import Factorisation
-from rga.simulation.plan import coefficients, linear_paths
-from rga.simulation.variation import unvaried, variation
+from rga.simulation.plan import coefficients, linear_paths, variation_under
+from rga.simulation.variation import unvaried
 
 if TYPE_CHECKING:
     from rga.simulation.simulator import Response, Simulator
@@ -192,7 +192,7 @@ def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Ite
         return
     varied = unvaried(start, states.shape[1])
     if len(states) > 1:
-        found = variation(middle.change, states)
+        found = variation_under(middle, states)
         if found is None:
             return
         varied = found

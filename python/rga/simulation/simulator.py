@@ -281,7 +281,11 @@ class Simulator:
             }
             return self._loads(structure, of_rows)
 
-        return Request(states, state_of_row.ravel(), change, loads, self._prepared)
+        fixed = all(
+            effect.loads_by_geometry or type(effect).loads is Effect.loads
+            for effect in effects.values()
+        )
+        return Request(states, state_of_row.ravel(), change, loads, fixed, self._prepared)
 
     def _loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
         effects = self.model.effects
