@@ -9,13 +9,14 @@ A trace of stiffness in idle terms keeps in the middle of the play what only the
 no load pushes. It finds the side on which each term is; its force is then taken off again.
 """
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Law, Structure
-from rga.simulation.condensation import Condensation
 from rga.simulation.terms import STRAIN
 
 #: Newton steps before a row is given up
@@ -30,9 +31,22 @@ REFINED = 2
 NONE = 1e-12
 
 
-def respond_with_laws(
-    structure: Structure, linear: Condensation, coefficients: FloatArray
-) -> FloatArray:
+class Linear(Protocol):
+    """A structure condensed onto terms, as the attributes of `Condensation` tell."""
+
+    @property
+    def stiffness(self) -> FloatArray: ...
+    @property
+    def loaded(self) -> FloatArray: ...
+    @property
+    def stretched(self) -> FloatArray: ...
+    @property
+    def influence(self) -> FloatArray: ...
+    @property
+    def unit(self) -> FloatArray: ...
+
+
+def respond_with_laws(structure: Structure, linear: Linear, coefficients: FloatArray) -> FloatArray:
     """Sensors of rows, float[rows, sensors] in SI units.
 
     Args:

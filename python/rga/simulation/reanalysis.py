@@ -50,6 +50,17 @@ class Loaded:
 
 
 @dataclass(frozen=True)
+class OnTerms:
+    """A structure under loads condensed onto some of its terms, as `Condensation` tells."""
+
+    stiffness: FloatArray
+    loaded: FloatArray
+    stretched: FloatArray
+    influence: FloatArray
+    unit: FloatArray
+
+
+@dataclass(frozen=True)
 class Difference:
     """Where the stiffness of a structure differs: terms, and numbers of frame members."""
 
@@ -137,6 +148,20 @@ class Reanalysis:
         matrix = np.eye(len(terms)) + self._unit[np.ix_(terms, terms)] * stiffer
         elongations = np.linalg.solve(matrix, loaded.elongations[:, terms].T).T
         return np.asarray(loaded.outputs - (elongations * stiffer) @ self._influence[terms])
+
+    def onto(self, loaded: Loaded, members: IntArray, springs: IntArray) -> OnTerms | None:
+        """The structure under loads condensed onto truss members and springs; None for frames."""
+        frame = self.structure.arrays["frame"]
+        if frame[members].any():
+            return None
+        terms = np.searchsorted(self._terms, np.append(members, len(frame) + springs))
+        return OnTerms(
+            self._stiffness[self._terms[terms]],
+            loaded.outputs,
+            loaded.elongations[:, terms],
+            self._influence[terms],
+            self._unit[np.ix_(terms, terms)],
+        )
 
     def _with_frames(self, loaded: Loaded, other: Structure, frames: IntArray) -> FloatArray:
         if self._forced is None:

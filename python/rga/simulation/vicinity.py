@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
+from rga.simulation.laws import respond_with_laws, terms_of
 from rga.simulation.plan import APART, coefficients
-from rga.simulation.reanalysis import Loaded, Reanalysis
+from rga.simulation.reanalysis import Difference, Loaded, Reanalysis
 from rga.simulation.response import patterns, respond
 
 if TYPE_CHECKING:
@@ -131,9 +132,12 @@ class Vicinity:
         parts = []
         for state in request.states:
             structure = request.change(state)
-            if structure.bearings or structure.laws or structure.nonlinear:
+            if structure.bearings or structure.nonlinear:
                 return trial.respond(self.contexts)
-            parts.append(self._quantities(trial, structure, values, apart))
+            part = self._quantities(trial, structure, values, apart)
+            if part is None:
+                return trial.respond(self.contexts)
+            parts.append(part)
         quantities = self._joined(parts, request.state_of_row)
         return replace(self.response, values=values, quantities=quantities)
 
@@ -163,8 +167,11 @@ class Vicinity:
 
     def _quantities(
         self, trial: "Simulator", structure: Structure, values: dict[str, Values], apart: bool
-    ) -> FloatArray:
-        """What the sensors are to read of a structure under all rows, in SI units."""
+    ) -> FloatArray | None:
+        """What the sensors are to read of a structure under all rows, in SI units.
+
+        None where the structure has play or slack and is not near another.
+        """
         effects = trial.model.effects
         where, centre = None, self._centres[0]
         for one in self._centres:
@@ -178,11 +185,24 @@ class Vicinity:
             for name, effect in effects.items()
         }
         loads = _changed(effects, own, structure, values)
+        if structure.laws:
+            return None if where is None else _with_laws(centre, structure, loads, where)
         if where is None:
             few = _together(loads)
             return coefficients(few) @ respond(structure, few, structure.outputs)
         q, loaded = _under(centre, loads)
         return q @ centre.near.changed(loaded, structure, where)
+
+
+def _with_laws(
+    centre: Centre, structure: Structure, loads: list[Load], where: Difference
+) -> FloatArray | None:
+    """A structure that differs from a centre by play or slack alone; None for any other."""
+    if len(where.terms) or len(where.frames):
+        return None
+    q, loaded = _under(centre, loads)
+    linear = centre.near.onto(loaded, *terms_of(structure))
+    return None if linear is None else respond_with_laws(structure, linear, q)
 
 
 def _known(
