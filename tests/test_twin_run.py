@@ -23,7 +23,7 @@ from rga.twin.running import Running
 
 Stream = Callable[..., Path]
 #: `RGA_TEST_KILLS=200` makes the test of killed runs as long as the acceptance wants it
-KILLS = int(os.environ.get("RGA_TEST_KILLS", "6"))
+KILLS = int(os.environ.get("RGA_TEST_KILLS", "3"))
 
 
 def run(folder: Path, directory: Path, *, seed: int = 0, **more: Any) -> Outcome:
