@@ -12,7 +12,8 @@ import polars as pl
 import pytest
 
 from rga.cli.output import whole_directory, whole_file
-from rga.model import load_model
+from rga.errors import InputError
+from rga.model import load_model, read_model
 from rga.records import load_record
 from rga.simulation import Simulator
 from rga.simulation.dataset import write_dataset
@@ -120,13 +121,22 @@ def test_a_dataset_goes_on_where_it_was_interrupted(
         file.name: file.stat().st_mtime_ns for file in (tmp_path / "parts.parquet.parts").iterdir()
     }
     assert len(kept) == 4
+    # A part that was damaged is written again.
+    damaged = tmp_path / "parts.parquet.parts" / "000000000016.parquet"
+    damaged.write_bytes(damaged.read_bytes()[:1000])
     again: list[float] = []
     write_dataset(
         model, 100, target, seed=3, noise=True, progress=lambda _, share: again.append(share)
     )
-    assert len(again) == 4
+    assert len(again) == 5
     assert pl.read_parquet(target).equals(whole)
     assert not (tmp_path / "parts.parquet.parts").exists()
+
+
+def test_a_dataset_has_no_order_to_remember(tmp_path: Path, two_bars: dict[str, Any]) -> None:
+    two_bars["effects"]["late"] = {"kind": "thermal_lag", "time_constant": 3.0}
+    with pytest.raises(InputError, match="no order"):
+        write_dataset(read_model(two_bars, "test"), 10, tmp_path / "samples.parquet")
 
 
 def test_a_dataset_does_not_depend_on_the_number_of_workers(
@@ -200,8 +210,12 @@ def test_verify_fails_with_exit_code_1(tmp_path: Path, rga: Rga) -> None:
     assert "1 of 2 cases passed" in outcome.out
     result = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
     assert [case["passed"] for case in result["cases"]] == [True, False]
-    (tmp_path / "torn.json").write_text("{", encoding="utf-8")
-    assert rga("verify", tmp_path).code == 2
+    for torn in ("{", "[" * 100_000, "[]", '{"nodes": [], "load_cases": []}', '{"dim": 2}'):
+        (tmp_path / "torn.json").write_text(torn, encoding="utf-8")
+        outcome = rga("verify", tmp_path)
+        assert outcome.code in (1, 2)
+        assert "torn: FAILED: the case" in outcome.out
+        assert "good: passed" in outcome.out
 
 
 class Nothing:

@@ -409,3 +409,39 @@ def test_a_settlement_pushes_on_a_spring_that_varies(two_bars: dict[str, Any]) -
     apart = [simulator.predict({**rows, "bearing": one})[0] for one in rows["bearing"]]
     np.testing.assert_allclose(together, apart, rtol=1e-10)
     assert simulator.plan(rows).path == "C3"
+
+
+def test_derivatives_do_not_leave_the_range(two_bars: dict[str, Any]) -> None:
+    two_bars["context"] |= {"loss": {"unit": "-", "range": [0, 1.5]}}
+    two_bars["context"]["bearing"] = {"unit": "N/m", "range": [0, 1e9]}
+    two_bars["supports"]["E"]["fixed"] = ["uz"]
+    two_bars["effects"] |= {
+        "loss": {"kind": "member_stiffness", "member": "west", "factor": {"context": "loss"}},
+        "held": {
+            "kind": "support_spring", "support": "E", "dof": "ux",
+            "stiffness": {"context": "bearing"},
+        },
+    }  # fmt: skip
+    simulator = rga.Simulator(read_model(two_bars, "test"))
+    stiffness, loss = np.array([1e4, 2e5, 1e9, 5e8, 3e7]), np.array([2e-5, 1.5, 0.9, 0.3, 1.0])
+    rows = {"temperature": 10.0, "load": 2e4, "bearing": stiffness, "loss": loss}
+    found = simulator.jacobian(rows)
+    for column, name in ((2, "loss"), (3, "bearing")):
+        along = 0.0
+        for place, weight in ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12)):
+            moved = simulator.predict({**rows, name: rows[name] * (1 + 1e-3 * place)})
+            along = along + weight * moved / (1e-3 * rows[name][:, None])
+        # The strain does not follow the bearing: its differences would be rounding.
+        assert found[:, 0, column] == pytest.approx(along[:, 0], rel=1e-6), name
+    none = {**rows, "bearing": np.zeros(5), "loss": 1.0}
+    with pytest.raises(UnstableStructureError):
+        simulator.jacobian(none)
+
+
+@pytest.mark.parametrize("wrong", [None, [1.0], {"load": []}, {"load": "much"}])
+def test_contexts_that_are_none_are_refused(two_bars: dict[str, Any], wrong: Any) -> None:
+    simulator = rga.Simulator(read_model(two_bars, "test"))
+    with pytest.raises(InputError):
+        simulator.predict(wrong)
+    with pytest.raises(InputError):
+        simulator.jacobian(wrong)

@@ -99,6 +99,22 @@ def test_a_bearing_that_slides_dissipates() -> None:
     assert shown == pytest.approx(forces / (EA / L) * 1e3, abs=1e-12)
 
 
+def test_reactions_with_friction_balance_the_load() -> None:
+    content = bar()
+    for name, node in (("far", "A"), ("near", "B")):
+        content["sensors"][name] = {
+            "kind": "reaction", "node": node, "direction": [1, 0, 0], "unit": "N",
+        }  # fmt: skip
+    content["effects"]["rests"] = {
+        "kind": "bearing_friction", "support": "B", "dof": "ux", "mu": 0.1, "permanent_force": 1e5,
+    }  # fmt: skip
+    pull = np.array([0.0, 5e3, 3e4, 0.0])
+    shown = Simulator(read_model(content, "test")).predict({"pull": pull, "temperature": 10.0})
+    far, near = shown[:, -2], shown[:, -1]
+    assert near == pytest.approx([0.0, -5e3, -1e4, 1e4], abs=1e-6)
+    assert far + near + pull == pytest.approx(np.zeros(4), abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("effect", "half"),
     [

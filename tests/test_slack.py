@@ -86,6 +86,32 @@ def test_a_rod_that_is_pushed_holds_nothing() -> None:
         rod.predict({"load": -1e4, "warm": 0.0})
 
 
+def test_a_rod_that_was_tightened_pulls_at_once() -> None:
+    nodes = {"a": [0, 0, 0], "b": [1, 0, 0], "c": [2, 0, 0]}
+    more: dict[str, Any] = {
+        "supports": {
+            "a": {"node": "a", "fixed": ["ux", "uz"]},
+            "b": {"node": "b", "fixed": ["uz"]},
+            "c": {"node": "c", "fixed": ["ux", "uz"]},
+        },
+        "effects": {
+            "push": {
+                "kind": "nodal_load", "forces": {"b": [1, 0, 0]}, "factor": {"context": "load"},
+            },
+            "tight": {"kind": "tension_only", "member": "rod", "slack": -1e-4},
+        },
+        "sensors": {
+            "x": {"kind": "displacement", "node": "b", "direction": [1, 0, 0], "unit": "m"}
+        },
+    }  # fmt: skip
+    taut = rga.Simulator(model(nodes, {"bar": ["a", "b"], "rod": ["b", "c"]}, **more))
+    stiffness = E * AREA
+    for load in (-6e4, -1e4, 0.0, 1e4, 4.9e4):
+        found = taut.predict({"load": load, "warm": 0.0})[0, 0]
+        both = (load + stiffness * 1e-4) / (2 * stiffness)
+        assert found == pytest.approx(both if both < 1e-4 else load / stiffness, rel=1e-6)
+
+
 def panel(diagonals: dict[str, list[str]], **effects: Any) -> rga.Model:
     """A square panel on two pins, pushed sideways at its top."""
     return model(

@@ -14,17 +14,23 @@ from rga.benchmark.verification_input import Frame, Json, Loads, output_arrays, 
 # A reference value below this part of what the loads could cause is a zero, spelled out by the
 # rounding of a 40-digit solve (-6e-36 N, say). Double precision can only be held to a zero.
 ZERO = 1e-12
+#: what comes of a case whose parts are not what they should be
+MALFORMED = (ValueError, TypeError, AttributeError, IndexError)
 
 
 @dataclass(frozen=True)
 class VerificationResult:
-    """What came out of one file. `worst` is the largest |x - value| / (atol + rtol |value|)."""
+    """What came out of one file. `worst` is the largest |x - value| / (atol + rtol |value|).
+
+    `readable` is false for a file that is no case of this format.
+    """
 
     name: str
     passed: bool
     worst: float
     count: int
     first_failure: str | None
+    readable: bool = True
 
 
 @dataclass(frozen=True)
@@ -59,8 +65,9 @@ def verify_folder(folder: str | Path) -> list[VerificationResult]:
 def verify_case(path: str | Path) -> VerificationResult:
     """Runs one file: a case, or context samples on the case beside it that they name."""
     path = Path(path)
-    case = json.loads(path.read_text(encoding="utf-8"))
+    readable = True
     try:
+        case = json.loads(path.read_text(encoding="utf-8"))
         if "samples" in case:
             base = json.loads((path.parent / f"{case['base']}.json").read_text(encoding="utf-8"))
             checks = _check_samples(case, base)
@@ -71,17 +78,23 @@ def verify_case(path: str | Path) -> VerificationResult:
                 for load_case in case["load_cases"]
                 for check in _check_load_case(case, frame, load_case)
             ]
-    except (_core.InvalidInput, _core.UnstableStructure, KeyError) as error:
-        failure = f"{type(error).__name__}: {error}"
-        return VerificationResult(path.stem, False, math.inf, 0, failure)
-    return _judge(path.stem, checks)
+    except (_core.InvalidInput, _core.UnstableStructure) as error:
+        failure = str(error)
+    except KeyError as error:
+        failure = f"the case lacks, or has nowhere, what it names {error.args[0]!r}"
+    except (OSError, RecursionError, ArithmeticError, *MALFORMED) as error:
+        failure = f"the case cannot be read as one of this format ({error})"
+        readable = False
+    else:
+        return _judge(path.stem, checks)
+    return VerificationResult(path.stem, False, math.inf, 0, failure, readable)
 
 
 def _judge(name: str, checks: Sequence[Check]) -> VerificationResult:
     worst = max((check.ratio for check in checks), default=0.0)
     failure = next((check for check in checks if not check.ratio <= 1.0), None)
     passed = failure is None and bool(checks)
-    words = None if failure is None else failure.words()
+    words = "nothing is expected of it" if not checks else failure and failure.words()
     return VerificationResult(name, passed, worst, len(checks), words)
 
 
@@ -104,6 +117,8 @@ def _check_load_case(case: Json, frame: Frame, load_case: Json) -> list[Check]:
 
 def _tolerance(entry: Json, sizes: Mapping[str, float]) -> float:
     tolerance: float = entry["atol"] + entry["rtol"] * abs(entry["value"])
+    if not math.isfinite(tolerance):
+        raise ValueError("a tolerance is not finite")
     turning = entry.get("dof", "")[:1] == "r" or int(entry.get("index", 0)) % 6 >= 3
     if entry["kind"] == "displacement":
         kind = "rotation" if turning else "displacement"

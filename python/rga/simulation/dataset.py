@@ -1,7 +1,9 @@
 """Synthetic datasets: contexts drawn over their ranges, and what the sensors show."""
 
 import json
+import os
 import shutil
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -9,6 +11,7 @@ from hashlib import sha256
 from importlib.metadata import version
 from multiprocessing import get_context
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import polars as pl
@@ -59,6 +62,13 @@ def write_dataset(
         raise InputError(
             "a dataset needs context variables and sensors", f"model {model.name!r}", "add them"
         )
+    for name, effect in model.effects.items():
+        if effect.remembers:
+            raise InputError(
+                f"{effect.kind} follows what came before, and rows of a dataset have no order",
+                f"effect {name!r}",
+                "leave it out, or simulate contexts that follow each other",
+            )
     path = Path(path)
     metadata = {
         "seed": str(seed),
@@ -74,7 +84,7 @@ def write_dataset(
         _Part(model, seed, noise, begin, min(CHUNK, rows - begin), parts / f"{begin:012}.parquet")
         for begin in range(0, rows, CHUNK)
     ]
-    waiting = [task for task in tasks if not task.file.exists()]
+    waiting = [task for task in tasks if not task.is_whole()]
     done = len(tasks) - len(waiting)
     for number, _ in enumerate(_written(waiting, workers), start=done + 1):
         if progress is not None:
@@ -96,6 +106,14 @@ class _Part:
     begin: int
     rows: int
     file: Path
+
+    def is_whole(self) -> bool:
+        """Whether the file is there and has its rows."""
+        try:
+            rows = pl.scan_parquet(self.file).select(pl.len()).collect().item()
+        except (OSError, pl.exceptions.PolarsError):
+            return False
+        return bool(rows == self.rows)
 
     def write(self) -> None:
         """Whole or not at all."""
@@ -125,12 +143,24 @@ def _written(parts: list[_Part], workers: int) -> Iterator[None]:
     if workers == 1 or len(parts) < 2:
         yield from map(_Part.write, parts)
         return
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    context = get_context("spawn")
+    with ProcessPoolExecutor(workers, context, _end_with, (os.getpid(),)) as pool:
         try:
             yield from pool.map(_Part.write, parts)
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def _end_with(parent: int) -> None:
+    """A worker whose parent was killed ends by itself: nobody will take what it makes."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
 
 
 def _begin(parts: Path, key: str) -> None:

@@ -46,7 +46,21 @@ def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray
         raise InputError(
             str(error), "bearings with friction", "check mu and the supports"
         ) from None
-    return np.asarray(free[:, :count] + force @ influence[:, :count])
+    # What a bearing does to the structure is a part of the reaction there.
+    own = influence[:, :count] + _own_reactions(structure)
+    return np.asarray(free[:, :count] + force @ own)
+
+
+def _own_reactions(structure: Structure) -> FloatArray:
+    """What reaction sensors read of a unit force at a bearing, float[bearings, sensors]."""
+    outputs = structure.outputs
+    reacts = outputs["kind"] == REACTION
+    return np.array(
+        [
+            np.where(reacts & (outputs["index"] == one.node), outputs["vector"][:, one.dof], 0.0)
+            for one in structure.bearings
+        ]
+    )
 
 
 def _with_bearings(structure: Structure) -> dict[str, NDArray[Any]]:

@@ -87,7 +87,7 @@ def respond_with_laws(structure: Structure, linear: Linear, coefficients: FloatA
         waiting = waiting[met & far]
         if not len(waiting):
             break
-    held = TRACE * np.abs(elongation) < CARRIED * (np.abs(apart).max() + size.max() + NONE)
+    held = TRACE * np.abs(elongation) < CARRIED * (np.abs(apart).max() + np.abs(size).max() + NONE)
     lost = np.union1d(waiting, np.flatnonzero(~held.all(axis=1)))
     if len(lost):
         raise InputError(

@@ -23,9 +23,9 @@ from rga.simulation.variation import unvaried
 if TYPE_CHECKING:
     from rga.simulation.simulator import Response, Simulator
 
-#: step of differences, as a share of the range of a context
-STEP = 1e-4
-SIGNS = (1.0, -1.0)
+#: step of differences, as a share of the range of a context, and its least: nearer to an end of
+#: the range than that, the difference is taken to the other side alone
+STEP, LEAST = 1e-4, 1e-6
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,14 @@ class Sides:
 
     Attributes:
         columns: which contexts, among all of the model.
-        steps: how far, in their units.
+        ahead, behind: how far, in their units, float[rows, contexts].
         tables: contexts of all rows, ahead and behind in turn.
         values: parameters of all effects in all these tables, one behind the other.
     """
 
     columns: list[int]
-    steps: FloatArray
+    ahead: FloatArray
+    behind: FloatArray
     tables: list[Values]
     values: dict[str, Values]
 
@@ -60,7 +61,7 @@ class Tangent:
     Attributes:
         system: the path.
         coefficients, stiffness: float[rows, patterns] and float[rows, elements].
-        coefficient_rates, stiffness_rates: their derivatives times the steps, float[rows, patterns,
+        coefficient_rates, stiffness_rates: their derivatives by the contexts, float[rows, patterns,
             contexts] and float[rows, elements, contexts].
         per_si: units of the sensors, float[sensors].
     """
@@ -100,20 +101,22 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
         rates = found * tangent.per_si[:, None]
         break
     if rates is not None and simulator.reads_plainly:
-        out[:, :, sides.columns] = rates / sides.steps
+        out[:, :, sides.columns] = rates
         return out
     shown = []
     for number, one in enumerate(sides.tables):
         if rates is None:
             shown.append(simulator.predict(one))
             continue
-        moved = response.quantities + SIGNS[number % 2] * rates[:, :, number // 2]
+        way = -sides.behind if number % 2 else sides.ahead
+        along = rates[:, :, number // 2] * way[:, [number // 2]]
+        moved = response.quantities + along
         values = sides.of(number, len(moved))
         shown.append(
             simulator.read(replace(response, contexts=one, values=values, quantities=moved))
         )
     ahead, behind = np.stack(shown[::2], 2), np.stack(shown[1::2], 2)
-    out[:, :, sides.columns] = (ahead - behind) / (2 * sides.steps)
+    out[:, :, sides.columns] = (ahead - behind) / (sides.ahead + sides.behind)[:, None]
     return out
 
 
@@ -145,7 +148,7 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
         by_loads, by_stiffness = np.split(found, [tangent.coefficients.shape[1]], axis=1)
         along = _product(by_loads, tangent.coefficient_rates)
         along += _product(by_stiffness, tangent.stiffness_rates)
-        out[:, sides.columns] = along / sides.steps
+        out[:, sides.columns] = along
         return out
     return _product(gradients, jacobian(simulator, table))
 
@@ -157,11 +160,13 @@ def _followed(simulator: "Simulator") -> list[str]:
 
 def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) -> Sides:
     model, table = simulator.model, response.contexts
-    steps, tables = [], []
+    ahead, behind, tables = [], [], []
     for name in contexts:
-        low, high = model.context[name].range
-        steps.append(STEP * (high - low))
-        tables += [{**table, name: table[name] + sign * steps[-1]} for sign in SIGNS]
+        here = table[name]
+        up, down = _steps(here, *model.context[name].range)
+        ahead.append(up)
+        behind.append(down)
+        tables += [{**table, name: here + up}, {**table, name: here - down}]
     if any(effect.remembers for effect in model.effects.values()):
         apart = [simulator.resolve(one) for one in tables]
         values = {
@@ -176,7 +181,19 @@ def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) ->
             for key in effect.of_all_rows:
                 values[name][key] = np.tile(response.values[name][key], len(tables))
     columns = [list(model.context).index(name) for name in contexts]
-    return Sides(columns, np.array(steps), tables, values)
+    return Sides(columns, np.stack(ahead, 1), np.stack(behind, 1), tables, values)
+
+
+def _steps(value: FloatArray, low: float, high: float) -> tuple[FloatArray, FloatArray]:
+    """How far to go ahead and behind inside the range: at its end there may be no stiffness."""
+    width = high - low
+    room = np.minimum(value - low, high - value) / 2
+    inside = (room >= 0) & (room < LEAST * width)
+    middle = np.where(room < 0, STEP * width, np.minimum(STEP * width, room))
+    at_low = inside & (value - low < high - value)
+    ahead = np.where(inside, np.where(at_low, LEAST * width, 0.0), middle)
+    behind = np.where(inside, np.where(at_low, 0.0, LEAST * width), middle)
+    return ahead, behind
 
 
 def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Iterator[Tangent]:
@@ -203,8 +220,8 @@ def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Ite
             system,
             coefficients(loads),
             first + (middle.of_rows - states[0]) @ slope,
-            _halves(ends, rows),
-            _halves(moved, rows),
+            _rates(ends, sides),
+            _rates(moved, sides),
             start.per_si,
         )
 
@@ -214,7 +231,9 @@ def _product(gradients: FloatArray, derivatives: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("ts,tsc->tc", gradients, np.nan_to_num(derivatives)))
 
 
-def _halves(sides: FloatArray, rows: int) -> FloatArray:
-    """Half the differences between ahead and behind, float[rows, entries, contexts]."""
-    apart = sides.reshape(len(sides) // (2 * rows), 2, rows, sides.shape[1])
-    return np.asarray(((apart[:, 0] - apart[:, 1]) / 2).transpose(1, 2, 0))
+def _rates(entries: FloatArray, sides: Sides) -> FloatArray:
+    """Derivatives of what is known on all sides, float[rows, entries, contexts]."""
+    rows, contexts = sides.ahead.shape
+    apart = entries.reshape(contexts, 2, rows, entries.shape[1])
+    far = (sides.ahead + sides.behind).T[:, :, None]
+    return np.asarray(((apart[:, 0] - apart[:, 1]) / far).transpose(1, 2, 0))

@@ -170,11 +170,11 @@ class Simulator:
             InputError: as `predict`; gradients of another shape, or not finite.
         """
         table = self._table(contexts)
-        given = np.asarray(gradients, dtype=float)
+        given = _numbers("gradients", gradients)
         shape = (len(table["time"]), len(self.model.sensors))
         if given.shape != shape or not np.isfinite(given).all():
             raise InputError(
-                f"the gradients are float{list(given.shape)}, or not all finite",
+                f"the gradients have the shape {list(given.shape)}, or are not all finite",
                 "the adjoint of the simulation",
                 f"give finite float{list(shape)}",
             )
@@ -201,8 +201,14 @@ class Simulator:
         return DifferentiableSimulator(self, None if time is None else np.asarray(time, float))
 
     def _table(self, contexts: Mapping[str, ArrayLike]) -> Values:
+        if not isinstance(contexts, Mapping):
+            raise InputError(
+                f"contexts are a {type(contexts).__name__}", "contexts", "give names with values"
+            )
         given = {name: _numbers(name, value) for name, value in contexts.items()}
         rows = max((len(column) for column in given.values()), default=1)
+        if not rows:
+            raise InputError("there is no row", "contexts", "give a value or more of each")
         table = {}
         for name in ("time", *self.model.context):
             if name == "time" and name not in given:
