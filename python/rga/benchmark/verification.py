@@ -94,7 +94,9 @@ def _judge(name: str, checks: Sequence[Check]) -> VerificationResult:
     worst = max((check.ratio for check in checks), default=0.0)
     failure = next((check for check in checks if not check.ratio <= 1.0), None)
     passed = failure is None and bool(checks)
-    words = "nothing is expected of it" if not checks else failure and failure.words()
+    words = None if failure is None else failure.words()
+    if not checks:
+        words = "nothing is expected of it"
     return VerificationResult(name, passed, worst, len(checks), words)
 
 
