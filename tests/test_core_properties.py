@@ -310,3 +310,47 @@ def test_what_bends_much_stands_and_a_hinge_in_it_does_not(seed: int) -> None:
         assert abs(tip - exact) <= 1e-5 * exact
         with pytest.raises(_core.UnstableStructure):
             chain(count, along, hinged=True).solve()
+
+
+@pytest.mark.parametrize("released", [[4], [5], [4, 5], [3, 4, 5]])
+def test_a_release_askew_turns_with_all(released: list[int]) -> None:
+    """A rotation that nothing stiffens is held about any axis, and a moment about it is refused."""
+    steady = chain(1, np.array([1.0, 0.0, 0.0]), hinged=False)
+    structure = {**steady.structure, "coordinates": np.array([[0, 0, 0], [4, 0, 0], [4, 3, 0.0],
+                                                              [7, 0, 0], [4, 0, 3.0]])}  # fmt: skip
+    structure["ends"] = np.array([[0, 1], [2, 1], [3, 1], [4, 1]])
+    structure["frame"] = np.array([True, False, False, False])
+    structure["fixed"] = np.zeros((5, 6), dtype=bool)
+    structure["fixed"][[0, 2, 3, 4]] = True
+    for name in PER_MEMBER - {"ends", "frame"}:
+        structure[name] = np.repeat(steady.structure[name], 4, axis=0)
+    structure["connection"][0, [6 + dof for dof in released]] = 0.0
+    loads = {name: np.zeros((1, 5, 6)) for name in ("forces", "prescribed")}
+    loads |= {"strain": np.zeros((1, 4, 3)), "prescribed_inclined": np.zeros((1, 0))}
+    loads |= {key: array for key, array in steady.loads.items() if key.startswith("member_")}
+    loads["forces"][0, 1, :3] = [3e3, -2e3, 1e3]
+    straight = Case(structure, loads)
+    turn = Rotation.from_euler("zyx", [0.5, 0.3, -0.7]).as_matrix()
+    turned = Case(
+        {
+            **structure,
+            "coordinates": structure["coordinates"] @ turn.T,
+            "local_y": structure["local_y"] @ turn.T,
+        },
+        {**loads, "forces": (loads["forces"].reshape(1, 5, 2, 3) @ turn.T).reshape(1, 5, 6)},
+    )
+    one, other = straight.solve(), turned.solve()
+    same(other.end_forces, one.end_forces)
+    same(other.motions[:, :3], one.motions[:, :3] @ turn.T)
+    outputs = {
+        "kind": np.zeros(3, np.int64), "index": np.ones(3, np.int64), "vector": np.eye(3),
+        "other": np.full(3, -1), "total": np.zeros(3, bool),
+    }  # fmt: skip
+    every = _core.Refactored(turned.structure, turned.loads, outputs)
+    same(every.respond(np.ones((1, 4)), np.ones((1, 1)))[0], other.motions[1, :3])
+    moment = np.zeros(6)
+    moment[3:] = 1e3 * turn[:, released[0] - 3]
+    forces = turned.loads["forces"].copy()
+    forces[0, 1] += moment
+    with pytest.raises(_core.InvalidInput, match="moment"):
+        turned.with_loads(forces=forces).solve()

@@ -73,6 +73,13 @@ impl LowerTriangle {
         first + self.rows[first..end].partition_point(|&other| other < row)
     }
 
+    /// The same of an entry that may not be there.
+    pub fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let at = self.place(row, column);
+        let there = at < self.first[column + 1] && self.rows[at] == row;
+        there.then_some(at)
+    }
+
     pub fn diagonal(&self) -> Vec<f64> {
         let starts = &self.first[..self.size()];
         starts.iter().map(|&start| self.values[start]).collect()

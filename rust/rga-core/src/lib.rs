@@ -5,7 +5,7 @@
 //! (`input`, `check*`), members get their stiffness (`axes`, `element`,
 //! `connection`, `member`) and their fixed-end forces (`load`), supports and
 //! ties reduce the dofs (`constraint`), the reduced matrix is assembled
-//! (`model`, `reduction`, `assembly`) and factorised (`solve`, `stability`), and the outputs are
+//! (`model`, `reduction`, `assembly`, `turning`) and factorised (`solve`, `stability`), and the outputs are
 //! read off the balanced solution (`equilibrium`, `observe`). `respond` runs
 //! the steps; `friction` follows bearings through time.
 //!
@@ -54,6 +54,7 @@ mod scatter;
 mod solve;
 mod stability;
 mod system;
+mod turning;
 
 pub use condensed::Condensed;
 pub use directions::Directions;

@@ -65,8 +65,13 @@ impl Refactored {
         let reduction = Reduction::new(&constraints, &model.diagonal()?);
         let wanted = read_outputs(outputs);
         let (system, matrix) = System::new(&model, &constraints, &reduction, loads, &wanted)?;
+        let mut solver = Solver::analyse(matrix)?;
+        let mut weights = vec![0.0; system.weights.count()];
+        (system.weights).fill(&vec![1.0; system.weights.elements], &mut weights);
+        system.fill(&weights, solver.values_mut());
+        solver.find_turns(&reduction);
         Ok(Self {
-            solver: Solver::analyse(matrix)?,
+            solver,
             patterns: loads.pattern_count(),
             outputs: wanted.len(),
             model,
@@ -280,10 +285,12 @@ impl Refactored {
         if !solver.values_mut().iter().all(|value| value.is_finite()) {
             return Err(Error::invalid("the stiffness overflows; lower the factors"));
         }
+        solver.hold_turns();
         let mut loose = Vec::new();
         if !solver.factorise(&self.model, &self.reduction) {
             // Without some members, nothing may stiffen a rotation.
             system.fill(weights, solver.values_mut());
+            solver.hold_turns();
             loose = solver.hold_loose(&self.reduction, self.model.dofs);
             if !solver.factorise(&self.model, &self.reduction) {
                 return Err(solver.unstable(&self.model, &self.reduction));
@@ -293,6 +300,7 @@ impl Refactored {
             return Err(solver.unstable(&self.model, &self.reduction));
         }
         self.check_loose(weights, coefficients, load, &loose)?;
+        solver.check_turns(load, "the load")?;
         unknowns.copy_from_slice(load);
         let resisted = self.resisted(weights);
         if solver.solve_checked(unknowns, resisted)? {

@@ -87,6 +87,8 @@ impl<'a> Analysis<'a> {
             equilibrium.check_loose(&state, format_args!("pattern {pattern}"))?;
             let column = &mut unknowns[at * size..(at + 1) * size];
             self.reduction.collect(&state.unbalanced, column);
+            self.solver
+                .check_turns(column, format_args!("pattern {pattern}"))?;
             states.push(state);
         }
         let applied = unknowns.clone();

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::reduction::{NO_STIFFNESS, Reduction, stiffest};
 use crate::solve::Factor;
+use crate::turning::FreeTurn;
 
 /// Smallest pivot of the scaled matrix, whose diagonal is 1.
 const SMALLEST_PIVOT: f64 = 1e-11;
@@ -41,11 +42,17 @@ pub struct Solver {
     matrix: LowerTriangle,
     scale: Vec<f64>,
     factor: Factor,
+    /// Held in `matrix`.
+    turns: Vec<FreeTurn>,
 }
 
 impl Solver {
     pub fn new(model: &Model, reduction: &Reduction) -> Result<Self> {
-        let mut solver = Self::analyse(LowerTriangle::assemble(model, reduction))?;
+        let mut matrix = LowerTriangle::assemble(model, reduction);
+        let turns = FreeTurn::find(&matrix, reduction);
+        turns.iter().for_each(|turn| turn.hold(&mut matrix));
+        let mut solver = Self::analyse(matrix)?;
+        solver.turns = turns;
         let stands = solver.factorise(model, reduction);
         if stands && !solver.moves_freely(model, reduction, |_| 1.0)? {
             Ok(solver)
@@ -59,6 +66,7 @@ impl Solver {
         Ok(Self {
             scale: vec![1.0; matrix.size()],
             factor: Factor::analyse(&matrix)?,
+            turns: Vec::new(),
             matrix,
         })
     }
@@ -70,7 +78,28 @@ impl Solver {
             matrix: self.matrix.clone(),
             scale: self.scale.clone(),
             factor: self.factor.another()?,
+            turns: self.turns.clone(),
         })
+    }
+
+    /// Rotations about skew axes that nothing stiffens, from the values of K: they are held from
+    /// then on (`hold_turns`).
+    pub fn find_turns(&mut self, reduction: &Reduction) {
+        self.turns = FreeTurn::find(&self.matrix, reduction);
+    }
+
+    /// Holds them in new values of K.
+    pub fn hold_turns(&mut self) {
+        for turn in &self.turns {
+            turn.hold(&mut self.matrix);
+        }
+    }
+
+    /// A moment about one of them must not vanish silently. `forces` are those on the unknowns.
+    pub fn check_turns(&self, forces: &[f64], load: impl std::fmt::Display) -> Result<()> {
+        self.turns
+            .iter()
+            .try_for_each(|turn| turn.check(forces, &load))
     }
 
     /// Those of K; `factorise` must follow.
