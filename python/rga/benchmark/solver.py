@@ -14,7 +14,10 @@ from threadpoolctl import threadpool_limits
 from rga import __version__, _core
 from rga.benchmark.box_bridge import Arrays, Bridge, box_bridge
 from rga.benchmark.data_set import data_set_cost
+from rga.benchmark.truth.case_study import case_study_bridge
+from rga.model import Model
 from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
 from rga.simulation.condensation import Condensation
 from rga.simulation.factorisation import Factorisation
 
@@ -67,6 +70,8 @@ def measure(quick: bool = False, progress: Callable[[float], None] | None = None
         _few_stiffnesses_vary,
         _all_stiffnesses_vary,
         _one_sample,
+        _large_displacements,
+        _whole_model,
         _derivatives,
         _data_set,
     ]
@@ -150,6 +155,29 @@ def _one_sample(rows: int, seconds: float, roof: float) -> list[Figure]:
     inside = _shortest(lambda: ours.respond(q, stiffness), seconds) / many
     alone = _shortest(lambda: ours.respond(q[:1], stiffness[:1]), seconds)
     return [Figure("one sample from Python, over the time inside", (alone - inside) * 1e6, "us")]
+
+
+def _large_displacements(rows: int, seconds: float, roof: float) -> list[Figure]:
+    bridge = box_bridge()
+    q = 0.1 * _draw(64, len(bridge.loads["forces"]))
+    arrays = bridge.structure, bridge.loads, bridge.outputs
+    taken = _shortest(lambda: _core.respond_nonlinear(*arrays, q), seconds)
+    return [Figure("C4, large displacements", len(q) / taken, "samples/s")]
+
+
+def _whole_model(rows: int, seconds: float, roof: float) -> list[Figure]:
+    """The case study through `Simulator.predict`: parameters of all effects, then the response."""
+    model = Model.model_validate(case_study_bridge().model)
+    simulator, many = Simulator(model), min(rows, 4096)
+    ranges = {name: variable.range for name, variable in model.context.items()}
+    contexts = {name: np.linspace(low, high, many) for name, (low, high) in ranges.items()}
+    one = {name: column[:1] for name, column in contexts.items()}
+    alone = _shortest(lambda: simulator.predict(one), seconds)
+    together = _shortest(lambda: simulator.predict(contexts), seconds)
+    return [
+        Figure("case study, one row", alone * 1e6, "us"),
+        Figure(f"case study, a row of {many}", together / many * 1e6, "us"),
+    ]
 
 
 def _derivatives(rows: int, seconds: float, roof: float) -> list[Figure]:

@@ -82,6 +82,7 @@ def verify_case(path: str | Path) -> VerificationResult:
         failure = str(error)
     except KeyError as error:
         failure = f"the case lacks, or has nowhere, what it names {error.args[0]!r}"
+        readable = False
     except (OSError, RecursionError, ArithmeticError, *MALFORMED) as error:
         failure = f"the case cannot be read as one of this format ({error})"
         readable = False

@@ -1,7 +1,6 @@
 """Permanent loads under which the structure goes on yielding."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -45,8 +44,6 @@ class Creep(Effect):
     ) -> None:
         for name, of_effect in loads.items():
             loads[name] = [
-                replace(load, coefficient=load.coefficient * (1 + values["growth"]))
-                if load.permanent
-                else load
+                load.times(load.coefficient * (1 + values["growth"])) if load.permanent else load
                 for load in of_effect
             ]

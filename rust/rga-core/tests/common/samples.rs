@@ -128,26 +128,14 @@ pub fn run(
     rows: usize,
     threads: usize,
 ) -> Result<Vec<f64>> {
-    lend(batch, factors, coefficients, rows, |samples| {
-        batch.respond(samples, threads)
-    })
-}
-
-/// Samples in arrays of the shape that `batch` takes; what is too long or too short is lent as it
-/// is.
-pub fn lend<R>(
-    batch: &Refactored,
-    factors: &[f64],
-    coefficients: &[f64],
-    rows: usize,
-    work: impl FnOnce(Samples) -> R,
-) -> R {
+    // What is too long or too short is lent as it is.
     let shape =
         |values: &[f64], width: usize| [rows, values.len().checked_div(rows).unwrap_or(width)];
     let of_factors = shape(factors, batch.elements());
     let of_coefficients = shape(coefficients, batch.patterns());
-    work(Samples {
+    let samples = Samples {
         factors: Array::new(factors, &of_factors),
         coefficients: Array::new(coefficients, &of_coefficients),
-    })
+    };
+    batch.respond(samples, threads)
 }
