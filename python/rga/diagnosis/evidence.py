@@ -10,7 +10,7 @@ one of them likely.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -37,6 +37,7 @@ class Fit:
         hypotheses: those fitted.
         z: standard normal coordinates of all parameters, in their order, float[parameters].
         simulated: float[rows, sensors].
+        signatures: S, derivatives by z, float[parameters, sensors, rows].
         information: I + S' C^-1 S, float[parameters, parameters].
         log_evidence: against no effect at all.
     """
@@ -44,6 +45,7 @@ class Fit:
     hypotheses: tuple[Hypothesis, ...]
     z: FloatArray
     simulated: FloatArray
+    signatures: FloatArray
     information: FloatArray
     log_evidence: float
 
@@ -117,10 +119,12 @@ def fit(
         return _impossible(problem, hypotheses, z)
     loss, residual = misfit(simulated, z)
     information = np.eye(len(z))
+    signatures = np.zeros((0, *simulated.T.shape))
     for step in range(steps + 1 if len(z) else 0):
-        signatures = _signatures(simulate, simulated, z)
-        if signatures is None:
+        here = _signatures(simulate, simulated, z)
+        if here is None:
             return _impossible(problem, hypotheses, z)
+        signatures = here
         reduced = covariance.reduce(signatures)
         information = covariance.product(reduced, reduced) + np.eye(len(z))
         if step == steps:
@@ -140,14 +144,46 @@ def fit(
         gained, z, simulated, (loss, residual) = loss - lower[0], trial, there, lower
         if gained < ENOUGH:
             break
-    if base not in problem.at_nothing:
-        nothing, _ = misfit(data.read(base, about.response), np.zeros(0))
-        problem.at_nothing[base] = nothing
-    log_evidence = 0.5 * (
-        problem.at_nothing[base] - loss - float(np.linalg.slogdet(information)[1])
+    return _weighed(
+        problem, base, Fit(tuple(hypotheses), z, simulated, signatures, information, 0.0), loss
     )
-    log_evidence += sum(one.log_prior for one in hypotheses)
-    return Fit(tuple(hypotheses), z, simulated, information, log_evidence)
+
+
+def refit(problem: Problem, base: Simulator, one: Fit) -> Fit:
+    """A fit moved to where another covariance of the same record puts it, along its signatures.
+
+    Args:
+        problem: the same data and simulation, channels or noise taken otherwise.
+        base: the simulator without the hypotheses.
+        one: as it was fitted.
+    """
+    covariance = problem.covariance
+    residual = covariance.reduce(problem.residual(one.simulated).T[None])
+    if not len(one.z):
+        return _weighed(problem, base, one, float(covariance.squares(residual)[0]))
+    reduced = covariance.reduce(one.signatures)
+    information = covariance.product(reduced, reduced) + np.eye(len(one.z))
+    along = covariance.product(reduced, residual)[:, 0]
+    move = np.linalg.solve(information, along - one.z)
+    move *= min(1.0, LONGEST / max(np.abs(move).max(initial=0.0), 1e-12))
+    z = one.z + move
+    loss = float(covariance.squares(residual)[0] + z @ z - 2 * move @ along)
+    loss += float(move @ (information - np.eye(len(z))) @ move)
+    simulated = one.simulated + np.tensordot(move, one.signatures, 1).T
+    moved = replace(one, z=z, simulated=simulated, information=information)
+    return _weighed(problem, base, moved, loss)
+
+
+def _weighed(problem: Problem, base: Simulator, one: Fit, loss: float) -> Fit:
+    """The fit with its log evidence, its loss known."""
+    if base not in problem.at_nothing:
+        nothing = problem.residual(problem.data.predict(base)).T[None]
+        squares = problem.covariance.squares(problem.covariance.reduce(nothing))
+        problem.at_nothing[base] = float(squares[0])
+    freedom = float(np.linalg.slogdet(one.information)[1])
+    log_evidence = 0.5 * (problem.at_nothing[base] - loss - freedom)
+    log_evidence += sum(each.log_prior for each in one.hypotheses)
+    return replace(one, log_evidence=log_evidence)
 
 
 def _signatures(
@@ -164,4 +200,5 @@ def _signatures(
 
 
 def _impossible(problem: Problem, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Fit:
-    return Fit(tuple(hypotheses), z, problem.simulated, np.eye(len(z)), -np.inf)
+    signatures = np.zeros((len(z), *problem.simulated.T.shape))
+    return Fit(tuple(hypotheses), z, problem.simulated, signatures, np.eye(len(z)), -np.inf)

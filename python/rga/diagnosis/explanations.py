@@ -11,11 +11,11 @@ from itertools import product
 import numpy as np
 
 from rga.diagnosis.covariance import Covariance
-from rga.diagnosis.evidence import Fit, fit
+from rga.diagnosis.evidence import Fit, fit, refit
 from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.row_covariance import RowCovariance
-from rga.diagnosis.screening import Prospect, screen
+from rga.diagnosis.screening import Prospect, Screening
 from rga.diagnosis.search import Found, evidence
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
@@ -23,7 +23,6 @@ from rga.simulation import Simulator
 
 KINDS = {True: 14, False: 5}
 PARTNERS = 4
-STEPS = 5
 #: log evidence below which a fit has gone astray: no effect at all is this much likelier
 POOR = -15.0
 
@@ -141,7 +140,7 @@ def _off_axis(
             for one in hypotheses(bent.model, problem.data.sensors, ())
             if one.name == "gauge_position"
         ]
-        gauge = screen(problem, bent, gauges, onsets=False)[:1]
+        gauge = Screening(problem, bent, gauges).first[:1]
         found += [([prospect.hypothesis, one.hypothesis], [*prospect.z, *one.z]) for one in gauge]
     return found
 
@@ -170,8 +169,7 @@ def unseen_gap(
     squares = []
     for word, part in hidden.items():
         columns = [problem.data.sensors.index(name) for name in groups[word]]
-        blind = fit(part, base, one.hypotheses, one.z, STEPS) if one.hypotheses else one
-        square = problem.residual(blind.simulated) ** 2 / variance(problem)
+        square = problem.residual(refit(part, base, one).simulated) ** 2 / variance(problem)
         squares.append(square[:, columns][problem.data.observed[:, columns]])
     return float(np.concatenate(squares).mean()) if squares else float("nan")
 

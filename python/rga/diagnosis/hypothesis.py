@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from rga.model.schema import Model
 
 #: onsets that are told apart when the prior is spread over time
 ONSETS = 20
+Profile = Literal["step", "ramp"]
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class Hypothesis:
         place: as in the model file.
         priors: of the parameters, by name.
         onset: time at which the effect begins [s], or None for always.
+        profile: how it comes: at once, or growing to the last row.
         places: number of places at which the kind could act.
         kinds: number of kinds that could act.
     """
@@ -33,6 +35,7 @@ class Hypothesis:
     places: int
     kinds: int
     onset: float | None = None
+    profile: Profile = "step"
 
     def effect(self, z: Sequence[float] | FloatArray) -> Effect:
         """The effect with parameters at standard normal coordinates z, one a parameter."""
@@ -40,7 +43,8 @@ class Hypothesis:
             name: prior.value(float(one))
             for (name, prior), one in zip(self.priors.items(), z, strict=True)
         }
-        return self.kind(kind=self.name, **self.place, **values, onset=self.onset)
+        given = {**self.place, **values, "onset": self.onset, "profile": self.profile}
+        return self.kind(kind=self.name, **given)
 
     @property
     def name(self) -> str:
@@ -49,13 +53,17 @@ class Hypothesis:
 
     @property
     def log_prior(self) -> float:
-        """Log prior: kinds, places of a kind, and moments of an onset count alike."""
-        onset = np.log(2) + (0.0 if self.onset is None else np.log(ONSETS))
+        """Log prior: kinds, places of a kind, moments of an onset and profiles count alike."""
+        onset = np.log(2) + (0.0 if self.onset is None else np.log(2 * ONSETS))
         return float(-np.log(self.places) - np.log(self.kinds) - onset)
 
-    def beginning(self, onset: float | None) -> "Hypothesis":
+    def beginning(self, onset: float | None, profile: Profile = "step") -> "Hypothesis":
         """The same with another onset."""
-        return replace(self, onset=onset)
+        return replace(self, onset=onset, profile=profile)
+
+    def beginning_with(self, other: "Hypothesis") -> "Hypothesis":
+        """The same with the onset of another."""
+        return self.beginning(other.onset, other.profile)
 
     def same_place(self, other: "Hypothesis") -> bool:
         """True for the same kind at the same place."""

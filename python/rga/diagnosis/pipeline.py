@@ -1,6 +1,6 @@
 """The diagnosis: a model and a record in, findings out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -14,12 +14,12 @@ from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
 from rga.diagnosis.heldout import gain, held_out_rows
-from rga.diagnosis.hypothesis import Hypothesis, hypotheses
+from rga.diagnosis.hypothesis import hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
 from rga.diagnosis.problem import Problem, pose, relaxed
 from rga.diagnosis.robustness import with_hanging_leads, without_unhelpful
 from rga.diagnosis.row_covariance import BoolArray
-from rga.diagnosis.screening import screen
+from rga.diagnosis.screening import Screening
 from rga.diagnosis.search import ROUNDS, Found, search, settled, weighed
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault
@@ -63,11 +63,11 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     measured = set(record.contexts)
     candidates = hypotheses(model, data.sensors, measured)
     start = settled(base, data)
-    prospects = screen(start, base, candidates, progress=lambda x: progress("screening", x))
-    found = search(start, base, candidates, prospects, progress)
+    screening = Screening(start, base, candidates, lambda x: progress("screening", x))
+    found = search(start, base, candidates, screening, progress)
     noise = found.problem
-    found = _confirmed(found, candidates, progress)
-    tried = compare(found, prospects, lambda done: progress("comparing explanations", done))
+    found = _confirmed(found, screening, progress)
+    tried = compare(found, screening.first, lambda done: progress("comparing explanations", done))
 
     effects = tell.effects_of(found, prepared.record)
     faults = {f"fault of {fault.sensor}": _fault_effect(fault) for fault in prepared.faults}
@@ -85,7 +85,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
             *(tell.fault_cause(fault) for fault in prepared.faults),
             *tell.causes(found, effects, prepared.record),
         ],
-        unidentifiable=tell.unidentifiable(prospects),
+        unidentifiable=tell.unidentifiable(screening.first),
         unexplained={
             "share": share,
             "looks_like": leftover.in_words(found.problem, _drivers(found.problem.data, measured)),
@@ -105,7 +105,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     return findings
 
 
-def _confirmed(found: Found, candidates: Sequence[Hypothesis], progress: Progress) -> Found:
+def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     """The causes that stand once the structure that they leave is part of the noise.
 
     A cause that was named only because it resembles a pattern of unknown origin falls here, and
@@ -114,10 +114,10 @@ def _confirmed(found: Found, candidates: Sequence[Hypothesis], progress: Progres
     problem = leftover.with_leftovers(found.problem)
     if problem is found.problem:
         return found
-    found = weighed(problem, found.base, found.fit, candidates, progress)
+    found = weighed(problem, found.base, found.fit, screening, progress)
     helpful = without_unhelpful(found.problem, found.base, found.fit)
     if len(helpful.hypotheses) < len(found.fit.hypotheses):
-        found = weighed(found.problem, found.base, helpful, candidates, progress)
+        found = weighed(found.problem, found.base, helpful, screening, progress)
     return with_hanging_leads(found, lambda done: progress("leaving out channels", done))
 
 

@@ -5,20 +5,22 @@ explains, two things are asked of a cause beyond its evidence: that it helps cha
 fitted, and that its lead over a rival does not hang on a single channel.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
 
-from rga.diagnosis.evidence import Fit, fit
+from rga.diagnosis.evidence import Fit, refit
 from rga.diagnosis.explanations import hiding, sensor_groups, unseen_gap
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.search import Alternative, Found, without_cause
+from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: log-odds up to which a lead may hang on one channel
 DOUBTFUL = 30.0
-STEPS = 5
+#: channels that favour a cause most, which are left out one after the other
+FAVOURABLE = 8
 
 
 def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
@@ -56,13 +58,14 @@ def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found
     if not close:
         return found
     nearest = {key: one.behind for key, one in close.items()}
-    for step, sensor in enumerate(problem.data.sensors):
+    favourable = _favourable(found, close.values())
+    for step, sensor in enumerate(favourable):
         part = hiding(problem, [sensor])
-        causes = fit(part, found.base, found.fit.hypotheses, found.fit.z, STEPS)
+        causes = refit(part, found.base, found.fit)
         for key, one in close.items():
-            other = fit(part, found.base, one.fit.hypotheses, one.fit.z, STEPS)
+            other = refit(part, found.base, one.fit)
             nearest[key] = min(nearest[key], causes.log_evidence - other.log_evidence)
-        progress((step + 1) / len(problem.data.sensors))
+        progress((step + 1) / len(favourable))
     return replace(
         found,
         alternatives=tuple(
@@ -74,3 +77,19 @@ def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found
 
 def _nearer(one: Alternative, behind: float | None) -> Alternative:
     return one if behind is None else replace(one, behind=behind)
+
+
+def _favourable(found: Found, close: Iterable[Alternative]) -> list[str]:
+    """The channels on which the causes fit better than an alternative does."""
+    problem = found.problem
+
+    def misfit(one: Fit) -> FloatArray:
+        residual = problem.residual(one.simulated)
+        return np.asarray((residual.T * problem.covariance.inverse_times(residual)).sum(1))
+
+    own = misfit(found.fit)
+    chosen = set()
+    for one in close:
+        lead = misfit(one.fit) - own
+        chosen |= {k for k in np.argsort(-lead)[:FAVOURABLE] if lead[k] > 0}
+    return [problem.data.sensors[k] for k in sorted(chosen)]

@@ -1,24 +1,23 @@
 """Screening: which hypotheses are worth a fit, from their signatures alone."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
-from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.hypothesis import Hypothesis, Profile
 from rga.diagnosis.problem import Problem
-from rga.errors import InputError
-from rga.model.parameter import FloatArray, Normal
-from rga.model.structure import IntArray
+from rga.diagnosis.signatures import Block, chunks, signature, signatures
+from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
-#: channels that a signature may name; one that touches more is written on all
-FEW = 2
-#: numbers in the signatures that are judged together
-CHUNK = 1 << 19
 #: an onset leaves at least this share of a signature out of reach of constant scatter
 OUT_OF_REACH = 0.08
+#: prospects that are judged anew, by signatures about the simulation as it stands
+JUDGED = 60
+#: d' below which not even the largest of a hypothesis' trial values will ever be named
+HOPELESS = 1.5
+PROFILES: tuple[Profile, ...] = ("step", "ramp")
 
 
 @dataclass(frozen=True)
@@ -26,173 +25,260 @@ class Prospect:
     """A hypothesis with what its signature promises.
 
     Attributes:
+        number: of the hypothesis among the candidates.
         hypothesis: with an onset where one promises more.
         z: coordinates to start a fit from.
         score: approximate log evidence.
         largest: d' of the largest of the trial values, or of two prior deviations.
-    """
-
-    hypothesis: Hypothesis
-    z: tuple[float, ...]
-    score: float
-    largest: float
-
-
-@dataclass(frozen=True)
-class Signature:
-    """What a hypothesis changes at trial values of its parameters.
-
-    Attributes:
-        number: of the hypothesis among the candidates.
-        hypothesis: with its onset.
-        z: coordinates of the trial.
-        channels: those that it changes, int[channels]; None: all.
-        values: float[channels, rows].
+        trial: coordinates of the signature that promised it.
     """
 
     number: int
     hypothesis: Hypothesis
     z: tuple[float, ...]
-    channels: IntArray | None
-    values: FloatArray
+    score: float
+    largest: float
+    trial: tuple[float, ...]
 
 
-def screen(
-    problem: Problem,
-    simulator: Simulator,
-    candidates: Sequence[Hypothesis],
-    *,
-    onsets: bool = True,
-    progress: Callable[[float], None] = lambda done: None,
-) -> list[Prospect]:
-    """Prospects of all candidates, the best first, each candidate once.
+@dataclass(frozen=True)
+class Judged:
+    """Signatures with their sizes under the covariance of the first screening.
 
-    The signature of a candidate is the change of the simulation that it makes at trial values of
-    its parameters. Generalised least squares under the whole covariance gives the likelihood that
-    its best amplitude gains; the prior takes off what the freedom costs.
+    Attributes:
+        block: the signatures.
+        size: x' C^-1 x, float[k].
+        by_row: of every row, its part of x' W' W x, float[k, rows].
+    """
+
+    block: Block
+    size: FloatArray
+    by_row: FloatArray
+
+
+class Screening:
+    """The signatures of all candidates about one simulation.
+
+    Generalised least squares under the whole covariance gives the likelihood that the best
+    amplitude of a signature gains; the prior takes off what the freedom costs. Working out
+    signatures and their sizes is most of the work, and both change little when causes are added to
+    the simulation. So they are kept: about another simulation they rank the candidates, and the
+    best are judged anew.
 
     Args:
         problem: gives residual and covariance.
         simulator: the simulation to which the candidates are added.
         candidates: hypotheses without onset.
-        onsets: whether to try onsets too, at moments spread over the record; not where time and
-            the place of a load are one.
         progress: told the share that is done.
+
+    Attributes:
+        first: prospects about that simulation, the best first, each candidate once.
     """
-    data = problem.data
-    about = data.about(simulator)
-    base = data.read(simulator, about.response)
-    weighted = problem.covariance.inverse_times(problem.residual(base))
-    onsets = onsets and not data.belief.passing
-    best: dict[int, Prospect] = {}
-    waiting: dict[int, list[Signature]] = {}
 
-    def judge(several: list[Signature]) -> None:
-        for prospect, one in _judged(problem, weighted, several, onsets):
-            known = best.get(one.number)
-            if known is not None:
-                better = max(known, prospect, key=lambda each: each.score)
-                prospect = replace(better, largest=max(known.largest, prospect.largest))
-            best[one.number] = prospect
-        several.clear()
+    def __init__(
+        self,
+        problem: Problem,
+        simulator: Simulator,
+        candidates: Sequence[Hypothesis],
+        progress: Callable[[float], None] = lambda done: None,
+    ) -> None:
+        data, covariance = problem.data, problem.covariance
+        self._judged: list[Judged] = []
+        for block in chunks(signatures(data, data.about(simulator), candidates, progress)):
+            reduced = covariance.reduce(block.values, block.channels)
+            size = np.maximum(covariance.squares(reduced), 0.0)
+            by_row = (reduced.white**2).sum(1).astype(np.float32)
+            light = replace(block, values=block.values.astype(np.float32))
+            self._judged.append(Judged(light, size, by_row))
+        self.first = self._prospects(problem, simulator, set(), None)
+        hopeless = {one.number for one in self.first if one.largest < HOPELESS}
+        self._judged = [_without(one, hopeless) for one in self._judged]
 
-    for number, candidate in enumerate(candidates):
-        for z in product(*(prior.trials for prior in candidate.priors.values())):
-            try:
-                touched, change = data.change(about, candidate.effect(z))
-            except InputError:
-                continue
-            if len(touched) <= FEW:
-                one = Signature(number, candidate, z, touched, change.T)
-            else:
-                values = np.zeros((len(data.sensors), len(change)))
-                values[touched] = change.T
-                one = Signature(number, candidate, z, None, values)
-            together = waiting.setdefault(len(one.values), [])
-            together.append(one)
-            if len(together) * one.values.size > CHUNK:
-                judge(together)
-                progress((number + 1) / len(candidates))
-    for together in waiting.values():
-        judge(together)
-    return [best[number] for number in sorted(best, key=lambda k: (-best[k].score, k))]
+    def again(
+        self,
+        problem: Problem,
+        simulator: Simulator,
+        taken: Collection[Hypothesis],
+        beginning: Hypothesis | None = None,
+    ) -> list[Prospect]:
+        """Prospects about another simulation of the same record.
+
+        Args:
+            problem: gives residual and covariance.
+            simulator: the simulation to which the candidates are added.
+            taken: hypotheses that are left out.
+            beginning: one whose onset all candidates share; None: onsets are searched for.
+        """
+        return self._prospects(problem, simulator, taken, beginning)
+
+    def _prospects(
+        self,
+        problem: Problem,
+        simulator: Simulator,
+        taken: Collection[Hypothesis],
+        beginning: Hypothesis | None,
+    ) -> list[Prospect]:
+        data = problem.data
+        base = data.predict(simulator)
+        weighted = problem.covariance.inverse_times(problem.residual(base))
+        best: dict[int, Prospect] = {}
+        onsets = not data.belief.passing
+        for judged in self._judged:
+            for one in _promises(judged, weighted, data.time, onsets, beginning):
+                known = best.get(one.number, one)
+                better = max(known, one, key=lambda each: each.score)
+                best[one.number] = replace(better, largest=max(known.largest, one.largest))
+        kept = [
+            one
+            for one in best.values()
+            if not any(one.hypothesis.same_place(other) for other in taken)
+        ]
+        kept.sort(key=_rank)
+        return sorted(
+            [*judged_anew(problem, simulator, kept[:JUDGED], weighted), *kept[JUDGED:]], key=_rank
+        )
 
 
-def _judged(
-    problem: Problem, weighted: FloatArray, several: Sequence[Signature], onsets: bool
-) -> list[tuple[Prospect, Signature]]:
-    """Prospects of signatures on the same number of channels, and of onsets that may pay.
+def judged_anew(
+    problem: Problem,
+    simulator: Simulator,
+    prospects: Sequence[Prospect],
+    weighted: FloatArray,
+) -> list[Prospect]:
+    """Prospects by signatures about a simulation, each at the trial that promised it.
 
     Args:
+        problem: gives the covariance.
+        simulator: the simulation to which the hypotheses are added.
+        prospects: the hypotheses.
         weighted: C^-1 of the residual, float[sensors, rows].
     """
-    if not several:
-        return []
-    covariance = problem.covariance
-    columns = np.stack([one.values for one in several])
-    channels = None
-    if several[0].channels is not None:
-        channels = np.stack([one.channels for one in several if one.channels is not None])
-    reduced = covariance.reduce(columns, channels)
-    along = columns * (weighted if channels is None else weighted[channels])
-    sizes = covariance.squares(reduced)
-    judged = [
-        (_prospect(one.hypothesis, one.z, float(sum_), float(size)), one)
-        for one, sum_, size in zip(several, along.sum((1, 2)), sizes, strict=True)
-    ]
-    if onsets:
-        time = problem.data.time
-        likely = _likely_onsets(along.sum(1), (reduced.white**2).sum(1), several)
-        later = [
-            _beginning(one, row, time) for one, row in zip(several, likely, strict=True) if row
+    data, covariance = problem.data, problem.covariance
+    about = data.about(simulator)
+    largest = {one.number: one.largest for one in prospects}
+    several = (signature(data, about, one.number, one.hypothesis, one.trial) for one in prospects)
+    found = []
+    for block in chunks(one for one in several if one is not None):
+        size = covariance.squares(covariance.reduce(block.values, block.channels))
+        sums = block.along(weighted).sum(1)
+        prior = np.array([hypothesis.log_prior for _, hypothesis, _ in block.members])
+        score, start = _scored(block, sums, np.maximum(size, 0.0), prior)
+        found += [
+            Prospect(number, hypothesis, _coordinates(z, s), float(points), largest[number], z)
+            for (number, hypothesis, z), points, s in zip(block.members, score, start, strict=True)
         ]
-        judged += _judged(problem, weighted, later, onsets=False)
-    return judged
+    return found
 
 
-def _beginning(one: Signature, row: int, time: FloatArray) -> Signature:
-    values = one.values.copy()
-    values[:, :row] = 0.0
-    return replace(one, hypothesis=one.hypothesis.beginning(float(time[row])), values=values)
+def _promises(
+    judged: Judged,
+    weighted: FloatArray,
+    time: FloatArray,
+    onsets: bool,
+    beginning: Hypothesis | None,
+) -> list[Prospect]:
+    """The best prospect of every signature: from the start, or from its likeliest moment on."""
+    block = judged.block
+    along = block.along(weighted)
+    members = block.members
+    largest = np.sqrt(judged.size)
+    straight = block.straight & block.free
+    largest[straight] *= 2 / np.abs(block.z[straight, 0])
+    hypotheses = [hypothesis for _, hypothesis, _ in members]
+    options = []
+    if beginning is None or beginning.onset is None:
+        options.append((along.sum(1), judged.size, hypotheses))
+    white = judged.by_row.astype(float)
+    share = judged.size / np.maximum(white.sum(1), 1e-300)
+    if beginning is not None and beginning.onset is not None:
+        weight = _weights(time, beginning.profile)[int(np.searchsorted(time, beginning.onset))]
+        size = share * (white @ weight**2)
+        options.append((along @ weight, size, [h.beginning_with(beginning) for h in hypotheses]))
+    elif beginning is None and onsets:
+        margin = max(2, len(time) // 50)
+        inner = slice(margin, len(time) - margin)
+        share = np.maximum(share, OUT_OF_REACH)
+        for profile in PROFILES:
+            weight = _weights(time, profile)[inner]
+            sums = along @ weight.T
+            sizes = share[:, None] * (white @ (weight**2).T) + 1e-300
+            row = np.argmax(sums**2 / sizes, axis=1)
+            every = np.arange(len(row))
+            moments = time[inner][row]
+            later = [
+                h.beginning(float(moment), profile)
+                for h, moment in zip(hypotheses, moments, strict=True)
+            ]
+            options.append((sums[every, row], sizes[every, row], later))
+    found = []
+    scores = []
+    for sums, size, which in options:
+        prior = np.array([hypothesis.log_prior for hypothesis in which])
+        scores.append(_scored(block, sums, size, prior))
+    order = np.argmax([score for score, _ in scores], axis=0) if scores else []
+    for k, option in enumerate(order):
+        number, _, z = members[k]
+        score, start = (part[k] for part in scores[option])
+        found.append(
+            Prospect(
+                number,
+                options[option][2][k],
+                _coordinates(z, start),
+                float(score),
+                float(largest[k]),
+                z,
+            )
+        )
+    return found
 
 
-def _likely_onsets(along: FloatArray, size: FloatArray, several: Sequence[Signature]) -> list[int]:
-    """Row at which an onset of each signature promises most; 0 where none can pay.
+def _weights(time: FloatArray, profile: Profile) -> FloatArray:
+    """Shares of an effect that begins at each row, float[beginnings, rows]."""
+    later = time >= time[:, None]
+    if profile == "step":
+        return later.astype(float)
+    left = np.maximum(time[-1] - time, 1e-12)
+    return np.where(later, (time - time[:, None]) / left[:, None], 0.0)
 
-    Sums from the last row backwards give x' C^-1 r for every onset at once, and bound x' C^-1 x.
 
-    Args:
-        along, size: x' C^-1 r and x' W' W x of every row, float[signatures, rows].
+def _scored(
+    block: Block, along: FloatArray, size: FloatArray, prior: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Scores of signatures with x' C^-1 r = along and x' C^-1 x = size, and z of their best.
+
+    The latter is float[k], the value of all coordinates, or NaN: those of the trial.
     """
-    rows = along.shape[1]
-    margin = max(2, rows // 50)
-    if rows <= 2 * margin:
-        return [0] * len(several)
-    inner = slice(margin, rows - margin)
-    along = np.cumsum(along[:, ::-1], axis=1)[:, ::-1][:, inner]
-    size = np.cumsum(size[:, ::-1], axis=1)[:, ::-1][:, inner]
-    gain = along**2 / np.maximum(size, 1e-300)
-    promise = gain.max(1) / (2 * OUT_OF_REACH)
-    prior = [one.hypothesis.beginning(1.0).log_prior for one in several]
-    return [int(row) for row in np.where(promise + prior > 0, gain.argmax(1) + margin, 0)]
-
-
-def _prospect(hypothesis: Hypothesis, z: tuple[float, ...], along: float, size: float) -> Prospect:
-    """Score of a signature with x' C^-1 r = along and x' C^-1 x = size."""
-    prior = hypothesis.log_prior
-    size = max(size, 0.0)
-    largest = float(np.sqrt(size))
-    if size == 0:
-        return Prospect(hypothesis, z, -np.inf, 0.0)
-    if not z:
-        return Prospect(hypothesis, z, along - size / 2 + prior, largest)
-    if all(isinstance(one, Normal) for one in hypothesis.priors.values()):
-        # A straight line in z: the evidence is exact.
-        per_z = size / z[0] ** 2
-        gain = (along / z[0]) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
-        best = along / z[0] / (1 + per_z)
-        return Prospect(hypothesis, tuple([best] * len(z)), gain + prior, 2 * largest / abs(z[0]))
+    first = np.where(block.free & block.straight, block.z[:, 0], 1.0)
+    # A straight line in z: the evidence is exact.
+    per_z = size / first**2
+    straight = (along / first) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
     # A curve: the amplitude may differ a little from that of the trial, not in sign.
-    amplitude = float(np.clip(along / size, 0.0, 3.0))
-    gain = amplitude * along - amplitude**2 * size / 2
-    return Prospect(hypothesis, z, gain - 0.5 * float(np.dot(z, z)) + prior, largest)
+    amplitude = np.clip(along / np.maximum(size, 1e-300), 0.0, 3.0)
+    curve = amplitude * along - amplitude**2 * size / 2 - (block.z**2).sum(1) / 2
+    fixed = along - size / 2
+    score = np.where(block.free, np.where(block.straight, straight, curve), fixed)
+    start = np.where(block.free & block.straight, along / first / (1 + per_z), np.nan)
+    return np.where(size > 0, score + prior, -np.inf), start
+
+
+def _coordinates(z: tuple[float, ...], start: float) -> tuple[float, ...]:
+    return z if np.isnan(start) else (float(start),) * len(z)
+
+
+def _rank(one: Prospect) -> tuple[float, int]:
+    return -one.score, one.number
+
+
+def _without(judged: Judged, hopeless: set[int]) -> Judged:
+    kept = np.array([number not in hopeless for number, _, _ in judged.block.members], dtype=bool)
+    block = judged.block
+    few = replace(
+        block,
+        members=[one for one, keep in zip(block.members, kept, strict=True) if keep],
+        channels=None if block.channels is None else block.channels[kept],
+        values=block.values[kept],
+        z=block.z[kept],
+        straight=block.straight[kept],
+        free=block.free[kept],
+    )
+    return Judged(few, judged.size[kept], judged.by_row[kept])

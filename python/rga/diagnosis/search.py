@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from rga.diagnosis.evidence import Fit, extended, fit
 from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.problem import Problem, pose, relaxed
 from rga.diagnosis.scatter import level_evidence
-from rga.diagnosis.screening import Prospect, screen
+from rga.diagnosis.screening import Prospect, Screening
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
@@ -25,6 +24,8 @@ EXCHANGES = 3
 WORTH_EXCHANGE = 1.0
 ROUNDS = 4
 MOST_CAUSES = 5
+#: rounds of posing and fitting, and the change of z below which the second is left out
+SETTLED, STILL = 2, 0.05
 Progress = Callable[[str, float], None]
 
 
@@ -66,7 +67,7 @@ def search(
     start: Problem,
     base: Simulator,
     candidates: Sequence[Hypothesis],
-    prospects: Sequence[Prospect],
+    screening: Screening,
     progress: Progress,
 ) -> Found:
     """Find the causes that the record names.
@@ -75,15 +76,15 @@ def search(
         start: the record about the simulation as it was given.
         base: that simulation.
         candidates: all hypotheses.
-        prospects: of these, from a screening of `start`.
+        screening: of these, about `start`.
         progress: told what is done and which share of it.
     """
     problem, current = start, fit(start, base, [], [])
     for number in range(MOST_CAUSES):
+        prospects = screening.first
         if number:
-            stage = partial(progress, f"looking for cause {number + 1}")
-            others = _others(candidates, current)
-            prospects = screen(problem, current.simulator(base), others, progress=stage)
+            progress(f"looking for cause {number + 1}", 0.0)
+            prospects = screening.again(problem, current.simulator(base), current.hypotheses)
         best = _best(problem, base, current, prospects)
         if best is None:
             break
@@ -91,14 +92,14 @@ def search(
         problem, current = _settled_with(base, problem, best)
         problem, current = _merged(base, problem, current, candidates)
         problem, current = _pruned(base, problem, current)
-    return weighed(problem, base, current, candidates, progress)
+    return weighed(problem, base, current, screening, progress)
 
 
 def weighed(
     problem: Problem,
     base: Simulator,
     current: Fit,
-    candidates: Sequence[Hypothesis],
+    screening: Screening,
     progress: Progress,
 ) -> Found:
     """Causes weighed against leaving each out, and against what could stand in its place.
@@ -114,7 +115,7 @@ def weighed(
             without = without_cause(problem, base, current, number)
             odds.append(current.log_evidence - without.log_evidence)
             alternatives.append(
-                tuple(_alternatives(problem, base, current, without, number, candidates))
+                tuple(_alternatives(problem, base, current, without, number, screening))
             )
         found = Found(problem, current, base, tuple(alternatives), tuple(odds))
         better = max((one[0].fit for one in alternatives if one), key=evidence, default=current)
@@ -207,11 +208,12 @@ def worth_fitting(prospects: Sequence[Prospect]) -> list[Prospect]:
 def _settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem, Fit]:
     """The problem posed anew about the extended simulation, and the causes fitted again."""
     current = best
-    for _ in range(2):
+    for _ in range(SETTLED):
         simulator = current.simulator(base)
-        problem = pose(simulator, problem.data, problem)
-        problem = pose(simulator, relaxed(problem), problem)
-        current = fit(problem, base, current.hypotheses, current.z)
+        problem = pose(simulator, relaxed(pose(simulator, problem.data, problem)), problem)
+        before, current = current, fit(problem, base, current.hypotheses, current.z)
+        if np.abs(current.z - before.z).max(initial=0.0) < STILL:
+            break
     return problem, current
 
 
@@ -255,15 +257,12 @@ def _alternatives(
     current: Fit,
     without: Fit,
     number: int,
-    candidates: Sequence[Hypothesis],
+    screening: Screening,
 ) -> list[Alternative]:
     """Other hypotheses in the place of a cause, fitted beside the others, the best first."""
     cause = current.hypotheses[number]
-    rest = [one for one in candidates if not any(one.same_place(h) for h in current.hypotheses)]
     simulator = without.simulator(base)
-    if cause.onset is not None:
-        rest = [one.beginning(cause.onset) for one in rest]
-    prospects = screen(problem, simulator, rest, onsets=False)
+    prospects = screening.again(problem, simulator, current.hypotheses, beginning=cause)
     found = []
     for prospect in worth_fitting(prospects):
         one = fit(
@@ -272,9 +271,3 @@ def _alternatives(
         behind = current.log_evidence - one.log_evidence
         found.append(Alternative(prospect.hypothesis, one, behind))
     return sorted(found, key=lambda one: -one.fit.log_evidence)
-
-
-def _others(candidates: Sequence[Hypothesis], current: Fit) -> list[Hypothesis]:
-    return [
-        one for one in candidates if not any(one.same_place(taken) for taken in current.hypotheses)
-    ]
