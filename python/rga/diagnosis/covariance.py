@@ -159,10 +159,21 @@ class Covariance:
         left = left - np.einsum("tsi,ti->ts", self.rows.context_jacobian, error)
         return self.rows.unwhiten(self.rows.whiten(left.T))
 
-    def log_likelihood(self, score: FloatArray) -> float:
-        """Log likelihood of the scatter up to a constant; `score` is B' R^-1 residual."""
+    def log_likelihood(self, score: FloatArray) -> tuple[float, FloatArray]:
+        """Log likelihood of the scatter up to a constant, and its derivatives.
+
+        Args:
+            score: B' R^-1 residual, float[effects].
+
+        Returns:
+            The likelihood, and its derivatives by the logarithms of the spreads, float[effects]:
+            second moment of each effect over its prior variance, less one.
+        """
         logdet = 2 * np.log(np.diag(self._factor)).sum() + 2 * np.log(self.spread).sum()
-        return float(0.5 * score @ self._solved(score) - 0.5 * logdet)
+        mean = self._solved(score)
+        inverse, _ = lapack.dpotri(self._factor, lower=1)
+        moment = mean**2 + np.diag(inverse)
+        return float(0.5 * score @ mean - 0.5 * logdet), moment / self.spread**2 - 1.0
 
     def _solved(self, right: FloatArray) -> FloatArray:
         return np.asarray(cho_solve((self._factor, True), right, check_finite=False))

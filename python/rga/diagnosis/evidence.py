@@ -10,7 +10,7 @@ one of them likely.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -48,6 +48,9 @@ class Fit:
     signatures: FloatArray
     information: FloatArray
     log_evidence: float
+    _simulators: dict[Simulator, Simulator] = field(
+        default_factory=dict, init=False, compare=False, repr=False
+    )
 
     def slices(self) -> list[slice]:
         """The parameters of each hypothesis in z."""
@@ -56,7 +59,9 @@ class Fit:
 
     def simulator(self, base: Simulator) -> Simulator:
         """The base with the effects as fitted."""
-        return extended(base, self.hypotheses, self.z)
+        if base not in self._simulators:
+            self._simulators[base] = extended(base, self.hypotheses, self.z)
+        return self._simulators[base]
 
     def spreads(self) -> FloatArray:
         """Posterior standard deviation of each coordinate z."""
@@ -65,13 +70,16 @@ class Fit:
         )
 
 
-def effects_at(hypotheses: Sequence[Hypothesis], z: FloatArray) -> dict[str, Effect]:
-    """The effects of hypotheses at coordinates z, named by number."""
+def effects_at(
+    hypotheses: Sequence[Hypothesis], z: FloatArray, last: int | None = None
+) -> dict[str, Effect]:
+    """The effects of hypotheses at coordinates z, named by number; the last number may be given."""
     effects = {}
     first = 0
-    for number, one in enumerate(hypotheses):
+    before = 0 if last is None else last - len(hypotheses)
+    for number, one in enumerate(hypotheses, before + 1):
         count = len(one.priors)
-        effects[f"cause {number + 1}"] = one.effect(z[first : first + count])
+        effects[f"cause {number}"] = one.effect(z[first : first + count])
         first += count
     return effects
 
@@ -86,7 +94,7 @@ def fit(
     base: Simulator,
     hypotheses: Sequence[Hypothesis],
     start: Sequence[float] | FloatArray,
-    steps: int = STEPS,
+    beside: Fit | None = None,
 ) -> Fit:
     """The most likely parameters of hypotheses together, by Gauss-Newton steps on the real model.
 
@@ -95,19 +103,25 @@ def fit(
         base: the simulator without the hypotheses.
         hypotheses: fitted together.
         start: coordinates to begin with.
-        steps: largest number of steps.
+        beside: a fit of hypotheses that stand first among these: they move along its signatures,
+            which costs less than to simulate them anew.
 
     Returns:
         The fit; its log evidence is minus infinity where the model cannot be simulated.
     """
     covariance, data = problem.covariance, problem.data
-    about = data.about(base)
+    known = 0 if beside is None else len(beside.z)
+    about = data.about(base if beside is None else beside.simulator(base))
+    added = hypotheses if beside is None else hypotheses[len(beside.hypotheses) :]
 
     def simulate(z: FloatArray) -> FloatArray | None:
         try:
-            return data.tried(about, effects_at(hypotheses, z))
+            simulated = data.tried(about, effects_at(added, z[known:], len(hypotheses)))
         except InputError:
             return None
+        if beside is None or not known:
+            return simulated
+        return np.asarray(simulated + np.tensordot(z[:known] - beside.z, beside.signatures, 1).T)
 
     def misfit(simulated: FloatArray, z: FloatArray) -> tuple[float, Reduced]:
         residual = covariance.reduce(problem.residual(simulated).T[None])
@@ -120,14 +134,14 @@ def fit(
     loss, residual = misfit(simulated, z)
     information = np.eye(len(z))
     signatures = np.zeros((0, *simulated.T.shape))
-    for step in range(steps + 1 if len(z) else 0):
-        here = _signatures(simulate, simulated, z)
+    for step in range(STEPS + 1 if len(z) else 0):
+        here = _signatures(simulate, simulated, z, known)
         if here is None:
             return _impossible(problem, hypotheses, z)
-        signatures = here
+        signatures = here if beside is None else np.concatenate([beside.signatures, here])
         reduced = covariance.reduce(signatures)
         information = covariance.product(reduced, reduced) + np.eye(len(z))
-        if step == steps:
+        if step == STEPS:
             break
         move = np.linalg.solve(information, covariance.product(reduced, residual)[:, 0] - z)
         move *= min(1.0, LONGEST / max(np.abs(move).max(), 1e-12))
@@ -187,11 +201,14 @@ def _weighed(problem: Problem, base: Simulator, one: Fit, loss: float) -> Fit:
 
 
 def _signatures(
-    simulate: Callable[[FloatArray], FloatArray | None], simulated: FloatArray, z: FloatArray
+    simulate: Callable[[FloatArray], FloatArray | None],
+    simulated: FloatArray,
+    z: FloatArray,
+    known: int,
 ) -> FloatArray | None:
-    """Derivatives of the simulation by z, float[parameters, sensors, rows]."""
-    columns = np.zeros((len(z), *simulated.T.shape))
-    for number, along in enumerate(np.eye(len(z))):
+    """Derivatives of the simulation by z behind those known, float[parameters, sensors, rows]."""
+    columns = np.zeros((len(z) - known, *simulated.T.shape))
+    for number, along in enumerate(np.eye(len(z))[known:]):
         ahead = simulate(z + STEP * along)
         if ahead is None:
             return None

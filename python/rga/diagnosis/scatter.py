@@ -216,7 +216,7 @@ def level_evidence(
     score = reduced.score[:, 0]
     levels = _most_likely(covariance, scatter, score, start, np.zeros(len(score), dtype=bool))
     own = float((reduced.white**2).sum() - (reduced.context**2).sum())
-    gained = covariance.with_spread(scatter.spread(levels)).log_likelihood(score)
+    gained, _ = covariance.with_spread(scatter.spread(levels)).log_likelihood(score)
     return gained - 0.5 * own - 0.5 * float(_surprise(levels))
 
 
@@ -227,14 +227,18 @@ def _most_likely(
     start: FloatArray,
     apart: NDArray[np.bool_],
 ) -> FloatArray:
-    def loss(logs: FloatArray) -> float:
+    members = np.array([scatter.family == number for number in range(len(LEVELS))])
+
+    def loss(logs: FloatArray) -> tuple[float, FloatArray]:
         levels = np.exp(logs)
         spread = scatter.spread(levels) * np.where(apart, APART, 1.0)
-        return float(0.5 * _surprise(levels) - covariance.with_spread(spread).log_likelihood(score))
+        likelihood, slopes = covariance.with_spread(spread).log_likelihood(score)
+        pull = (logs - np.log(MEDIANS)) / SPREADS**2
+        return 0.5 * _surprise(levels) - likelihood, pull - members @ slopes
 
     inside = np.clip(np.log(start), *np.transpose(BOUNDS))
-    options = {"xatol": 0.03, "fatol": 0.1}
-    found = minimize(loss, inside, method="Nelder-Mead", bounds=BOUNDS, options=options)
+    options = {"ftol": 1e-5, "gtol": 0.05, "maxiter": 20}
+    found = minimize(loss, inside, jac=True, method="L-BFGS-B", bounds=BOUNDS, options=options)
     return np.asarray(np.exp(found.x))
 
 

@@ -184,49 +184,40 @@ def _promises(
     largest = np.sqrt(judged.size)
     straight = block.straight & block.free
     largest[straight] *= 2 / np.abs(block.z[straight, 0])
-    hypotheses = [hypothesis for _, hypothesis, _ in members]
-    options = []
-    if beginning is None or beginning.onset is None:
-        options.append((along.sum(1), judged.size, hypotheses))
+    before = np.array([hypothesis.log_prior for _, hypothesis, _ in members])
+    later = np.array([hypothesis.beginning(0.0).log_prior for _, hypothesis, _ in members[:1]])
+    later = before + (later - before[:1])
+    options: list[tuple[FloatArray, FloatArray]] = []
+    moments: list[tuple[FloatArray | None, Profile]] = []
     white = judged.by_row.astype(float)
     share = judged.size / np.maximum(white.sum(1), 1e-300)
-    if beginning is not None and beginning.onset is not None:
+    if beginning is None or beginning.onset is None:
+        options.append(_scored(block, along.sum(1), judged.size, before))
+        moments.append((None, "step"))
+    else:
         weight = _weights(time, beginning.profile)[int(np.searchsorted(time, beginning.onset))]
-        size = share * (white @ weight**2)
-        options.append((along @ weight, size, [h.beginning_with(beginning) for h in hypotheses]))
-    elif beginning is None and onsets:
+        options.append(_scored(block, along @ weight, share * (white @ weight**2), later))
+        moments.append((np.full(len(members), beginning.onset), beginning.profile))
+    if beginning is None and onsets:
         margin = max(2, len(time) // 50)
         inner = slice(margin, len(time) - margin)
-        share = np.maximum(share, OUT_OF_REACH)
+        share = np.maximum(share, OUT_OF_REACH)[:, None]
+        every = np.arange(len(members))
         for profile in PROFILES:
             weight = _weights(time, profile)[inner]
-            sums = along @ weight.T
-            sizes = share[:, None] * (white @ (weight**2).T) + 1e-300
+            sums, sizes = along @ weight.T, share * (white @ (weight**2).T) + 1e-300
             row = np.argmax(sums**2 / sizes, axis=1)
-            every = np.arange(len(row))
-            moments = time[inner][row]
-            later = [
-                h.beginning(float(moment), profile)
-                for h, moment in zip(hypotheses, moments, strict=True)
-            ]
-            options.append((sums[every, row], sizes[every, row], later))
+            options.append(_scored(block, sums[every, row], sizes[every, row], later))
+            moments.append((time[inner][row], profile))
+    chosen = np.argmax([score for score, _ in options], axis=0)
     found = []
-    scores = []
-    for sums, size, which in options:
-        prior = np.array([hypothesis.log_prior for hypothesis in which])
-        scores.append(_scored(block, sums, size, prior))
-    order = np.argmax([score for score, _ in scores], axis=0) if scores else []
-    for k, option in enumerate(order):
-        number, _, z = members[k]
-        score, start = (part[k] for part in scores[option])
+    for k, (number, hypothesis, z) in enumerate(members):
+        (moment, profile), (score, start) = moments[chosen[k]], options[chosen[k]]
+        if moment is not None:
+            hypothesis = hypothesis.beginning(float(moment[k]), profile)
         found.append(
             Prospect(
-                number,
-                options[option][2][k],
-                _coordinates(z, start),
-                float(score),
-                float(largest[k]),
-                z,
+                number, hypothesis, _coordinates(z, start[k]), float(score[k]), float(largest[k]), z
             )
         )
     return found

@@ -176,9 +176,7 @@ def _best(
 ) -> Fit | None:
     """The likeliest of the prospects beside the causes so far, if it is to be named."""
     fits = [
-        fit(problem, base, [*current.hypotheses, p.hypothesis], [*current.z, *p.z])
-        for p in worth_fitting(prospects)
-        if p.score > 0
+        _with_one_more(problem, base, current, p) for p in worth_fitting(prospects) if p.score > 0
     ]
     fits.sort(key=lambda one: -one.log_evidence)
     for one in fits[:JUDGED]:
@@ -186,6 +184,11 @@ def _best(
         if gained >= NAMED or gained + _lower_scatter(problem, current, one) >= NAMED:
             return one
     return None
+
+
+def _with_one_more(problem: Problem, base: Simulator, current: Fit, prospect: Prospect) -> Fit:
+    together = [*current.hypotheses, prospect.hypothesis]
+    return fit(problem, base, together, [*current.z, *prospect.z], beside=current)
 
 
 def _lower_scatter(problem: Problem, current: Fit, one: Fit) -> float:
@@ -265,9 +268,7 @@ def _alternatives(
     prospects = screening.again(problem, simulator, current.hypotheses, beginning=cause)
     found = []
     for prospect in worth_fitting(prospects):
-        one = fit(
-            problem, base, [*without.hypotheses, prospect.hypothesis], [*without.z, *prospect.z]
-        )
+        one = _with_one_more(problem, base, without, prospect)
         behind = current.log_evidence - one.log_evidence
         found.append(Alternative(prospect.hypothesis, one, behind))
     return sorted(found, key=lambda one: -one.fit.log_evidence)

@@ -71,7 +71,8 @@ class Difference:
 class Reanalysis:
     """The response of one structure, and of those near it.
 
-    What unit pseudo-forces at every truss member and spring do is known from one solve. A term of
+    What unit pseudo-forces at every truss member and spring do is known from one solve, and what
+    they do along frame members with springs at their ends: trusses with stiff joints. A term of
     stiffness k + d and elongation v acts like one of stiffness k with the pseudo-force d v beside
     it, so that structures that differ in few terms cost a system of as many equations
     (`condensation` has the algebra and its source).
@@ -87,7 +88,8 @@ class Reanalysis:
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         arrays = structure.arrays
-        members = np.flatnonzero(~arrays["frame"])
+        springy = np.isfinite(arrays["connection"]) & (arrays["connection"] > 0)
+        members = np.flatnonzero(~arrays["frame"] | springy.any(axis=1))
         springs = np.arange(len(arrays["spring_stiffness"]))
         #: number of each term, springs behind all members
         self._terms = np.concatenate([members, len(arrays["frame"]) + springs])
@@ -95,7 +97,9 @@ class Reanalysis:
         self._stiffness = self._stiffness_of(structure)
         self._content = self._but_stiffness(structure)
         self._nodes = np.unique(arrays["ends"][arrays["frame"]])
-        self._stretching, _ = stiffness_terms(arrays, structure.outputs, members, springs)
+        self._stretching, _ = stiffness_terms(
+            arrays, structure.outputs, members, springs, axial=True
+        )
         wanted = with_motions(structure.outputs, self._stretching)
         moved = motions(self._nodes)
         self._outputs = {
@@ -122,7 +126,11 @@ class Reanalysis:
         """Where stiffnesses differ; None where more than few stiffnesses do."""
         if self._but_stiffness(other) != self._content:
             return None
-        terms = np.flatnonzero((self._stiffness_of(other) != self._stiffness)[self._terms])
+        straight = np.append(
+            ~self.structure.arrays["frame"], np.ones(len(other.arrays["spring_stiffness"]), bool)
+        )
+        differ = (self._stiffness_of(other) != self._stiffness) & straight
+        terms = np.flatnonzero(differ[self._terms])
         own, theirs = self.structure.arrays, other.arrays
         differs = np.any([own[name] != theirs[name] for name in AXIAL], axis=0)
         frames = np.flatnonzero(differs & own["frame"])
@@ -150,13 +158,16 @@ class Reanalysis:
         return np.asarray(loaded.outputs - (elongations * stiffer) @ self._influence[terms])
 
     def onto(self, loaded: Loaded, members: IntArray, springs: IntArray) -> OnTerms | None:
-        """The structure under loads condensed onto truss members and springs; None for frames."""
-        frame = self.structure.arrays["frame"]
-        if frame[members].any():
+        """The structure under loads condensed along members and onto springs.
+
+        None for frame members without springs at their ends.
+        """
+        wanted = np.append(members, len(self._lengths) + springs)
+        if not np.isin(wanted, self._terms).all():
             return None
-        terms = np.searchsorted(self._terms, np.append(members, len(frame) + springs))
+        terms = np.searchsorted(self._terms, wanted)
         return OnTerms(
-            self._stiffness[self._terms[terms]],
+            self._stretching.stiffness[terms],
             loaded.outputs,
             loaded.elongations[:, terms],
             self._influence[terms],
@@ -194,14 +205,14 @@ class Reanalysis:
         )
 
     def rates(self, loaded: Loaded) -> dict[int, FloatArray]:
-        """Derivatives of the outputs by the logarithm of the stiffness of truss members.
+        """Derivatives of the outputs by the logarithm of EA of members that are terms.
 
         Returns:
             float[patterns, outputs] by the number of the member.
         """
-        count = len(self.structure.arrays["frame"])
+        count = len(self._lengths)
         return {
-            int(member): -self._stiffness[member]
+            int(member): -self._stretching.stiffness[term]
             * np.outer(loaded.elongations[:, term], self._influence[term])
             for term, member in enumerate(self._terms)
             if member < count

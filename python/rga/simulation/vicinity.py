@@ -142,7 +142,9 @@ class Vicinity:
         return replace(self.response, values=values, quantities=quantities)
 
     def stiffness_rates(self) -> dict[int, FloatArray]:
-        """Derivatives by the logarithm of the stiffness of truss members, by their numbers.
+        """Derivatives by the logarithm of EA of members, by their numbers.
+
+        Those of truss members, and of frame members with springs at their ends.
 
         Returns:
             float[rows, sensors] of each member, in the sensors' units; none where the structure
