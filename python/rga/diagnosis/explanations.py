@@ -89,7 +89,9 @@ def compare(
     )
     tried = []
     for number, (together, start) in enumerate(_each_once(chosen)):
-        one = fit(problem, base, together, start)
+        first = together[: len(causes.hypotheses)]
+        more = len(together) > len(first) and first == list(causes.hypotheses)
+        one = fit(problem, base, together, start, beside=causes if more else None)
         if len(together) == 1 and one.log_evidence < POOR:
             # The signature of a kind that slips or opens misleads: begin from every trial value.
             trials = product(*(prior.trials for prior in together[0].priors.values()))

@@ -12,6 +12,7 @@ from rga import _core
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
+from rga.simulation.along_line import between, positions
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.factorisation import Factorisation
 from rga.simulation.friction import respond_with_friction
@@ -25,6 +26,8 @@ NOTHING: IntArray = np.zeros(0, np.int64)
 APART = 4
 #: terms that vary, beyond which a factorisation of the whole structure is no dearer
 MOST_TERMS = 32
+#: rows whose responses are interpolated together
+TOGETHER = 256
 #: condensed structures that a simulator keeps
 KEPT = 8
 Path = Literal["C1", "C2", "C3", "C4"]
@@ -193,6 +196,9 @@ def linear_paths(
 
 
 def _each_state(request: Request) -> FloatArray:
+    straight = _along_line(request)
+    if straight is not None:
+        return straight
     parts = []
     order = np.argsort(request.state_of_row, kind="stable")
     starts = np.searchsorted(request.state_of_row[order], np.arange(len(request.states) + 1))
@@ -220,6 +226,32 @@ def _each_state(request: Request) -> FloatArray:
     out = np.empty((len(order), parts[0].shape[1]))
     out[order] = np.concatenate(parts)
     return out
+
+
+def _along_line(request: Request) -> FloatArray | None:
+    """Rows whose structures lie on a line, without memory, play or large displacements."""
+    place = positions(request.states)
+    if place is None or not request.fixed_patterns:
+        return None
+    structure = request.change(request.states[0])
+    if structure.nonlinear or structure.laws or structure.bearings:
+        return None
+
+    def solve(state: FloatArray) -> FloatArray:
+        changed = request.change(state)
+        return respond(changed, request.loads(changed, NOTHING), changed.outputs)
+
+    first, last = request.states[[np.argmin(place), np.argmax(place)]]
+    response = between(first, last, solve)
+    if response is None:
+        return None
+    q = coefficients(request.loads(structure, np.arange(len(request.state_of_row))))
+    of_rows = place[request.state_of_row]
+    parts = [
+        np.einsum("tp,tpo->to", q[few : few + TOGETHER], response(of_rows[few : few + TOGETHER]))
+        for few in range(0, len(q), TOGETHER)
+    ]
+    return np.concatenate(parts)
 
 
 def _with_laws(request: Request, structure: Structure, loads: list[Load]) -> FloatArray:
