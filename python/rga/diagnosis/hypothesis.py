@@ -25,7 +25,7 @@ class Hypothesis:
         priors: of the parameters, by name.
         onset: time at which the effect begins [s], or None for always.
         profile: how it comes: at once, or growing to the last row.
-        places: number of places at which the kind could act.
+        places: number of places at which the kind could act, and of forms that it has there.
         kinds: number of kinds that could act.
     """
 
@@ -66,8 +66,9 @@ class Hypothesis:
         return self.beginning(other.onset, other.profile)
 
     def same_place(self, other: "Hypothesis") -> bool:
-        """True for the same kind at the same place."""
-        return self.kind is other.kind and self.place == other.place
+        """True for the same kind at the same place with the same parameters."""
+        alike = self.kind is other.kind and self.place == other.place
+        return alike and self.priors.keys() == other.priors.keys()
 
     def contains(self, other: "Hypothesis") -> bool:
         """True where this is the same kind at several places, one of which is the other's."""
@@ -95,11 +96,11 @@ def hypotheses(model: Model, sensors: Sequence[str], measured: Collection[str]) 
         for kind in Effect.vocabulary.values()
     }
     kinds = sum(bool(places) for places in by_kind.values())
-    return [
-        Hypothesis(kind, place, kind.priors(model, place), len(places), kinds)
-        for kind, places in by_kind.items()
-        for place in places
-    ]
+    found = []
+    for kind, places in by_kind.items():
+        forms = [(place, priors) for place in places for priors in kind.forms(model, place)]
+        found += [Hypothesis(kind, place, priors, len(forms), kinds) for place, priors in forms]
+    return found
 
 
 def _seen(

@@ -25,6 +25,7 @@ class Problem:
     Attributes:
         data: the readings.
         simulator: the simulation, with the effects accepted so far.
+        given: the simulation without them.
         simulated: float[rows, sensors].
         shift: what the contexts' prior adds to the simulation, float[rows, sensors].
         covariance: of the residual.
@@ -38,6 +39,7 @@ class Problem:
 
     data: Data
     simulator: Simulator
+    given: Simulator
     simulated: FloatArray
     shift: FloatArray
     covariance: Covariance
@@ -107,12 +109,17 @@ def pose(
     known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
     noise = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
-    scatter = scatter_effects(simulator, data, simulated, basis, factors)
+    given = simulator if before is None else before.given
+    # What a cause does is no pattern that every channel may show a little of.
+    patterns = basis if given is simulator else load_basis(given, data)
+    scatter = scatter_effects(simulator, data, simulated, patterns, factors)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
     levels = scatter_levels(covariance, scatter, residual, levels)
     covariance = covariance.with_spread(scatter.spread(levels))
-    return Problem(data, simulator, simulated, shift, covariance, noise, scatter, levels, factors)
+    return Problem(
+        data, simulator, given, simulated, shift, covariance, noise, scatter, levels, factors
+    )
 
 
 def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) -> FloatArray:

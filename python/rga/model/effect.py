@@ -124,6 +124,11 @@ class Effect(BaseModel):
         """What is known beforehand of each parameter at a place."""
         return {}
 
+    @classmethod
+    def forms(cls, model: "Model", place: Mapping[str, Any]) -> list[dict[str, Prior]]:
+        """Sets of parameters of which a diagnosis may propose one at a time, with their priors."""
+        return [cls.priors(model, place)]
+
     def with_values(self, values: Mapping[str, float | Estimated]) -> Self:
         """The same effect with other parameter values."""
         return self.model_copy(update=dict(values))

@@ -58,16 +58,16 @@ class ThermalGradient(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        if not any(isinstance(effect, Temperature) for effect in model.effects.values()):
-            return
         points = np.array(list(model.nodes.values()))
         for axis, column in AXES.items():
             if np.ptp(points[:, column]) > 0:
                 yield {"axis": axis}
 
     @classmethod
-    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"ratio": Normal(0.0, 0.3)}
+    def forms(cls, model: Model, place: Mapping[str, Any]) -> list[dict[str, Prior]]:
+        warm = any(isinstance(effect, Temperature) for effect in model.effects.values())
+        ratio: dict[str, Prior] = {"ratio": Normal(0.0, 0.3)}
+        return [*([ratio] if warm else []), {"difference": Normal(0.0, 5.0)}]
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
         strain = structure.once(lambda: self._strain(structure), self)
