@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rga.diagnosis.covariance import Covariance
-from rga.diagnosis.data import Data
+from rga.diagnosis.data import Belief, Data
 from rga.diagnosis.noise import estimate_noise, unexplainable
 from rga.diagnosis.row_covariance import Noise, RowCovariance
 from rga.diagnosis.scatter import MEDIANS, Scatter, lines, scatter_effects, scatter_levels
@@ -16,6 +16,8 @@ from rga.simulation import Simulator
 STEP = 1e-3
 #: share of the noise that a sensor keeps beside a shared pattern, at least
 LEAST_OWN_NOISE = 0.6
+#: how well measured contexts are calibrated: offset in deviations of their noise, and gain [-]
+OFFSET, GAIN = 0.3, 0.005
 
 
 @dataclass(frozen=True)
@@ -112,7 +114,8 @@ def pose(
     given = simulator if before is None else before.given
     # What a cause does is no pattern that every channel may show a little of.
     patterns = basis if given is simulator else load_basis(given, data)
-    scatter = scatter_effects(simulator, data, simulated, patterns, factors)
+    calibrations = _calibrations(belief, jacobian, noise)
+    scatter = scatter_effects(simulator, data, simulated, patterns, factors, calibrations)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
     levels = scatter_levels(covariance, scatter, residual, levels)
@@ -120,6 +123,24 @@ def pose(
     return Problem(
         data, simulator, given, simulated, shift, covariance, noise, scatter, levels, factors
     )
+
+
+def _calibrations(
+    belief: Belief, jacobian: FloatArray, noise: Noise
+) -> list[tuple[FloatArray, float]]:
+    """What measured contexts do that are off for the whole record, and how far they may be.
+
+    Returns:
+        float[rows, sensors], the change per unit of offset or gain, with its prior spread.
+    """
+    found = []
+    for number, name in enumerate(belief.spread):
+        if name in belief.latent:
+            continue
+        along, course = jacobian[:, :, number], belief.centre[name]
+        found.append((along, OFFSET * float(noise.context_sigma[number])))
+        found.append((along * (course - course.mean())[:, None], GAIN))
+    return found
 
 
 def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) -> FloatArray:

@@ -70,6 +70,7 @@ def scatter_effects(
     simulated: FloatArray,
     basis: FloatArray,
     factors: FloatArray,
+    calibrations: list[tuple[FloatArray, float]],
 ) -> Scatter:
     """Derivatives by all random effects about a simulation.
 
@@ -79,6 +80,7 @@ def scatter_effects(
         simulated: float[rows, sensors].
         basis: load coefficients, float[rows, patterns].
         factors: patterns of unknown origin; their mean and their trend are random effects too.
+        calibrations: further random effects, float[rows, sensors], with their prior spread.
     """
     sensors = simulated.shape[1]
     size = np.sqrt((simulated**2).mean(0))
@@ -88,7 +90,8 @@ def scatter_effects(
     members = _by_members(simulator, data, simulated)
     moved = _by_lines(simulator, data)
     known = [basis, *([drift.T] if factors.size else [])]
-    courses = _courses(np.hstack(known), [simulated, *members, *moved])
+    of_contexts = [change for change, _ in calibrations]
+    courses = _courses(np.hstack(known), [simulated, *members, *of_contexts, *moved])
 
     def share(course: FloatArray) -> FloatArray:
         return np.asarray(courses.T @ course)
@@ -100,11 +103,14 @@ def scatter_effects(
     shares = [
         *(share(change).T for change in members),
         *own.reshape(-1, *own.shape[2:]),
+        *(share(change).T for change in of_contexts),
         *(np.outer(factor, share(course)) for factor in factors.T for course in drift),
         *(share(change).T for change in moved),
     ]
     family = [0] * len(members) + [1, *[2] * patterns.shape[1]] * sensors
-    fixed = [FACTOR_MEAN] * (2 * factors.shape[1]) + [spread for *_, spread in lines(data)]
+    fixed = [spread for _, spread in calibrations]
+    fixed += [FACTOR_MEAN] * (2 * factors.shape[1])
+    fixed += [spread for *_, spread in lines(data)]
     return Scatter(
         RandomEffects(courses, np.stack(shares)),
         np.array(family + [-1] * len(fixed)),
