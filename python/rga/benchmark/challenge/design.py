@@ -19,9 +19,9 @@ from rga.errors import InputError
 QUICK = 8
 #: share of the draws in each stratum
 STRATA = {"single": 0.6, "pair": 0.2, "outside": 0.2}
-#: a kind outside every vocabulary
-OUTSIDE = "unknown"
-SINGLES = tuple(kind for kind in KINDS if kind not in ("null", OUTSIDE))
+#: kinds outside every vocabulary; the first has three forms
+OUTSIDE = ("unknown", "unknown", "unknown", "hysteresis")
+SINGLES = tuple(kind for kind in KINDS if kind not in ("null", *OUTSIDE))
 #: bounds of the d' that is aimed at; the second pair of `single` for one draw in three
 AIMS = {"single": ((12.0, 60.0), (6.0, 14.0)), "pair": ((22.0, 45.0),), "outside": ((25.0, 80.0),)}
 #: kinds of which a bridge has one at a time
@@ -112,7 +112,7 @@ class Draw:
     def kinds(self) -> tuple[str, ...]:
         """What is hidden in the draw, and not in its twin."""
         if self.stratum == "outside":
-            return (OUTSIDE,)
+            return (OUTSIDE[self.number % len(OUTSIDE)],)
         if self.stratum == "single":
             return (SINGLES[self.number % len(SINGLES)],)
         rng = self._random("kinds")

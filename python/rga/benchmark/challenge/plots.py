@@ -54,9 +54,7 @@ def _bar(axes: Axes, x: float, one: Figure, color: str = "C0") -> None:
         return
     axes.plot([x, x], [one.low, one.high], color=color, lw=1.2)
     axes.plot(x, one.value, "o", color=color, ms=5)
-    axes.annotate(
-        str(one.of), (x, one.low), (0, -11), textcoords="offset points", ha="center", size=7
-    )
+    axes.annotate(str(one.of), (x, one.value), (4, 3), textcoords="offset points", size=7)
 
 
 def _intervals(axes: Axes, outcomes: Sequence[Outcome]) -> None:
@@ -83,8 +81,8 @@ def _intervals(axes: Axes, outcomes: Sequence[Outcome]) -> None:
         title="Intervals of parameters", xlabel="level", ylabel="share that holds the truth",
         xlim=(0.45, 1.01), ylim=(0.2, 1.02),
     )  # fmt: skip
-    axes.plot([], [], " ", label="(estimates)")
-    axes.legend(loc="lower right", fontsize=8)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="lower right", fontsize=8, title="estimates of parameters")
 
 
 def _found(axes: Axes, outcomes: Sequence[Outcome]) -> None:
@@ -126,7 +124,7 @@ def _nulls(axes: Axes, outcomes: Sequence[Outcome]) -> None:
         _bar(axes, x, rate("", own))
     axes.axhline(0.02, color="k", ls="--", lw=1, label="at most")
     axes.set(title="Null records on which a cause was named", ylabel="share")
-    axes.set_ylim(bottom=-0.02)
+    axes.set_ylim(-0.04, 1.04)
     axes.set_xticks(range(len(NULLS)), NULLS, fontsize=8)
     axes.legend(loc="upper left", fontsize=8)
 
@@ -141,10 +139,13 @@ def _confusion(canvas: Canvas, outcomes: Sequence[Outcome]) -> None:
         axes.set(title="There are no single effects of such a size")
         return
     table = np.array([[counts[row, column] for column in columns] for row in rows], dtype=float)
-    axes.imshow(table / np.maximum(table.sum(1, keepdims=True), 1), cmap="Blues", vmin=0, vmax=1)
-    for (row, column), many in np.ndenumerate(table):
-        if many:
-            axes.text(column, row, f"{many:.0f}", ha="center", va="center", fontsize=7)
+    shares = table / table.sum(1, keepdims=True)
+    axes.imshow(shares, cmap="Blues", vmin=0, vmax=1, aspect="auto")
+    for (row, column), share in np.ndenumerate(shares):
+        if share:
+            many = f"{table[row, column]:.0f}"
+            color = "white" if share > 0.5 else "black"
+            axes.text(column, row, many, ha="center", va="center", fontsize=8, color=color)
     axes.set_xticks(range(len(columns)), columns, rotation=60, ha="right", fontsize=8)
     axes.set_yticks(range(len(rows)), rows, fontsize=8)
     axes.set(

@@ -72,11 +72,13 @@ def _kinds(outcomes: Sequence[Outcome]) -> Iterator[str]:
     yield f"{'':22}" + "".join(f"{word:>12}" for word in head)
     bins = ((PLAIN, np.inf), (FAINT, PLAIN), (0.0, FAINT))
     for kind in SINGLES:
+        own = [o for o in of(outcomes, "single") if o.hidden[0]["kind"] == kind]
+        if not own:
+            continue
         found = [
             _ratio([o.found for o in singles(outcomes, *limits) if o.hidden[0]["kind"] == kind])
             for limits in bins
         ]
-        own = [o for o in of(outcomes, "single") if o.hidden[0]["kind"] == kind]
         off = [x for o in own for x in o.deviations.get(kind, {}).values()]
         shares = [share for o in own if (share := share_gained(o)) is not None]
         cells = [

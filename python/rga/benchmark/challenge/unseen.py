@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.benchmark.challenge.hidden import Truth, stiff_joints
+from rga.benchmark.challenge.hidden import Truth
 from rga.benchmark.truth import Beyond, Case
 from rga.errors import InputError
 from rga.model import Model, read_model
@@ -17,7 +17,8 @@ from rga.simulation import Simulator
 class Gaps:
     """Mean squared distance from the truth in noise variances, where the record shows nothing.
 
-    Of the model as given, as the diagnosis extended it, and with what is hidden in it.
+    Of the model as given, as the diagnosis extended it, and with what is hidden in it; neither
+    scatter nor the stiff joints of a frame are hidden.
     """
 
     given: float
@@ -35,15 +36,14 @@ def unseen_gaps(case: Case, found: Mapping[str, Effect]) -> Gaps | None:
     if beyond is None or not truths or not all(one.can_be_simulated for one in truths):
         return None
     hidden = {f"hidden {number}": one.effect() for number, one in enumerate(truths)}
-    joints = stiff_joints(case)
-    if joints is not None:
-        hidden["stiff joints"] = joints
     model = read_model({**case.model, "sensors": beyond.sensors}, "challenge")
-    models = (model, model.extended(dict(found)), model.extended(hidden))
+    given = _gap(beyond, model)
     try:
-        return Gaps(*(_gap(beyond, one) for one in models))
+        gap = _gap(beyond, model.extended(dict(found)))
     except InputError:
-        return None
+        # What cannot be simulated there gains nothing there.
+        gap = given
+    return Gaps(given, gap, _gap(beyond, model.extended(hidden)))
 
 
 def _gap(beyond: Beyond, model: Model) -> float:

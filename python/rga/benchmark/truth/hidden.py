@@ -10,11 +10,11 @@ import numpy as np
 from .draft import Bridge
 from .effect import Kind, Setting, Span
 from .hidden_gauge import GAUGE
-from .hidden_load import LOAD
+from .hidden_load import HYSTERESIS, LOAD
 from .hidden_structure import PLAY, STRUCTURE
 
 DRAWN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
-HIDDEN: dict[str, Kind] = {**DRAWN, **PLAY}
+HIDDEN: dict[str, Kind] = {**DRAWN, **PLAY, **HYSTERESIS}
 KINDS = ("null", *HIDDEN)
 _PLACES = 8
 _HALVINGS = 9
