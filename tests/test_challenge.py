@@ -12,7 +12,7 @@ from rga.benchmark.challenge import run as running
 from rga.benchmark.challenge.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw, draws
 from rga.benchmark.challenge.figures import Figure, figures, rate
 from rga.benchmark.challenge.hidden import Truth
-from rga.benchmark.challenge.judge import Outcome, judge
+from rga.benchmark.challenge.judge import Outcome
 from rga.benchmark.challenge.ledger import NAME, Ledger
 from rga.benchmark.challenge.plots import plot
 from rga.benchmark.challenge.tables import failures, tables
@@ -332,12 +332,3 @@ def test_a_case_is_drawn_and_written(rga: Any, tmp_path: Path) -> None:
     assert names == ["model.json", "record.csv", "truth.json"]
     assert rga("benchmark", "diagnosis", "--case", "1-single-36").code == 2
     assert rga("benchmark", "diagnosis", "--case", "nobody", "-o", str(tmp_path)).code == 2
-
-
-def test_no_outcome_depends_on_the_workers() -> None:
-    chosen = [Draw(1, "pair", number, null=True) for number in (0, 4)]
-    alone = [judge(one) for one in chosen]
-    together = running.run(chosen, workers=2)
-    assert [replace(one, seconds=0.0) for one in alone] == [
-        replace(one, seconds=0.0) for one in together
-    ]

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from rga.benchmark.challenge.design import Draw
-from rga.benchmark.challenge.judge import Outcome
+from rga.benchmark.challenge.judge import Outcome, judge
 from rga.benchmark.challenge.run import run
 
 NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
@@ -42,3 +42,8 @@ def test_its_null_twin_names_nothing(outcomes: dict[str, Outcome], name: str) ->
     assert not one.hidden
     assert not one.named
     assert one.model_sha256 == outcomes[name].model_sha256
+
+
+def test_no_outcome_depends_on_the_workers(outcomes: dict[str, Outcome]) -> None:
+    alone, pooled = judge(Draw.parse("1-single-40")), outcomes["1-single-40"]
+    assert replace(alone, seconds=0.0) == replace(pooled, seconds=0.0)
