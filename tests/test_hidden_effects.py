@@ -1,39 +1,49 @@
 """Effects hidden by seed are found, each beside its null twin in which nothing may be found.
 
-The cases come from physics of their own (rga.benchmark.truth). CI runs a fixed part of the
+The cases come from physics of their own (rga.benchmark.truth). CI runs this fixed part of the
 challenge; `rga benchmark diagnosis` runs as much of it as one likes.
 """
 
+from dataclasses import replace
+
 import pytest
 
-from rga.benchmark.challenge import VISIBLE, Outcome, challenge
+from rga.benchmark.challenge.design import Draw
+from rga.benchmark.challenge.judge import Outcome, judge
+from rga.benchmark.challenge.run import run
 
-SEEDS = (1007, 1010, 1016, 1018, 1021, 1028, 1029)
+NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
 
 
 @pytest.fixture(scope="module")
-def outcomes() -> list[Outcome]:
-    """A hidden effect and its null twin for every seed."""
-    return challenge(list(SEEDS), workers=2)
+def outcomes() -> dict[str, Outcome]:
+    """A draw and its null twin for every name."""
+    hidden = [Draw.parse(name) for name in NAMES]
+    done = run([*hidden, *(replace(one, null=True) for one in hidden)], workers=2)
+    return {one.id: one for one in done}
 
 
-def test_hidden_effects_are_found(outcomes: list[Outcome]) -> None:
-    hidden = [one for one in outcomes if one.kind != "null"]
-    assert len({one.kind for one in hidden}) >= 6
-    missed = [one for one in hidden if one.d_prime >= VISIBLE and not one.found]
-    assert not missed
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_hidden_is_found(outcomes: dict[str, Outcome], name: str) -> None:
+    one = outcomes[name]
+    assert len(one.hidden) == len(one.draw.kinds)
+    for hidden in one.hidden:
+        assert hidden["d_prime"] > 10
+        assert hidden["found"]
+    named = {cause["kind"] for cause in one.named} | {
+        rival["kind"] for cause in one.named for rival in cause["rivals"]
+    }
+    assert set(one.draw.kinds) <= named
 
 
-def test_null_twins_name_nothing(outcomes: list[Outcome]) -> None:
-    nulls = [one for one in outcomes if one.kind == "null"]
-    assert len(nulls) == len(SEEDS)
-    assert not [one for one in nulls if one.named]
+@pytest.mark.parametrize("name", NAMES)
+def test_its_null_twin_names_nothing(outcomes: dict[str, Outcome], name: str) -> None:
+    one = outcomes[f"{name}-null"]
+    assert not one.hidden
+    assert not one.named
+    assert one.model_sha256 == outcomes[name].model_sha256
 
 
-def test_null_twins_are_the_same_reality(outcomes: list[Outcome]) -> None:
-    for hidden, null in zip(outcomes[::2], outcomes[1::2], strict=True):
-        assert (hidden.seed, hidden.bridge, hidden.reality) == (
-            null.seed,
-            null.bridge,
-            null.reality,
-        )
+def test_no_outcome_depends_on_the_workers(outcomes: dict[str, Outcome]) -> None:
+    alone, pooled = judge(Draw.parse("1-single-40")), outcomes["1-single-40"]
+    assert replace(alone, seconds=0.0) == replace(pooled, seconds=0.0)

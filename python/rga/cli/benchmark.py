@@ -1,16 +1,38 @@
 """`rga benchmark`: what rga can do, measured."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from rga.cli.options import JsonTarget, Seed
+from rga.errors import InputError
 
 benchmark = typer.Typer(help="Measure what rga can do.", no_args_is_help=True)
 
-Draws = Annotated[int, typer.Option("-n", "--draws", min=1, help="Number of hidden effects.")]
+Draws = Annotated[
+    int, typer.Option("-n", "--draws", min=1, help="Hidden effects; each beside its null twin.")
+]
 Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes at work.")]
-Quick = Annotated[bool, typer.Option("--quick", help="Six draws only.")]
+Minutes = Annotated[
+    float | None, typer.Option("--minutes", min=0.0, help="Begin no further draw after these.")
+]
+KeptIn = Annotated[
+    Path | None,
+    typer.Option(
+        "-o",
+        "--output",
+        metavar="DIR",
+        help="Keeps outcomes, tables and plots; what it holds is not done again.",
+    ),
+]
+CaseName = Annotated[
+    str | None,
+    typer.Option(
+        "--case", metavar="ID", help="Only draw this case, and write it to the directory."
+    ),
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
 
 
@@ -21,40 +43,63 @@ def _benchmarks() -> None:
 
 @benchmark.command()
 def diagnosis(
-    draws: Draws = 60,
+    draws: Draws = 3000,
     seed: Seed = 1,
     workers: Workers = 2,
     quick: Quick = False,
+    minutes: Minutes = None,
+    output: KeptIn = None,
+    case: CaseName = None,
     json: JsonTarget = None,
 ) -> None:
     """The blind challenge: effects hidden by seed, each beside its null twin."""
-    from rga.benchmark.challenge import challenge, score
-    from rga.cli.output import write_json
+    from dataclasses import asdict
+
+    from rga.benchmark.challenge import design
+    from rga.cli.output import whole_directory, whole_file, write_json
     from rga.cli.progress import shown_progress
 
-    count = 6 if quick else draws
-    with shown_progress() as progress:
-        outcomes = challenge(
-            range(seed, seed + count),
-            workers,
-            lambda done: progress("blind challenge", done / (2 * count)),
-        )
-    result = score(outcomes)
-    if json is not None:
-        write_json(result, json)
-    if json == "-":
+    if case is not None:
+        drawn = design.Draw.parse(case)
+        if output is None:
+            raise InputError("there is no place for the case", "--case", "give a directory with -o")
+        with whole_directory(output) as draft:
+            drawn.case().write(draft)
+        typer.echo(f"{case} is in {output}.")
         return
-    typer.echo(
-        f"effects with d' of 15 or more: {result['found_at_15']} of {result['hidden_at_15']} found "
-        f"(kind and place right, or among the rivals)"
-    )
-    for kind, (found, hidden) in result["by_kind"].items():
-        typer.echo(f"  {kind:22} {found} of {hidden}")
-    typer.echo(f"null twins with a cause: {result['nulls_with_causes']} of {result['nulls']}")
-    for one in outcomes:
-        if (one.named and one.kind == "null") or (one.kind in result["by_kind"] and not one.found):
-            named = ", ".join(str(cause["kind"]) for cause in one.named) or "nothing"
-            typer.echo(f"  seed {one.seed}, {one.kind} at d' {one.d_prime:.0f}: named {named}")
+
+    from rga.benchmark.challenge.figures import figures
+    from rga.benchmark.challenge.ledger import versions
+    from rga.benchmark.challenge.plots import plot
+    from rga.benchmark.challenge.run import run
+    from rga.benchmark.challenge.tables import tables
+
+    chosen = design.draws(seed, design.QUICK if quick else draws)
+    with shown_progress() as progress:
+        outcomes = run(
+            chosen,
+            folder=output,
+            workers=workers,
+            minutes=minutes,
+            progress=lambda done: progress("blind challenge", done),
+        )
+    if not outcomes:
+        raise InputError("no draw was finished", "--minutes", "give more of them")
+    told = tables(outcomes)
+    if output is not None:
+        with whole_file(output / "tables.txt") as draft:
+            draft.write_text(told, encoding="utf-8")
+        plot(outcomes, output)
+    if json is not None:
+        content = {
+            "seed": seed,
+            "versions": versions(),
+            "figures": [{**asdict(one), "judged": one.judged} for one in figures(outcomes)],
+            "outcomes": [asdict(one) for one in outcomes],
+        }
+        write_json(content, json)
+    if json != "-":
+        typer.echo(told, nl=False)
 
 
 @benchmark.command()

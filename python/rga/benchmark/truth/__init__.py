@@ -5,8 +5,18 @@ NumPy (its threads held to one by threadpoolctl) and the standard library only.
 """
 
 from .bridges import BRIDGES
-from .case import Case, draw_case
+from .case import Beyond, Case, draw_case
+from .conditions import Conditions
 from .hidden import KINDS
 from .stream import STREAM_KINDS, draw_stream
 
-__all__ = ["BRIDGES", "KINDS", "STREAM_KINDS", "Case", "draw_case", "draw_stream"]
+__all__ = [
+    "BRIDGES",
+    "KINDS",
+    "STREAM_KINDS",
+    "Beyond",
+    "Case",
+    "Conditions",
+    "draw_case",
+    "draw_stream",
+]

@@ -36,12 +36,21 @@ class AsBuilt(NamedTuple):
 
 
 def build(
-    model: ModelDict, rng: np.random.Generator, joints: tuple[float, float] = (6.0, 9.0)
+    model: ModelDict,
+    rng: np.random.Generator,
+    joints: tuple[float, float] = (6.0, 9.0),
+    given: float | None = None,
 ) -> AsBuilt:
-    """Draw a reality of ``model``; ``joints`` bounds log10 of the joints' stiffness."""
+    """Draw a reality of ``model``.
+
+    ``joints`` bounds log10 of the joints' stiffness; ``given`` is the scatter of the members,
+    half of it that of the gains, where it is not drawn.
+    """
     sensors = model["sensors"]
     count = len(sensors)
     scatter, gain = float(rng.uniform(0.01, 0.04)), float(rng.uniform(0.005, 0.02))
+    if given is not None:
+        scatter, gain = given, given / 2.0
     world = World.of(model)
     world.scale_stiffness(np.exp(scatter * rng.standard_normal(len(world.alpha))))
     world.sensor_ops.append(("gains", 1.0 + gain * rng.standard_normal(count)))

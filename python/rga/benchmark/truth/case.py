@@ -3,26 +3,46 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from .as_built import build
 from .bridges import BRIDGES
-from .contexts import courses, errors
-from .draft import Bridge, ModelDict
-from .effect import Setting, Span
+from .conditions import Conditions
+from .draft import ModelDict
 from .frame import Array
-from .gauges import measure, observe, silenced
-from .hidden import DRAWN, HIDDEN, KINDS, draw_hidden, fits
-from .noise import autoregressive, long_run_variance, missing, stream
-from .response import Contexts, respond
-from .score import d_prime
-from .world import World
+from .gauges import measure, silenced
+from .hidden import DRAWN, KINDS, fits
+from .hiding import draw_placed, inhabited, readings, signature
+from .noise import missing, stream
+from .reality import Reality, realise
+from .response import Contexts
 
 _NULLS = 0.2
+_USUAL = Conditions()
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """What only a judge gets to see of a case.
+
+    Over the rows of the record and those after it, [n]: ``time``, ``contexts`` as sensors
+    without noise would tell them, and the channels ``clean`` [n, c] of noise, of all ``sensors``
+    as a model has them. ``unseen`` [n, c] is True where the record has nothing: after its end,
+    and of sensors that the case leaves out.
+    ``signatures`` [n, c]: what each effect changes beside the others, and all of them together.
+    """
+
+    sensors: ModelDict
+    time: Array
+    contexts: Contexts
+    clean: Array
+    unseen: np.ndarray
+    signatures: list[Array]
+    together: Array
 
 
 @dataclass(frozen=True)
@@ -30,13 +50,15 @@ class Case:
     """One blind case.
 
     ``model``: a model file; ``time`` [n] [s]; ``channels``: sensors in their units, then
-    measured contexts, each [n], NaN where missing; ``truth``: what was hidden.
+    measured contexts, each [n], NaN where missing; ``truth``: what was hidden; ``beyond``: what
+    the record does not show, where that was asked for.
     """
 
     model: ModelDict
     time: Array
     channels: dict[str, Array]
     truth: dict[str, Any]
+    beyond: Beyond | None = None
 
     def write(self, folder: str | Path) -> None:
         """Write the three files; each appears whole or not at all."""
@@ -56,60 +78,63 @@ def _replace(path: Path, text: str) -> None:
     draft.replace(path)
 
 
-class _Reality(NamedTuple):
-    """Everything about a case that does not depend on what is hidden."""
-
-    world: World
-    time: Array
-    contexts: Contexts
-    measured: Contexts
-    noise: Array  # [n, c]
-    variance: Array  # [c], of the noise that does not average out faster than white noise
-    shares: list[Array]
-    clean: Array  # [n, c]
-    facts: dict[str, Any]
-
-
 def draw_case(
     seed: int,
     *,
     bridge: str | None = None,
-    kind: str | None = None,
+    kind: str | Sequence[str] | None = None,
     reality: str | None = None,
     rows: int = 300,
+    conditions: Conditions = _USUAL,
+    aims: tuple[float, float] | None = None,
 ) -> Case:
     """A case of ``rows`` samples; what is not asked for is drawn by ``seed``.
 
-    Same seed, same bits. With the same bridge and reality, cases of different kinds share
-    scatter, contexts and noise, so that they differ by the hidden effect alone.
+    Same seed, same bits. With the same bridge, reality and conditions, cases of different kinds
+    share scatter, contexts and noise, so that they differ by the hidden effects alone. Several
+    kinds are hidden together; ``aims`` bounds the d' of each by itself. In ``truth`` the first
+    effect stands in front, and ``beside`` it the others.
 
     Raises:
         ValueError: an unknown name, or a kind that the bridge or the reality cannot have.
     """
-    name, kind, reality = _choose(seed, bridge, kind, reality)
+    first, *others = [kind] if kind is None or isinstance(kind, str) else kind
+    name, first, reality = _choose(seed, bridge, first, reality)
+    kinds = [one for one in (first, *others) if one != "null"]
     place = BRIDGES[name](stream(seed, "bridge"))
-    base = _reality(seed, place, "truss" if kind == "joint_rigidity" else reality, rows)
+    stiff = reality == "frame" and "joint_rigidity" not in kinds
+    base = realise(seed, place, stiff, rows, conditions)
+    placed = draw_placed(seed, kinds, base, conditions.ramps, aims)
     truth = {
-        "kind": kind,
+        "kind": "null",
         "bridge": name,
         "onset": None,
+        "end": None,
         "place": {},
         "parameter": None,
         "value": None,
         "reality": reality,
         "d_prime": 0.0,
         **base.facts,
+        **(placed[0].facts if placed else {}),
+        "beside": [one.facts for one in placed[1:]],
     }
-    world, readings = base.world, base.clean
-    if kind != "null":
-        world, readings = _hide(seed, kind, place, base, truth)
-    readings = readings + base.noise
-    for column, (mode, first) in silenced(world, base.time).items():
-        readings[first:, column] = 0.0 if mode == "dead" else readings[first, column]
-    readings[missing(stream(seed, "missing"), *readings.shape)] = np.nan
-    channels = {sensor: readings[:, k] for k, sensor in enumerate(place.model["sensors"])}
-    channels.update(measure(world, base.measured))
-    return Case(place.model, base.time, channels, truth)
+    if first == "joint_rigidity":
+        truth.update(joint_stiffness=placed[0].value, reality_d_prime=placed[0].d_prime)
+    world = inhabited(base, placed)
+    clean = readings(base, placed)
+    time, shown = base.time[:rows], clean[:rows] + base.noise
+    for column, (mode, row) in silenced(world, time).items():
+        shown[row:, column] = 0.0 if mode == "dead" else shown[row, column]
+    shown[missing(stream(seed, "missing"), *shown.shape)] = np.nan
+    every = place.model["sensors"]
+    sensors = {name: one for (name, one), has in zip(every.items(), base.given, strict=True) if has}
+    columns = dict(zip(every, shown.T, strict=True))
+    channels = {name: columns[name] for name in sensors}
+    told = measure(world, base.measured)
+    channels.update({n: course[:rows] for n, course in told.items() if n not in base.latent})
+    beyond = _beyond(base, placed, clean) if conditions.later or conditions.unseen else None
+    return Case({**place.model, "sensors": sensors}, time, channels, truth, beyond)
 
 
 def _choose(
@@ -142,64 +167,24 @@ def _choose(
     return name, kind, reality or stiff
 
 
-def _reality(seed: int, bridge: Bridge, reality: str, rows: int) -> _Reality:
-    built = build(bridge.model, stream(seed, "as built"))
-    world = built.world
-    time, contexts = courses(bridge, stream(seed, "contexts"), rows)
-    measured = errors(bridge, stream(seed, "context errors"), contexts)
-    clean = observe(world, contexts, time)
-    _, shares = respond(world, contexts, time)
-    pinned = clean
-    if reality == "frame":
-        world.join(bridge.jointed, built.joint)
-        clean = observe(world, contexts, time)
-    blur = observe(world, measured, time) - clean
-    noise = autoregressive(stream(seed, "noise"), rows, built.sd, built.phi)
-    variance = long_run_variance(built.sd, built.phi) + (blur**2).mean(axis=0)
-    parts = list(shares.values())
-    facts = {
-        **built.facts,
-        "joint_stiffness": built.joint if reality == "frame" else None,
-        "reality_d_prime": d_prime(clean - pinned, parts, variance),
+def _beyond(base: Reality, placed: Sequence[Any], clean: Array) -> Beyond:
+    exact = {
+        name: np.concatenate([base.measured[name][: base.rows], course[base.rows :]])
+        for name, course in base.contexts.items()
     }
-    return _Reality(world, time, contexts, measured, noise, variance, parts, clean, facts)
-
-
-def _hide(
-    seed: int, kind: str, bridge: Bridge, base: _Reality, truth: dict[str, Any]
-) -> tuple[World, Array]:
-    """The world and the noise-free channels [n, c] with an effect; fills ``truth`` in."""
-    sensors = bridge.model["sensors"]
-    noise = {name: float(s["noise"]) for name, s in sensors.items()}
-    setting = Setting(bridge, float(base.time[-1] - base.time[0]), noise)
-    before = observe(base.world, base.measured, base.time)
-
-    def made(span: Span, value: float | None, onset: float | None) -> tuple[World, Array]:
-        world = base.world.copy()
-        amount = onset if kind == "sensor_fault" else value
-        HIDDEN[kind].act(world, span, 0.0 if amount is None else amount)
-        after = observe(world, base.contexts, base.time)
-        if onset is not None:
-            after = np.where(base.time[:, None] >= onset, after, base.clean)
-        return world, after
-
-    def size(span: Span, value: float | None, onset: float | None) -> float:
-        world, after = made(span, value, onset)
-        signature = after - base.clean
-        if world.context_ops:
-            signature = observe(base.world, measure(world, base.measured), base.time) - before
-        return d_prime(signature, base.shares, base.variance)
-
-    hidden = draw_hidden(kind, setting, stream(seed, f"hidden {kind}"), base.time, size)
-    span = hidden.span
-    truth.update(
-        place=span.place,
-        parameter=span.parameter or HIDDEN[kind].parameter or None,
-        value=hidden.value,
-        onset=hidden.onset,
-        d_prime=hidden.d_prime,
-        **span.fixed,
+    exact.update({name: base.contexts[name] for name in base.latent})
+    unseen = np.broadcast_to(~base.given, clean.shape).copy()
+    unseen[base.rows :] = True
+    together = signature(base, placed)
+    return Beyond(
+        sensors=base.bridge.model["sensors"],
+        time=base.time,
+        contexts=measure(inhabited(base, placed), exact),
+        clean=clean,
+        unseen=unseen,
+        signatures=[
+            together - signature(base, [other for other in placed if other is not one])
+            for one in placed
+        ],
+        together=together,
     )
-    if kind == "joint_rigidity":
-        truth.update(joint_stiffness=hidden.value, reality_d_prime=hidden.d_prime)
-    return made(span, hidden.value, hidden.onset)

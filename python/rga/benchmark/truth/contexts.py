@@ -37,19 +37,24 @@ def courses(bridge: Bridge, rng: np.random.Generator, rows: int) -> tuple[Array,
     return time, {name: by_role[names[name]] for name in bridge.model["context"]}
 
 
-def errors(bridge: Bridge, rng: np.random.Generator, contexts: Contexts) -> Contexts:
-    """The contexts as healthy sensors measure them: white noise; the cart is weighed once."""
+def errors(
+    bridge: Bridge, rng: np.random.Generator, contexts: Contexts, size: float = 1.0
+) -> Contexts:
+    """The contexts as sensors measure them: white noise; the cart is weighed once.
+
+    ``size`` is that of the errors beside those of healthy sensors.
+    """
     out: Contexts = {}
     for role, name in sorted(bridge.roles.items()):
         course = contexts[name]
         draws = rng.standard_normal(len(course))
-        level = rng.uniform(0.7, 1.3)
+        level = size * rng.uniform(0.7, 1.3)
         if role == "temperature":
             out[name] = course + 0.3 * level * draws
         elif role == "position":
             out[name] = course + 0.12 * level * draws
         elif role == "weight":
-            out[name] = course * (1.0 + 0.005 * draws[0])
+            out[name] = course * (1.0 + 0.005 * size * draws[0])
         else:
             out[name] = np.maximum(course + 0.008 * level * bridge.peaks[role] * draws, 0.0)
     return {name: out[name] for name in contexts}

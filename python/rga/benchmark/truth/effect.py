@@ -16,11 +16,16 @@ Place = dict[str, Any]
 
 @dataclass(frozen=True)
 class Setting:
-    """What an effect is drawn for: the bridge, its time span [s], sensor noise in sensor units."""
+    """What an effect is drawn for.
+
+    The bridge, its time span [s], the noise of the sensors that are read in their units, and the
+    contexts that were not measured.
+    """
 
     bridge: Bridge
     duration: float
     noise: dict[str, float]
+    latent: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -50,13 +55,15 @@ class Kind(NamedTuple):
     """A kind of hidden effect.
 
     ``draw`` gives a place and span; ``act`` changes a world to have the effect from the first
-    row on; ``onset`` is the probability that it starts later.
+    row on; ``onset`` is the probability that it starts later; one that may then grow rather than
+    jump does nothing at ``neutral``.
     """
 
     parameter: str
     draw: Callable[[Setting, np.random.Generator], Span]
     act: Callable[[World, Span, float], None]
     onset: float = 0.0
+    neutral: float | None = None
     needs_cart: bool = False
     needs_width: bool = False
 

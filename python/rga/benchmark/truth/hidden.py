@@ -10,11 +10,11 @@ import numpy as np
 from .draft import Bridge
 from .effect import Kind, Setting, Span
 from .hidden_gauge import GAUGE
-from .hidden_load import LOAD
+from .hidden_load import HYSTERESIS, LOAD
 from .hidden_structure import PLAY, STRUCTURE
 
 DRAWN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
-HIDDEN: dict[str, Kind] = {**DRAWN, **PLAY}
+HIDDEN: dict[str, Kind] = {**DRAWN, **PLAY, **HYSTERESIS}
 KINDS = ("null", *HIDDEN)
 _PLACES = 8
 _HALVINGS = 9
@@ -46,17 +46,20 @@ def draw_hidden(
     rng: np.random.Generator,
     time: np.ndarray,
     size_of: Callable[[Span, float | None, float | None], float],
+    aims: tuple[float, float] | None = None,
 ) -> Hidden:
     """Draw a place that can be seen, then the value whose d' meets a drawn aim.
 
-    ``size_of`` gives the d' of (span, value, onset). The aim is 15..60 in three cases of four,
-    5..15 in the others; where no value reaches it, the nearest is taken.
+    ``size_of`` gives the d' of (span, value, onset). The aim lies within ``aims``; left out, it
+    is 15..60 in three cases of four, 5..15 in the others. Where no value reaches it, the nearest
+    is taken.
     """
-    low, high = (15.0, 60.0) if rng.random() < 0.75 else (5.0, 15.0)
+    usual = (15.0, 60.0) if rng.random() < 0.75 else (5.0, 15.0)
+    low, high = aims or usual
     aim = float(np.exp(rng.uniform(np.log(low), np.log(high))))
     late = rng.random() < HIDDEN[kind].onset
     onset = float(time[int(rng.uniform(0.25, 0.7) * len(time))]) if late else None
-    return sized(kind, setting, rng, onset, aim, size_of)
+    return sized(kind, setting, rng, onset, aim, size_of, visible=aim if aims else VISIBLE)
 
 
 def sized(

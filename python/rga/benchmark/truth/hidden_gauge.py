@@ -53,7 +53,7 @@ def _on_sensor(op: str) -> Callable[[World, Span, float], None]:
 def _swapped(s: Setting, rng: Rng) -> Span:
     sensors = s.bridge.model["sensors"]
     first = _sensor(s, rng)
-    alike = [n for n in sensors if n != first and sensors[n]["kind"] == sensors[first]["kind"]]
+    alike = [n for n in s.noise if n != first and sensors[n]["kind"] == sensors[first]["kind"]]
     return Span({"sensors": [first, pick(rng, alike)]})
 
 
@@ -70,9 +70,13 @@ def _break(w: World, span: Span, value: float) -> None:
     w.sensor_ops.append((span.fixed["mode"], (span.place["sensor"], value)))
 
 
+def _measured(s: Setting, role: str) -> bool:
+    return role in s.bridge.roles and s.bridge.roles[role] not in s.latent
+
+
 def _misread(s: Setting, rng: Rng) -> Span:
     roles = s.bridge.roles
-    role = pick(rng, [r for r in ("temperature", "area", "position") if r in roles])
+    role = pick(rng, [r for r in ("temperature", "area", "position") if _measured(s, r)])
     if role == "temperature":
         return Span({"context": roles[role]}, *signed(rng, 0.3, 10.0))
     if role == "position":
@@ -82,7 +86,7 @@ def _misread(s: Setting, rng: Rng) -> Span:
 
 def _misscaled(s: Setting, rng: Rng) -> Span:
     roles = s.bridge.roles
-    role = pick(rng, [r for r in ("temperature", "area", "weight") if r in roles])
+    role = pick(rng, [r for r in ("temperature", "area", "weight") if _measured(s, r)])
     return Span({"context": roles[role]}, *either(rng, (0.96, 0.5), (1.04, 1.8)))
 
 
@@ -94,8 +98,8 @@ def _on_context(op: str) -> Callable[[World, Span, float], None]:
 
 
 GAUGE = {
-    "sensor_bias": Kind("offset", _biased, _on_sensor("bias"), onset=0.7),
-    "sensor_gain": Kind("factor", _scaled, _on_sensor("gain"), onset=0.3),
+    "sensor_bias": Kind("offset", _biased, _on_sensor("bias"), onset=0.7, neutral=0.0),
+    "sensor_gain": Kind("factor", _scaled, _on_sensor("gain"), onset=0.3, neutral=1.0),
     "sensor_drift": Kind("rate", _drifting, _on_sensor("drift")),
     "sensor_swap": Kind("", _swapped, _swap),
     "sensor_fault": Kind("", _broken, _break, onset=1.0),

@@ -96,6 +96,14 @@ def _strange(s: Setting, rng: Rng) -> Span:
     variant = pick(rng, ["softening", "squared temperature", "tide"])
     if variant == "softening":
         return Span({}, *signed(rng, 0.03, 0.6), fixed={"variant": variant})
+    return _pushing(s, rng, variant)
+
+
+def _slow(s: Setting, rng: Rng) -> Span:
+    return _pushing(s, rng, "hysteresis")
+
+
+def _pushing(s: Setting, rng: Rng, variant: str) -> Span:
     nodes = [k for k, xyz in enumerate(s.bridge.model["nodes"].values()) if xyz[2] == 0.0]
     few = [nodes[i] for i in rng.choice(len(nodes), 4, replace=False)]
     # Unequal forces on a few nodes make a shape that no load of the model has.
@@ -120,3 +128,5 @@ LOAD = {
     "unmodelled_load": Kind("rate", _weather, _blow),
     "unknown": Kind("", _strange, _puzzle),
 }
+#: drawn where it is asked for by name; the cases of a seed are those without it
+HYSTERESIS = {"hysteresis": Kind("", _slow, _puzzle)}

@@ -167,10 +167,10 @@ def _stop(w: World, span: Span, value: float) -> None:
 
 STRUCTURE = {
     "elastic_modulus": Kind("factor", _modulus, _soften_material),
-    "member_stiffness": Kind("factor", _member, _soften_member, onset=0.3),
+    "member_stiffness": Kind("factor", _member, _soften_member, onset=0.3, neutral=1.0),
     "support_spring": Kind("stiffness", _restraint, _restrain, onset=0.3),
     "support_flexibility": Kind("stiffness", _seat, _loosen, onset=0.3),
-    "support_settlement": Kind("displacement", _sinking, _settle, onset=1.0),
+    "support_settlement": Kind("displacement", _sinking, _settle, onset=1.0, neutral=0.0),
     "added_axial_area": Kind("area", _deck, _add_area),
     "floor_participation": Kind("area", _stringers, _add_strands),
     "joint_rigidity": Kind("stiffness", _joints, _join),

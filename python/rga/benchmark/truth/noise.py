@@ -27,6 +27,11 @@ def autoregressive(rng: np.random.Generator, rows: int, sd: Array, phi: Array) -
     return out
 
 
+def heavy_tailed(rng: np.random.Generator, rows: int, sd: Array) -> Array:
+    """White noise of Student's t with three degrees of freedom, shape [rows, k], of ``sd`` [k]."""
+    return np.asarray(rng.standard_t(3.0, (rows, len(sd))) / np.sqrt(3.0) * sd)
+
+
 def long_run_variance(sd: Array, phi: Array) -> Array:
     """Variance of the white noise that averages out as slowly as the AR(1) noise, shape [k]."""
     return np.asarray(sd**2 * (1.0 + phi) / (1.0 - phi))

@@ -19,6 +19,7 @@ from .world import World
 Contexts = dict[str, Array]
 _UNIT = {"mm": 1e3, "microstrain": 1e6, "mrad": 1e3}
 _TIDE = 44712.0  # [s]
+_FLOW = 43200.0  # [s]
 
 
 @dataclass(frozen=True)
@@ -152,8 +153,21 @@ def _patterns(world: World, contexts: Contexts, time: Array) -> list[Pattern]:
         course = np.sin(2.0 * np.pi * time / _TIDE)
         if strange.variant == "squared temperature":
             course = (temperature_change(world, contexts) / 10.0) ** 2
+        elif strange.variant == "hysteresis":
+            course = _crept(temperature_change(world, contexts) / 10.0, time)
         force = strange.amount * np.pad(strange.force, (0, size - len(strange.force)))
         out.append(Pattern("strange", force, cold, fast, course))
+    return out
+
+
+def _crept(warm: Array, time: Array) -> Array:
+    """A state that flows towards warm * |warm|, slower than the days go, shape [n]."""
+    towards = warm * np.abs(warm)
+    out = np.empty_like(towards)
+    out[0] = towards[0]
+    for row in range(1, len(out)):
+        kept = np.exp(-(time[row] - time[row - 1]) / _FLOW)
+        out[row] = kept * out[row - 1] + (1.0 - kept) * towards[row]
     return out
 
 
