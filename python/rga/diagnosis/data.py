@@ -58,6 +58,11 @@ class Belief:
         return bool(self.lines or self.latent)
 
     @property
+    def measured(self) -> list[str]:
+        """Contexts that were measured, with errors."""
+        return [name for name in self.spread if name not in self.latent]
+
+    @property
     def passing(self) -> tuple[str, ...]:
         """Contexts that go through their range once: what hangs on them looks like an onset."""
         return tuple(name for name, (_, slope) in self.lines.items() if slope > 0)

@@ -5,6 +5,7 @@ their innovations. The largest eigenvalue of that correlation is compared with w
 independent noise give (Marchenko and Pastur 1967 for its edge, a margin for its scatter).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,8 @@ MARGIN = 1.25
 CORRELATED, SWINGING = 0.4, 0.2
 #: standard deviations beyond which a bend is no chance
 BENT = 7.0
+#: how much of such a bend any slope may be off by, as a prior spread
+BENDING = 1.5
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,21 @@ class Pattern:
     share: float
 
 
+@dataclass(frozen=True)
+class Bend:
+    """A response that is no straight line.
+
+    Attributes:
+        context: that it is a response to.
+        by: the context that it bends with.
+        share: change of its slope over a standard deviation of the context [-].
+    """
+
+    context: str
+    by: str
+    share: float
+
+
 def with_leftovers(problem: Problem) -> Problem:
     """The problem with the patterns that it leaves added to the covariance."""
     for _ in range(MOST):
@@ -46,6 +64,16 @@ def with_leftovers(problem: Problem) -> Problem:
         factors = np.column_stack([problem.factors, pattern.direction])
         problem = pose(problem.simulator, problem.data, problem, factors)
     return problem
+
+
+def with_free_slopes(problem: Problem, bends: Sequence[Bend]) -> Problem:
+    """The problem where no response to a measured context has one slope.
+
+    What answers to one load along a curve does so to others.
+    """
+    bend = BENDING * max(one.share for one in bends)
+    slopes = dict.fromkeys(problem.data.belief.measured, bend)
+    return pose(problem.simulator, problem.data, problem, slopes=slopes)
 
 
 def shared_pattern(problem: Problem) -> Pattern | None:
@@ -92,8 +120,8 @@ def share_left(problem: Problem) -> float:
     return float(np.mean(patterns / (patterns + variance)))
 
 
-def bent_contexts(problem: Problem) -> list[str]:
-    """Measured contexts whose errors bend with a context, in words.
+def bent_contexts(problem: Problem) -> list[Bend]:
+    """Measured contexts whose errors bend with a context.
 
     The errors of a measurement know nothing of what is measured. Where they grow with the square of
     a context, the structure answers to it otherwise than in proportion.
@@ -104,36 +132,39 @@ def bent_contexts(problem: Problem) -> list[str]:
     error = problem.covariance.rows.context_error(
         residual - problem.covariance.scatter.at(estimate)
     )
-    told = []
+    found = []
     for number, name in enumerate(belief.spread):
         if name in belief.latent:
             continue
-        size = {by: _bend(belief.centre[by], error[:, number]) for by in belief.spread}
-        strongest = max(size, key=lambda by: size[by])
-        if size[strongest] > BENT:
-            told.append(f"the response to {name} bends with {strongest}")
-    return told
+        sizes = {by: _bend(belief.centre[by], error[:, number]) for by in belief.spread}
+        by = max(sizes, key=lambda each: sizes[each][1])
+        weight, size = sizes[by]
+        if size > BENT:
+            spread = float(belief.centre[name].std())
+            found.append(Bend(name, by, 2 * abs(weight) / max(spread, 1e-300)))
+    return found
 
 
-def _bend(context: FloatArray, error: FloatArray) -> float:
-    """Size of the quadratic part of an error over a context, in its standard deviations."""
+def _bend(context: FloatArray, error: FloatArray) -> tuple[float, float]:
+    """The quadratic part of an error over a scaled context, and that in standard deviations."""
     scaled = (context - context.mean()) / max(float(context.std()), 1e-300)
     design = np.column_stack([np.ones(len(scaled)), scaled, scaled**2])
     # A context of two values has no square of its own.
     weights, _, rank, _ = lstsq(design, error, cond=1e-6)
     if rank < design.shape[1]:
-        return 0.0
+        return 0.0, 0.0
     rest = error - design @ weights
     variance = float(rest @ rest) / max(len(rest) - design.shape[1], 1)
     own = variance * np.linalg.inv(design.T @ design)[2, 2]
-    return float(abs(weights[2]) / np.sqrt(max(own, 1e-300)))
+    return float(weights[2]), float(abs(weights[2]) / np.sqrt(max(own, 1e-300)))
 
 
 def in_words(problem: Problem, contexts: Values) -> str:
     """What is left: patterns with what they follow, and the scatter that had to be assumed."""
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
     chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
-    scatter = "; ".join([*bent_contexts(problem), chance])
+    bends = [f"the response to {one.context} bends with {one.by}" for one in bent_contexts(problem)]
+    scatter = "; ".join([*bends, chance])
     if problem.factors.shape[1] == 0:
         return f"nothing that varies in common from row to row; {scatter}"
     rows = problem.covariance.rows

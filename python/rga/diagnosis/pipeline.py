@@ -20,7 +20,15 @@ from rga.diagnosis.problem import Problem, pose, relaxed
 from rga.diagnosis.robustness import with_hanging_leads, without_unhelpful
 from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.screening import Screening
-from rga.diagnosis.search import ROUNDS, Found, search, settled, weighed
+from rga.diagnosis.search import (
+    ROUNDS,
+    Found,
+    search,
+    settled,
+    settled_with,
+    weighed,
+    without_needless,
+)
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault
 from rga.model.parameter import FloatArray
@@ -112,9 +120,18 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     one that does not help channels which were not fitted.
     """
     problem = leftover.with_leftovers(found.problem)
-    if problem is found.problem:
+    doubtful = problem is not found.problem
+    if doubtful:
+        found = weighed(problem, found.base, found.fit, screening, progress)
+    if bends := leftover.bent_contexts(found.problem):
+        doubtful = True
+        free = leftover.with_free_slopes(found.problem, bends)
+        standing = without_needless(free, found.base, found.fit)
+        if len(standing.hypotheses) < len(found.fit.hypotheses):
+            problem, standing = settled_with(found.base, found.problem, standing)
+            found = weighed(problem, found.base, standing, screening, progress)
+    if not doubtful:
         return found
-    found = weighed(problem, found.base, found.fit, screening, progress)
     helpful = without_unhelpful(found.problem, found.base, found.fit)
     if len(helpful.hypotheses) < len(found.fit.hypotheses):
         found = weighed(found.problem, found.base, helpful, screening, progress)

@@ -1,5 +1,6 @@
 """A record about a simulation: the residual, its derivatives and its covariance."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -68,6 +69,7 @@ def pose(
     data: Data,
     before: Problem | None = None,
     factors: FloatArray | None = None,
+    slopes: Mapping[str, float] | None = None,
 ) -> Problem:
     """Linearise a record about a simulation, and estimate noise and scatter.
 
@@ -76,6 +78,8 @@ def pose(
         data: the readings with the belief of the contexts.
         before: an earlier problem on the same data, to start the estimates from.
         factors: patterns over the sensors that vary for reasons unknown, float[sensors, factors].
+        slopes: share by which the response to a measured context may be off, where it is no
+            straight line [-].
     """
     belief = data.belief
     simulated = data.read(simulator, data.about(simulator).response)
@@ -114,19 +118,28 @@ def pose(
     given = simulator if before is None else before.given
     # What a cause does is no pattern that every channel may show a little of.
     patterns = basis if given is simulator else load_basis(given, data)
-    calibrations = _calibrations(belief, jacobian, noise)
+    calibrations = _calibrations(belief, jacobian, noise, slopes or {})
     scatter = scatter_effects(simulator, data, simulated, patterns, factors, calibrations)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
     levels = scatter_levels(covariance, scatter, residual, levels)
     covariance = covariance.with_spread(scatter.spread(levels))
     return Problem(
-        data, simulator, given, simulated, shift, covariance, noise, scatter, levels, factors
+        data=data,
+        simulator=simulator,
+        given=given,
+        simulated=simulated,
+        shift=shift,
+        covariance=covariance,
+        noise=noise,
+        scatter=scatter,
+        levels=levels,
+        factors=factors,
     )
 
 
 def _calibrations(
-    belief: Belief, jacobian: FloatArray, noise: Noise
+    belief: Belief, jacobian: FloatArray, noise: Noise, slopes: Mapping[str, float]
 ) -> list[tuple[FloatArray, float]]:
     """What measured contexts do that are off for the whole record, and how far they may be.
 
@@ -138,8 +151,9 @@ def _calibrations(
         if name in belief.latent:
             continue
         along, course = jacobian[:, :, number], belief.centre[name]
-        found.append((along, OFFSET * float(noise.context_sigma[number])))
-        found.append((along * (course - course.mean())[:, None], GAIN))
+        off = slopes.get(name, 0.0)
+        found.append((along, OFFSET * float(noise.context_sigma[number]) + off * course.std()))
+        found.append((along * (course - course.mean())[:, None], GAIN + off))
     return found
 
 

@@ -18,7 +18,7 @@ PATTERNS, ALL_PATTERNS = 8, 320
 OUTSTANDING = 3.0
 APART = 10.0
 ROUNDS = 3
-#: prior spread of the mean and of the trend of a pattern of unknown origin [its own deviation]
+#: prior spread of how a pattern of unknown origin follows time and loads [its own deviation]
 FACTOR_MEAN = 3.0
 #: share of an effect that may be left out of its courses
 EXACT = 1e-9
@@ -79,17 +79,18 @@ def scatter_effects(
         data: the readings.
         simulated: float[rows, sensors].
         basis: load coefficients, float[rows, patterns].
-        factors: patterns of unknown origin; their mean and their trend are random effects too.
+        factors: patterns of unknown origin; that they follow the loads, or change steadily, are
+            random effects too.
         calibrations: further random effects, float[rows, sensors], with their prior spread.
     """
     sensors = simulated.shape[1]
     size = np.sqrt((simulated**2).mean(0))
     patterns = basis[:, : min(PATTERNS, max(2, ALL_PATTERNS // sensors))]
     clock = data.time - data.time.mean()
-    drift = np.stack([np.ones(len(clock)), clock / max(float(clock.std()), 1e-12)])
+    drift = np.column_stack([np.ones(len(clock)), clock / max(float(clock.std()), 1e-12), patterns])
     members = _by_members(simulator, data, simulated)
     moved = _by_lines(simulator, data)
-    known = [basis, *([drift.T] if factors.size else [])]
+    known = [basis, *([drift] if factors.size else [])]
     of_contexts = [change for change, _ in calibrations]
     courses = _courses(np.hstack(known), [simulated, *members, *of_contexts, *moved])
 
@@ -104,12 +105,12 @@ def scatter_effects(
         *(share(change).T for change in members),
         *own.reshape(-1, *own.shape[2:]),
         *(share(change).T for change in of_contexts),
-        *(np.outer(factor, share(course)) for factor in factors.T for course in drift),
+        *(np.outer(factor, share(course)) for factor in factors.T for course in drift.T),
         *(share(change).T for change in moved),
     ]
     family = [0] * len(members) + [1, *[2] * patterns.shape[1]] * sensors
     fixed = [spread for _, spread in calibrations]
-    fixed += [FACTOR_MEAN] * (2 * factors.shape[1])
+    fixed += [FACTOR_MEAN] * (drift.shape[1] * factors.shape[1])
     fixed += [spread for *_, spread in lines(data)]
     return Scatter(
         RandomEffects(courses, np.stack(shares)),

@@ -89,7 +89,7 @@ def search(
         if best is None:
             break
         best = with_moment(problem, base, best, len(best.hypotheses) - 1)
-        problem, current = _settled_with(base, problem, best)
+        problem, current = settled_with(base, problem, best)
         problem, current = _merged(base, problem, current, candidates)
         problem, current = _pruned(base, problem, current)
     return weighed(problem, base, current, screening, progress)
@@ -121,7 +121,7 @@ def weighed(
         better = max((one[0].fit for one in alternatives if one), key=evidence, default=current)
         if better.log_evidence <= current.log_evidence + WORTH_EXCHANGE:
             break
-        problem, current = _settled_with(base, problem, better)
+        problem, current = settled_with(base, problem, better)
     return found
 
 
@@ -208,7 +208,7 @@ def worth_fitting(prospects: Sequence[Prospect]) -> list[Prospect]:
     return [prospect for prospect in prospects[:FITTED] if prospect.score > least]
 
 
-def _settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem, Fit]:
+def settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem, Fit]:
     """The problem posed anew about the extended simulation, and the causes fitted again."""
     current = best
     for _ in range(SETTLED):
@@ -234,19 +234,35 @@ def _merged(
         start = np.concatenate([*(current.z[slices[k]] for k in kept), current.z[slices[parts[0]]]])
         merged = fit(problem, base, hypotheses, start)
         if merged.log_evidence > current.log_evidence:
-            return _settled_with(base, problem, merged)
+            return settled_with(base, problem, merged)
     return problem, current
 
 
 def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, Fit]:
     """Take out causes that the others have made needless."""
     while current.hypotheses:
-        fits = [without_cause(problem, base, current, k) for k in range(len(current.hypotheses))]
-        best = max(fits, key=lambda one: one.log_evidence)
-        if current.log_evidence - best.log_evidence >= NAMED:
+        best = _without_least(problem, base, current)
+        if best is None:
             break
-        problem, current = _settled_with(base, problem, best)
+        problem, current = settled_with(base, problem, best)
     return problem, current
+
+
+def without_needless(problem: Problem, base: Simulator, current: Fit) -> Fit:
+    """The causes, less those that would not be named if the problem were this one."""
+    current = fit(problem, base, current.hypotheses, current.z)
+    while (best := _without_least(problem, base, current)) is not None:
+        current = best
+    return current
+
+
+def _without_least(problem: Problem, base: Simulator, current: Fit) -> Fit | None:
+    """The causes without the least likely of them, if that is not to be named."""
+    fits = [without_cause(problem, base, current, k) for k in range(len(current.hypotheses))]
+    best = max(fits, key=evidence, default=None)
+    if best is None or current.log_evidence - best.log_evidence >= NAMED:
+        return None
+    return best
 
 
 def without_cause(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:

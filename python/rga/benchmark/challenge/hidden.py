@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -49,6 +49,11 @@ class Truth:
         if facts["kind"] == "sensor_fault":
             place["mode"] = facts["mode"]
         return cls(facts["kind"], place, values, facts["onset"], facts["end"], facts["d_prime"])
+
+    @property
+    def profile(self) -> Literal["step", "ramp"]:
+        """How it begins."""
+        return "step" if self.end is None else "ramp"
 
     @property
     def can_be_simulated(self) -> bool:

@@ -12,12 +12,12 @@ import numpy as np
 from rga.benchmark.challenge.hidden import Truth, stiff_joints
 from rga.benchmark.truth import Case
 from rga.diagnosis.data import Data
-from rga.diagnosis.evidence import FARTHEST, Fit, fit
+from rga.diagnosis.evidence import FARTHEST, extended, fit
 from rga.diagnosis.heldout import held_out_rows
 from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.prepare import prepare
 from rga.diagnosis.problem import Problem, pose, relaxed
-from rga.diagnosis.screening import screen
+from rga.diagnosis.screening import Screening
 from rga.diagnosis.search import settled
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
@@ -26,7 +26,6 @@ from rga.simulation import Simulator
 
 #: rivals that are fitted to find the nearest
 RIVALS = 6
-STEPS = 6
 NORMAL_90 = 1.6448536269514722
 
 
@@ -53,18 +52,16 @@ class Yardstick:
         self._rows = np.searchsorted(case.time, self._data.time)
         self._candidates = hypotheses(model, self._data.sensors, set(record.contexts))
         self._truths = Truth.of(case)
+        healthy = self._data.readings - self._seen(self._beyond.together)
+        self._healthy = settled(self._base, replace(self._data, readings=healthy))
 
     def sizes(self) -> list[Size]:
         """d' and d_perp of every hidden effect."""
-        healthy = replace(
-            self._data, readings=self._data.readings - self._seen(self._beyond.together)
-        )
-        problem = settled(self._base, healthy)
         return [
             # What a broken channel read before is no measure of how plainly it is broken.
             Size(truth.d_prime, truth.d_prime)
             if truth.kind == "sensor_fault"
-            else self._size(problem, truth, self._seen(change))
+            else self._size(self._healthy, truth, self._seen(change))
             for truth, change in zip(self._truths, self._beyond.signatures, strict=True)
         ]
 
@@ -86,8 +83,8 @@ class Yardstick:
             return {}
         z = np.concatenate([start for _, start in together])
         several = [one for one, _ in together]
-        there = Fit(tuple(several), z, np.zeros(0), np.zeros(0), 0.0).simulator(self._base)
-        problem = pose(there, self._data)
+        there = extended(self._base, several, z)
+        problem = pose(there, self._data, self._healthy)
         problem = pose(there, relaxed(problem), problem)
         found = fit(problem, self._base, several, z)
         off = (z - found.z) / found.spreads()
@@ -114,11 +111,11 @@ class Yardstick:
         return off
 
     def _hypothesis(self, truth: Truth) -> Hypothesis | None:
-        """The hypothesis that is true; None where none can be: a ramp, or another parameter."""
+        """The hypothesis that is true; None where none can be: another parameter."""
         for one in self._candidates:
-            if truth.is_at({"kind": one.name, **one.place}) and truth.end is None:
-                known = one.priors and one.priors.keys() <= truth.values.keys()
-                return one.beginning(truth.onset) if known else None
+            known = one.priors and one.priors.keys() <= truth.values.keys()
+            if known and truth.is_at({"kind": one.name, **one.place}):
+                return one.beginning(truth.onset, truth.profile)
         return None
 
     def _seen(self, change: FloatArray) -> FloatArray:
@@ -132,13 +129,15 @@ class Yardstick:
         exact: Data = replace(problem.data, readings=problem.simulated + problem.shift + change)
         alone = replace(problem, data=exact)
         others = [
-            one.beginning(truth.onset)
+            one
             for one in self._candidates
             if not any(known.is_at({"kind": one.name, **one.place}) for known in self._truths)
         ]
         least, nearest = size, None
-        for prospect in screen(alone, self._base, others, onsets=False)[:RIVALS]:
-            one = fit(alone, self._base, [prospect.hypothesis], prospect.z, STEPS)
+        screening = Screening(alone, self._base, others)
+        alike = others[0].beginning(truth.onset, truth.profile)
+        for prospect in screening.again(alone, self._base, (), alike)[:RIVALS]:
+            one = fit(alone, self._base, [prospect.hypothesis], prospect.z)
             other = covariance.reduce((one.simulated - problem.simulated).T[None])
             across = float(covariance.product(own, other)[0, 0])
             left = size - across**2 / max(float(covariance.squares(other)[0]), 1e-300)
