@@ -24,8 +24,8 @@ from rga.planning.site import Site
 from rga.planning.truck import lane_of
 from rga.planning.usual import usual_truck
 
-#: rows of the record that stand for operation
-ROWS = 12
+#: rows of the record that stand for operation, and places at which a truck may stand
+ROWS, STANDS = 12, 9
 #: chance of success that is worth the money, and separation below which two are alike
 LIKELY, ALIKE = 0.95, 0.5
 
@@ -55,7 +55,7 @@ class Advice:
         needed = set(data.belief.centre) | set(data.belief.lines)
         tests = settings(model, needed)
         if lane and self._truck:
-            tests += stands(lane, self._truck)
+            tests += stands(lane, self._truck, STANDS)
         added = [one for one in added_sensors(model) if not one.context or one.context in needed]
         site = Site(model, data.sensors, added, tests, operation, lane, self._truck)
         self._errors = site.errors(self._together.effects)

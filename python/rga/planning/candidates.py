@@ -2,15 +2,16 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from rga.model.schema import Model, Sensor
 from rga.model.structure import HELD_BY_PLANE
 from rga.model.units import UNITS
-from rga.planning.truck import Lane, Truck
+from rga.planning.truck import STANDS, Lane, Truck
 
+Kind = Literal["displacement", "rotation", "strain"]
 #: unit and noise of an added sensor where the model has none of its kind
 USUAL = {
     "displacement": ("mm", 0.1),
@@ -20,7 +21,7 @@ USUAL = {
     "reaction": ("kN", 1.0),
 }
 #: what a measurement costs, in strain gauges put on
-SENSOR_COST = {"strain": 1.0, "displacement": 1.5, "rotation": 1.5}
+SENSOR_COST: dict[Kind, float] = {"strain": 1.0, "displacement": 1.5, "rotation": 1.5}
 INSTRUMENT_COST, STAND_COST, SETTING_COST = 0.5, 1.0, 1.0
 #: share of a context's range that a test can bring about, about its middle
 ATTAINABLE = 0.8
@@ -74,36 +75,38 @@ def added_sensors(model: Model) -> list[Added]:
     members = model.members.values()
     used = {node for member in members for node in member.nodes}
     stiff = {node for member in members if member.kind == "frame" for node in member.nodes}
+    like = {kind: _like(model, kind) for kind in SENSOR_COST}
+
+    def added(words: str, kind: Kind, **where: Any) -> Added:
+        sensor = like[kind].model_copy(update=where)
+        assert sensor.noise is not None  # given by `_like`
+        cost = SENSOR_COST[kind]
+        name = f"{words} (added)"
+        return Added(name, sensor, "", f"the {words}", sensor.unit, sensor.noise, cost)
+
     found = []
+    kinds: tuple[tuple[Kind, str, set[str], int], ...] = (
+        ("displacement", "displacement of node {} along {}", used, 0),
+        ("rotation", "tilt of node {} about {}", stiff, 3),
+    )
     for number, axis in enumerate("xyz"):
-        x, y, z = np.eye(3)[number].tolist()
-        for kind, nodes, dof in (("displacement", used, number), ("rotation", stiff, number + 3)):
-            if dof not in held:
-                words = (
-                    f"{'tilt' if kind == 'rotation' else kind} of node {{}} {_about(kind)} {axis}"
-                )
+        direction = tuple(np.eye(3)[number].tolist())
+        for kind, words, nodes, first in kinds:
+            if first + number not in held:
                 found += [
-                    _added(model, words.format(node), kind, node=node, direction=(x, y, z))
+                    added(words.format(node, axis), kind, node=node, direction=direction)
                     for node in model.nodes
                     if node in nodes
                 ]
-    found += [
-        _added(model, f"strain of member {member}", "strain", member=member)
-        for member in model.members
-    ]
+    found += [added(f"strain of member {name}", "strain", member=name) for name in model.members]
     return [*found, *(_instrument(model, name) for name in model.context)]
 
 
-def _added(model: Model, words: str, kind: str, **where: Any) -> Added:
-    unit = _unit(model, kind)
-    sensor = Sensor.model_validate({"kind": kind, "unit": unit, **where})
-    noise = sensor_noise(model, sensor)
-    placed = sensor.model_copy(update={"noise": noise})
-    return Added(f"{words} (added)", placed, "", f"the {words}", unit, noise, SENSOR_COST[kind])
-
-
-def _about(kind: str) -> str:
-    return "about" if kind == "rotation" else "along"
+def _like(model: Model, kind: Kind) -> Sensor:
+    """A sensor of a kind, with unit and noise as the model's or as usual; its place is open."""
+    units = (one.unit for one in model.sensors.values() if one.kind == kind)
+    sensor = Sensor.model_construct(kind=kind, unit=next(units, USUAL[kind][0]))
+    return sensor.model_copy(update={"noise": sensor_noise(model, sensor)})
 
 
 def context_noise(model: Model, name: str) -> float:
@@ -129,13 +132,13 @@ def settings(model: Model, needed: Collection[str]) -> list[LoadTest]:
             middle = sum(variable.range) / 2
             half = ATTAINABLE * (variable.range[1] - variable.range[0]) / 2
             low, high = middle - half, middle + half
-            words = f"{name} at {high:.3g} against {low:.3g} {variable.unit}"
+            words = f"{name} at {high:.3g} against {low:.3g} {variable.unit}, a week apart"
             found.append(LoadTest(words, {name: high}, {name: low}, None, SETTING_COST))
     return found
 
 
-def stands(lane: Lane, truck: Truck) -> list[LoadTest]:
-    """The truck at each of its places against no truck."""
+def stands(lane: Lane, truck: Truck, most: int = STANDS) -> list[LoadTest]:
+    """The truck at each of its places, so many at most, against no truck."""
     return [
         LoadTest(
             f"truck with its first axle at {place:.2f} m (node {lane.nearest(place)})",
@@ -144,7 +147,7 @@ def stands(lane: Lane, truck: Truck) -> list[LoadTest]:
             place,
             STAND_COST,
         )
-        for place in lane.stands(truck)
+        for place in lane.stands(truck, most)
     ]
 
 
@@ -172,8 +175,3 @@ def sensor_noise(model: Model, sensor: Sensor) -> float:
     ]
     unit, noise = USUAL[sensor.kind]
     return (float(np.median(known)) if known else noise / per_si[unit]) * per_si[sensor.unit]
-
-
-def _unit(model: Model, kind: str) -> str:
-    """Unit of the model's sensors of a kind, or the usual one."""
-    return next((one.unit for one in model.sensors.values() if one.kind == kind), USUAL[kind][0])

@@ -107,8 +107,8 @@ def checked(
     draw = np.random.default_rng(seed)
     both = (cause, rival)
     errors = [site.errors(one.effects) for one in both]
-    factors: list[FloatArray] = [
-        np.linalg.cholesky(covariance(site, one, present)) for one in errors
+    factors = [
+        np.asarray(np.linalg.cholesky(covariance(site, one, present)), float) for one in errors
     ]
     judges = [Judge(site, one, present, factors[0]) for one in both]
     ahead = []

@@ -26,8 +26,9 @@ MEMBERS, GAINS, UNKNOWN = 0.025, 0.01, 0.003
 WEIGHED, PLACED = 0.01, 0.05
 #: readings of a state that a test takes the mean of
 READINGS = 4
-#: time from one test to the next [s]: lags have died away
-PAUSE = 7 * 86400.0
+#: time between the two states of a test [s], where contexts are set and with a truck: what changes
+#: with time shows in the first alone
+SETTLED, BRIEFLY = 7 * 86400.0, 600.0
 #: steps of derivatives: of the logarithm of a stiffness, of an unknown [standard deviations]
 SCATTER_STEP, STEP = 1e-3, 1e-2
 
@@ -106,12 +107,13 @@ class Site:
     def _states(self, operation: Values, contexts: Sequence[str]) -> Values:
         """Contexts and time of operation, then of both states of every test."""
         still = rest(self.model)
-        last = float(operation["time"][-1])
-        table = {
-            "time": np.append(
-                operation["time"], last + PAUSE * (1.0 + np.arange(2 * len(self.tests)))
-            )
-        }
+        pauses = [
+            pause
+            for test in self.tests
+            for pause in (SETTLED, SETTLED if test.position is None else BRIEFLY)
+        ]
+        later = float(operation["time"][-1]) + np.cumsum(pauses)
+        table = {"time": np.append(operation["time"], later)}
         for name in contexts:
             states = []
             for test in self.tests:
@@ -196,8 +198,14 @@ class Site:
     def _by_members(self, vicinity: Vicinity, centre: FloatArray) -> list[FloatArray]:
         """What the scatter of every member does, float[measurements, sensors] each."""
         rates = vicinity.stiffness_rates()
+        plain = vicinity.simulator.reads_plainly
         found = []
         for number, member in enumerate(self.model.members):
+            if number in rates and plain:
+                shown = np.zeros((len(vicinity.read), len(self.sensors)))
+                shown[:, ~self._calibrated] = rates[number][:, self._columns]
+                found.append(MEMBERS * self._contrasts(shown))
+                continue
             if number in rates:
                 moved = vicinity.response.quantities + SCATTER_STEP * rates[number]
                 response = replace(vicinity.response, quantities=moved)
@@ -216,6 +224,10 @@ class Site:
             for effect in simulator.model.effects.values():
                 effect.change_contexts(true, effect.values(response.contexts, rows))
             shown = np.column_stack([shown, *(true[name] for name in self._instruments)])
+        return self._contrasts(shown)
+
+    def _contrasts(self, shown: FloatArray) -> FloatArray:
+        """Measurements from what is shown in every state, float[measurements, sensors]."""
         course, states = shown[: self.operating], shown[self.operating :]
         # An instrument is calibrated; a sensor's zero says nothing.
         zero = np.where(self._calibrated, 0.0, course.mean(0))

@@ -92,8 +92,8 @@ class Lane:
         """The node of the first path nearest to a position [m]."""
         return self.paths[0][int(np.argmin(np.abs(np.array(self.stations) - position)))]
 
-    def stands(self, truck: Truck) -> list[float]:
-        """Positions of the first axle at which the truck stands about a node of the first path.
+    def stands(self, truck: Truck, most: int = STANDS) -> list[float]:
+        """Positions of the first axle, so many at most, with the truck about a node of a path.
 
         Raises:
             InputError: the truck is longer than the lane.
@@ -106,7 +106,7 @@ class Lane:
             )
         middles = np.array(self.stations) + truck.length / 2
         places = np.unique(np.round(np.clip(middles, truck.length, self.length), 3))
-        chosen = np.linspace(0, len(places) - 1, min(STANDS, len(places))).astype(int)
+        chosen = np.linspace(0, len(places) - 1, min(most, len(places))).astype(int)
         return [float(place) for place in places[np.unique(chosen)]]
 
     def effects(self, truck: Truck) -> dict[str, Effect]:

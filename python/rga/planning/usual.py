@@ -23,8 +23,8 @@ CHANGES = ("load_scale", "load_position", "load_eccentricity")
 
 def usual_operation(model: Model) -> Values:
     """Two days, every context swinging about the middle of its range at a pace of its own."""
-    days: FloatArray = INTERVAL / 86400.0 * np.arange(ROWS)
-    table: Values = {"time": days * 86400.0}
+    table: Values = {"time": INTERVAL * np.arange(ROWS, dtype=np.float64)}
+    days = table["time"] / 86400.0
     for number, (name, variable) in enumerate(model.context.items()):
         low, high = variable.range
         wave = np.sin(2 * np.pi * GOLDEN**number * days)
