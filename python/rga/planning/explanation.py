@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
+import numpy as np
+
 from rga.errors import InputError
 from rga.model.effect import Effect
 from rga.model.parameter import Estimated, FloatArray, Normal, Prior
@@ -83,7 +85,8 @@ def explanation(words: str, model: Model, effects: Sequence[Effect]) -> Explanat
 
 def _unknown(name: str, effect: Effect, parameter: str, stated: Estimated, prior: Prior) -> Unknown:
     try:
-        low, centre, high = (prior.z(v) for v in (stated.ci90[0], stated.value, stated.ci90[1]))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            low, centre, high = (prior.z(v) for v in (stated.ci90[0], stated.value, stated.ci90[1]))
     except ValueError:  # the logarithm of what cannot be negative
         low = centre = high = float("nan")
     spread = (high - low) / (2 * HALF_WIDTH)

@@ -49,8 +49,9 @@ def working_sensors(model: Model, findings: Findings) -> list[str]:
 
 
 def _explained(model: Model, effects: Sequence[Mapping[str, Any]]) -> Explanation:
+    known = [_effect(model, effect) for effect in effects]
     words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
-    return explanation(words, model, [_effect(model, effect) for effect in effects])
+    return explanation(words, model, known)
 
 
 def _effect(model: Model, content: Mapping[str, Any]) -> Effect:
