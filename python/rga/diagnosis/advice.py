@@ -12,6 +12,7 @@ from rga.model.schema import Model
 from rga.planning.candidates import LoadTest, added_sensors, settings, stands
 from rga.planning.explanation import Explanation
 from rga.planning.separation import (
+    LIKELY,
     Pair,
     nothing,
     paired,
@@ -26,8 +27,8 @@ from rga.planning.usual import usual_truck
 
 #: rows of the record that stand for operation, and places at which a truck may stand
 ROWS, STANDS = 12, 9
-#: chance of success that is worth the money, and separation below which two are alike
-LIKELY, ALIKE = 0.95, 0.5
+#: separation below which two explanations are alike
+ALIKE = 0.5
 
 
 class Advice:

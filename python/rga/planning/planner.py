@@ -20,7 +20,7 @@ from rga.planning.choice import Choice, Chooser
 from rga.planning.explanation import Explanation
 from rga.planning.result import Plan, PlannedTruck, Separation, Simulated
 from rga.planning.rivals import rival_pairs, working_sensors
-from rga.planning.separation import Pair, paired, success
+from rga.planning.separation import LIKELY, Pair, paired, success
 from rga.planning.site import Errors, Site
 from rga.planning.telling import planned_sensor, planned_test
 from rga.planning.truck import Lane, Truck, given_lane, lane_of, read_truck
@@ -28,8 +28,6 @@ from rga.planning.usual import strain_share, usual_operation, usual_truck
 from rga.simulation import Simulator
 
 SENSORS, POSITIONS = 2, 3
-#: share of draws that must be won clearly
-CLEARLY = 0.9
 #: a truck that strains the structure so much more than its loads is told
 HEAVY = 1.1
 Progress = Callable[[str, float], None]
@@ -155,7 +153,7 @@ def _planned(
                 d_perp=distance,
                 expected=success(distance, RIVAL),
                 d_perp_at_best=best,
-                separated=found.clearly >= CLEARLY,
+                separated=found.clearly >= LIKELY,
                 simulated=Simulated(draws=found.draws, won=found.won, clearly=found.clearly),
             )
         )
@@ -212,7 +210,7 @@ def _scope(
 
 def _separable(scope: Scope) -> list[int]:
     """Pairs that something could separate."""
-    return [k for k, best in enumerate(scope.best) if success(float(best), RIVAL) >= CLEARLY]
+    return [k for k, best in enumerate(scope.best) if success(float(best), RIVAL) >= LIKELY]
 
 
 def _checked(
@@ -251,7 +249,7 @@ def _sentence(separations: Sequence[Separation], site: Site, choice: Choice) -> 
         if one.separated:
             continue
         limit = f"everything that was thought of gives d_perp {one.d_perp_at_best:.2g}"
-        if success(one.d_perp_at_best, RIVAL) < CLEARLY:
+        if success(one.d_perp_at_best, RIVAL) < LIKELY:
             told.append(f"Nothing affordable tells the cause from {one.rival}: {limit}.")
         else:
             told.append(

@@ -18,6 +18,9 @@ from rga.model.parameter import FloatArray
 from rga.planning.explanation import Explanation
 from rga.planning.site import Errors, Site
 
+#: chance of a clear success from which on two explanations count as told apart
+LIKELY = 0.9
+
 
 @dataclass(frozen=True)
 class Pair:
