@@ -166,7 +166,7 @@ def test_a_truck_tells_soft_steel_from_heavy_loads(
     assert planned.sensors == []
     assert planned.tests
     assert all(test.position is not None for test in planned.tests)
-    told = [one for one in planned.separations if SOFT in one.cause + one.rival]
+    told = [one for one in planned.separations if SOFT in one.one + one.other]
     assert told
     assert all(one.separated and one.simulated.clearly >= 0.9 for one in told)
 
@@ -251,13 +251,13 @@ def test_no_budget_buys_nothing(bridge: dict[str, Any]) -> None:
     assert (planned.sensors, planned.tests, planned.cost) == ([], [], 0)
     assert planned.separations[0].d_perp == 0
     assert planned.separations[0].d_perp_at_best > 5
-    assert "Within this budget" in planned.sentence
+    assert "This budget does not tell" in planned.sentence
 
 
 def test_a_named_cause_is_confirmed_against_no_effect(bridge: dict[str, Any]) -> None:
     cause = effect("elastic_modulus", 0.8, material="steel")
     planned = plan(read_model(bridge, "bridge"), found(cause))
-    assert [one.rival for one in planned.separations] == ["the model as it is"]
+    assert [one.other for one in planned.separations] == ["the model as it is"]
     assert planned.separations[0].separated
 
 

@@ -107,7 +107,7 @@ def _show(result: "Plan") -> None:
         table = Table("apart", "d_perp", "expected", "simulated", "d_perp with everything")
         for one in result.separations:
             share = f"{100 * one.simulated.clearly:.0f} % of {one.simulated.draws}"
-            both = f"{letters[one.cause]} and {letters[one.rival]}"
+            both = f"{letters[one.one]} and {letters[one.other]}"
             expected = f"{100 * one.expected:.0f} %"
             cells = (f"{one.d_perp:.3g}", expected, share, f"{one.d_perp_at_best:.3g}")
             table.add_row(both, *cells)
@@ -117,7 +117,7 @@ def _show(result: "Plan") -> None:
 
 def _letters(result: "Plan") -> dict[str, str]:
     """A letter for each explanation: A is what the findings name."""
-    words = dict.fromkeys(words for one in result.separations for words in (one.cause, one.rival))
+    words = dict.fromkeys(words for one in result.separations for words in (one.one, one.other))
     return {one: chr(ord("A") + number) for number, one in enumerate(words)}
 
 

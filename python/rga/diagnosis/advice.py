@@ -40,15 +40,16 @@ class Advice:
         model: as it was diagnosed.
         data: the channels that work, and the contexts of operation.
         together: the causes.
+        levels: of the scatter, as `Problem.levels`.
     """
 
-    def __init__(self, model: Model, data: Data, together: Explanation) -> None:
+    def __init__(self, model: Model, data: Data, together: Explanation, levels: FloatArray) -> None:
         self._together = together
         self._site: Site | None = None
         with suppress(InputError):  # a structure that cannot bear the tests: no advice
-            self._prepare(model, data)
+            self._prepare(model, data, levels)
 
-    def _prepare(self, model: Model, data: Data) -> None:
+    def _prepare(self, model: Model, data: Data, levels: FloatArray) -> None:
         rows = np.unique(np.linspace(0, len(data.time) - 1, ROWS).astype(int))
         operation = {name: column[rows] for name, column in data.belief.table.items()}
         lane = lane_of(model)
@@ -58,7 +59,7 @@ class Advice:
         if lane and self._truck:
             tests += stands(lane, self._truck, STANDS)
         added = [one for one in added_sensors(model) if not one.context or one.context in needed]
-        site = Site(model, data.sensors, added, tests, operation, lane, self._truck)
+        site = Site(model, data.sensors, added, tests, operation, lane, self._truck, levels)
         self._errors = site.errors(self._together.effects)
         self._site = site
 

@@ -77,7 +77,7 @@ def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
 def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Cause]:
     """The causes with their rivals and with what would tell them apart."""
     told: list[Cause] = []
-    model, advice = found.base.model, None
+    model, problem, advice = found.base.model, found.problem, None
     fitted = [_effect(found.fit, number, record) for number in range(len(effects))]
     together = explanation("the causes", model, fitted)
     for number, effect in enumerate(effects):
@@ -86,7 +86,7 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
         d_prime, d_perp = _sizes(found, number, nearest)
         separated = ""
         if nearest is not None:
-            advice = advice or Advice(model, found.problem.data, together)
+            advice = advice or Advice(model, problem.data, together, problem.levels)
             other = [_effect(nearest.fit, k, record) for k in range(len(nearest.fit.hypotheses))]
             found_out = advice.against(explanation("its rival", model, other))
             against = effect_words(_last_effect(nearest.fit, record))

@@ -12,7 +12,7 @@ from rga.planning.separation import covariance
 from rga.planning.site import Site
 
 #: draws with either explanation true
-DRAWS = 100
+DRAWS = 50
 #: steps of a fit, how often one is shortened, how far an unknown may go [standard deviations],
 #: and the loss worth another step
 STEPS, SHORTENED, FARTHEST, ENOUGH = 6, 4, 5.0, 0.05

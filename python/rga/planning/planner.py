@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rga.diagnosis import scatter
 from rga.diagnosis.findings import Findings
 from rga.diagnosis.reading import findings_sha256
 from rga.diagnosis.search import RIVAL
@@ -28,6 +29,8 @@ from rga.planning.usual import strain_share, usual_operation, usual_truck
 from rga.simulation import Simulator
 
 SENSORS, POSITIONS = 2, 3
+#: as-built scatter that is reckoned with: a deviation above what a diagnosis expects [-]
+LEVELS = np.array([level.median * np.exp(level.spread) for level in scatter.LEVELS])
 #: a truck that strains the structure so much more than its loads is told
 HEAVY = 1.1
 Progress = Callable[[str, float], None]
@@ -148,8 +151,8 @@ def _planned(
         distance, best = float(choice.separation[number]), float(scope.best[number])
         separations.append(
             Separation(
-                cause=pair.cause.words,
-                rival=pair.rival.words,
+                one=pair.cause.words,
+                other=pair.rival.words,
                 d_perp=distance,
                 expected=success(distance, RIVAL),
                 d_perp_at_best=best,
@@ -192,7 +195,7 @@ def _scope(
         tests += stands(lane, truck)
     working = working_sensors(model, findings)
     added = [one for one in added_sensors(model) if not one.context or one.context in needed]
-    site = Site(model, working, added, tests, usual_operation(model), lane, truck)
+    site = Site(model, working, added, tests, usual_operation(model), lane, truck, LEVELS)
     pairs, failed = [], []
     for cause, rival in rivalries:
         try:
@@ -223,10 +226,10 @@ def _checked(
     seed: int,
 ) -> Checked:
     """The check of a choice on a site that has nothing but what was chosen."""
-    added = [site.added[one - site.standing] for one in choice.sensors]
+    added = [site.added[one - site.standing] for one in sorted(choice.sensors)]
     tests: list[LoadTest] = [site.tests[one] for one in choice.tests]
     working = site.sensors[: site.standing]
-    small = Site(model, working, added, tests, usual_operation(model), lane, truck)
+    small = Site(model, working, added, tests, usual_operation(model), lane, truck, LEVELS)
     present = np.zeros((small.operating + len(tests), len(small.sensors)))
     present[: small.operating, small.standing :] = 1.0
     present[small.operating :] = 1.0
@@ -234,30 +237,26 @@ def _checked(
 
 
 def _sentence(separations: Sequence[Separation], site: Site, choice: Choice) -> str:
-    what = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
-    what += [f"test: {site.tests[one].words}" for one in choice.tests]
+    told = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
+    told += [f"test: {site.tests[one].words}" for one in choice.tests]
+    told = ["; ".join(told).capitalize() + "."] if told else []
     done = [one for one in separations if one.separated]
-    told = []
     if done:
         worst = min(one.simulated.clearly for one in done)
+        whom = "each explanation" if len(done) == len(separations) else "what it tells apart"
         told.append(
-            f"{'; '.join(what)}. This tells the cause from "
-            f"{' and from '.join(one.rival for one in done)}: with readings drawn, the true one "
-            f"wins by {RIVAL:g} log-odds in {100 * worst:.0f} % or more."
+            f"With readings drawn, {whom} then wins by {RIVAL:g} log-odds in {100 * worst:.0f} % "
+            "of the draws in which it is true, or more."
         )
     for one in separations:
-        if one.separated:
-            continue
         limit = f"everything that was thought of gives d_perp {one.d_perp_at_best:.2g}"
-        if success(one.d_perp_at_best, RIVAL) < LIKELY:
-            told.append(f"Nothing affordable tells the cause from {one.rival}: {limit}.")
-        else:
-            told.append(
-                f"Within this budget the cause is not told from {one.rival} (d_perp "
-                f"{one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %): {limit}."
-            )
-    words = " ".join(told)
-    return words[:1].upper() + words[1:]
+        both = f"{one.one} from {one.other}"
+        if not one.separated and success(one.d_perp_at_best, RIVAL) < LIKELY:
+            told.append(f"Nothing affordable tells {both}: {limit}.")
+        elif not one.separated:
+            share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"
+            told.append(f"This budget does not tell {both} ({share}): {limit}.")
+    return " ".join(told)
 
 
 def _truck(truck: Truck, lane: Lane) -> PlannedTruck:

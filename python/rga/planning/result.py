@@ -105,7 +105,7 @@ class Separation(Part):
     """Two explanations, and how far the planned measurements separate them.
 
     Attributes:
-        cause, rival: in words.
+        one, other: in words.
         d_perp: difference that is left once either has imitated the other, in units of all errors.
         expected: chance that the true one wins by 4.6 log-odds.
         d_perp_at_best: with every sensor and every test that were thought of.
@@ -113,8 +113,8 @@ class Separation(Part):
         simulated: the check of that.
     """
 
-    cause: str
-    rival: str
+    one: str
+    other: str
     d_perp: float
     expected: float
     d_perp_at_best: float
@@ -128,7 +128,7 @@ class Plan(Part):
     Attributes:
         sentence: in plain words.
         sensors, tests: what to measure; both empty where nothing is to be gained.
-        separations: of every pair of a cause and a rival.
+        separations: of every two explanations.
         cost: of all, in strain gauges put on.
         budget: sensors and tests that were allowed.
     """

@@ -1,6 +1,7 @@
 """The explanations between which findings leave a choice."""
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 from typing import Any
 
 from pydantic import ValidationError
@@ -11,13 +12,13 @@ from rga.errors import InputError
 from rga.model import Effect, Model, read_effect
 from rga.planning.explanation import Explanation, explanation
 
-#: alternatives against which a cause without rivals is confirmed
-NEAREST = 3
+#: rivals of a cause that are told apart, and alternatives against which one without is confirmed
+NEAREST = 4
 FAULT = "sensor_fault"
 
 
 def rival_pairs(model: Model, findings: Findings) -> list[tuple[Explanation, Explanation]]:
-    """Each cause beside each of its rivals, the other causes beside both.
+    """Each cause and its nearest rivals two by two, the other causes beside all of them.
 
     Causes without rivals are put beside the nearest explanations that were tried, and beside no
     effect at all.
@@ -32,9 +33,12 @@ def rival_pairs(model: Model, findings: Findings) -> list[tuple[Explanation, Exp
     together = _explained(model, named)
     pairs = []
     for number, cause in enumerate(causes):
-        for rival in cause.rivals:
-            others = [*named[:number], *named[number + 1 :], rival]
-            pairs.append((together, _explained(model, _as_fitted(findings, others))))
+        others = [*named[:number], *named[number + 1 :]]
+        rivals = [
+            _explained(model, _as_fitted(findings, [*others, rival]))
+            for rival in cause.rivals[:NEAREST]
+        ]
+        pairs += list(combinations([together, *rivals], 2))
     if pairs:
         return pairs
     return [(together, _explained(model, effects)) for effects in _nearest(findings, causes)]

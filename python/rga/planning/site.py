@@ -20,8 +20,6 @@ from rga.simulation import Simulator
 from rga.simulation.simulator import Response
 from rga.simulation.vicinity import Vicinity
 
-#: as-built scatter: of a member's EA, of a sensor's gain, and of a reading for reasons unknown [-]
-MEMBERS, GAINS, UNKNOWN = 0.025, 0.01, 0.003
 #: how well a truck is weighed [-], and placed [m]
 WEIGHED, PLACED = 0.01, 0.05
 #: readings of a state that a test takes the mean of
@@ -59,6 +57,8 @@ class Site:
         tests: load tests.
         operation: contexts of operation and `time` [s], float[rows] each.
         lane, truck: of the tests with a truck.
+        levels: as-built scatter of a member's EA, of a sensor's gain, and of a reading for reasons
+            unknown [-], float[3].
 
     Attributes:
         sensors: names of the columns: those that work, those that could be added.
@@ -75,8 +75,10 @@ class Site:
         operation: Values,
         lane: Lane | None,
         truck: Truck | None,
+        levels: FloatArray,
     ) -> None:
         self.model, self.added, self.tests = model, added, tests
+        self._members, self._gains, self._unknown = levels.tolist()
         self.sensors = [*working, *(one.name for one in added)]
         self.standing, self.operating = len(working), len(operation["time"])
         sensors = {
@@ -163,7 +165,7 @@ class Site:
         vicinity = Vicinity(simulator, self._table)
         centre = self._read(simulator, vicinity.response)
         noise = self._noise
-        square = np.tile(noise**2, (len(centre), 1)) + (UNKNOWN * centre) ** 2
+        square = np.tile(noise**2, (len(centre), 1)) + (self._unknown * centre) ** 2
         square[self.operating :] += noise**2 * (2 / READINGS - 1)
         shared = [self._by_truck(centre), *self._by_members(vicinity, centre)]
         for name, step in self._steps().items():
@@ -172,7 +174,7 @@ class Site:
             square[: self.operating] += moved[: self.operating] ** 2
             # The two states of a setting are measured apart; every test has errors of its own.
             shared += [row for row in self._of_tests(np.sqrt(2) * moved) if row.any()]
-        gain = GAINS * np.where(self._calibrated, 0.0, centre)
+        gain = self._gains * np.where(self._calibrated, 0.0, centre)
         gain[: self.operating] += np.where(self._calibrated, noise, 0.0)
         return Errors(np.sqrt(square), gain, np.array(shared))
 
@@ -204,7 +206,7 @@ class Site:
             if number in rates and plain:
                 shown = np.zeros((len(vicinity.read), len(self.sensors)))
                 shown[:, ~self._calibrated] = rates[number][:, self._columns]
-                found.append(MEMBERS * self._contrasts(shown))
+                found.append(self._members * self._contrasts(shown))
                 continue
             if number in rates:
                 moved = vicinity.response.quantities + SCATTER_STEP * rates[number]
@@ -213,7 +215,7 @@ class Site:
             else:
                 scatter = MemberStiffness(member=member, factor=float(np.exp(SCATTER_STEP)))
                 changed = self._read(*vicinity.trial({"scatter": scatter}))
-            found.append(MEMBERS * (changed - centre) / SCATTER_STEP)
+            found.append(self._members * (changed - centre) / SCATTER_STEP)
         return found
 
     def _read(self, simulator: Simulator, response: Response) -> FloatArray:

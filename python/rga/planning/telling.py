@@ -91,8 +91,17 @@ def _telling(
         half = HALF_WIDTH * float(np.sqrt(shared + gain + noise + own))
         return Says(explanation=words, value=value, ci90=(value - half, value + half))
 
-    first = pairs[0]
-    count = len(first.cause.unknowns)
-    told = [says(first.cause.words, first.predicted[0], first.unknown[:count])]
-    told += [says(one.rival.words, one.predicted[1], one.unknown[count:]) for one in pairs]
-    return Telling(sensor=site.sensors[column], unit=site.unit(column), change=change, says=told)
+    told: dict[str, Says] = {}
+    for pair in pairs:
+        count = len(pair.cause.unknowns)
+        for one, predicted, unknown in (
+            (pair.cause, pair.predicted[0], pair.unknown[:count]),
+            (pair.rival, pair.predicted[1], pair.unknown[count:]),
+        ):
+            told.setdefault(one.words, says(one.words, predicted, unknown))
+    return Telling(
+        sensor=site.sensors[column],
+        unit=site.unit(column),
+        change=change,
+        says=list(told.values()),
+    )
