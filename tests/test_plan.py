@@ -289,6 +289,7 @@ def test_the_command_writes_what_it_says(files: Path, rga: Callable[..., Any]) -
     assert "first axle at" in done.out
     content = json.loads((files / "plan.json").read_text(encoding="utf-8"))
     assert content["seed"] == 4
+    assert all(test["words"] in content["sentence"] for test in content["tests"])
     assert content["sentence"] in done.out
     again = rga("plan", files / "model.json", files / "findings.json", "--seed", "4", "--json")
     assert json.loads(again.out) == content

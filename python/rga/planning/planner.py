@@ -239,7 +239,8 @@ def _checked(
 def _sentence(separations: Sequence[Separation], site: Site, choice: Choice) -> str:
     told = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
     told += [f"test: {site.tests[one].words}" for one in choice.tests]
-    told = ["; ".join(told).capitalize() + "."] if told else []
+    words = "; ".join(told)
+    told = [f"{words[0].upper()}{words[1:]}."] if told else []
     done = [one for one in separations if one.separated]
     if done:
         worst = min(one.simulated.clearly for one in done)
