@@ -15,7 +15,7 @@ from rga.planning.site import Site
 DRAWS = 50
 #: steps of a fit, how often one is shortened, how far an unknown may go [standard deviations],
 #: and the loss worth another step
-STEPS, SHORTENED, FARTHEST, ENOUGH = 6, 4, 5.0, 0.05
+STEPS, SHORTENED, FARTHEST, ENOUGH = 6, 4, 8.0, 0.05
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,7 @@ class Judge:
 
     def __init__(self, site: Site, one: Explanation, present: FloatArray, factor: FloatArray):
         self._site, self._one, self._present, self._factor = site, one, present > 0, factor
+        self._precision = one.doubt**-2.0
         self._start = np.zeros(len(one.unknowns))
         self._at_start = self.predicted(self._start)
         self._slope_at_start = self._slope(self._start)
@@ -61,12 +62,13 @@ class Judge:
         for number in range(STEPS if len(steps) else 0):
             if number:
                 slope = self._slope(steps)
-            information = slope.T @ slope + np.eye(len(steps))
-            move = np.linalg.solve(information, slope.T @ residual - steps)
+            move = np.linalg.solve(
+                self._information(slope), slope.T @ residual - steps * self._precision
+            )
             for _ in range(SHORTENED):
                 trial = np.clip(steps + move, -FARTHEST, FARTHEST)
                 there = self._white(measured - self.predicted(trial))
-                lower = float(there @ there + trial @ trial)
+                lower = float(there @ there + trial @ (trial * self._precision))
                 if lower < loss:
                     break
                 move = move / 3
@@ -75,8 +77,11 @@ class Judge:
             gained, loss, steps, residual = loss - lower, lower, trial, there
             if gained < ENOUGH:
                 break
-        information = slope.T @ slope + np.eye(len(steps))
-        return -0.5 * (loss + float(np.linalg.slogdet(information)[1]))
+        information = float(np.linalg.slogdet(self._information(slope))[1])
+        return -0.5 * (loss + information - float(np.log(self._precision).sum()))
+
+    def _information(self, slope: FloatArray) -> FloatArray:
+        return np.asarray(slope.T @ slope + np.diag(self._precision))
 
     def _slope(self, steps: FloatArray) -> FloatArray:
         """Whitened derivatives by the unknowns, float[n, unknowns]."""

@@ -13,6 +13,9 @@ from rga.model.schema import Model
 
 #: half width of a 90 % interval in standard deviations
 HALF_WIDTH = 1.6449
+#: a fit may move each of several unknowns of an effect as if its interval were so many times as
+#: wide: where one trades against the other, the intervals are no good account of a record
+DOUBT = 2.0
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,12 @@ class Explanation:
     words: str
     effects: Mapping[str, Effect]
     unknowns: tuple[Unknown, ...]
+
+    @property
+    def doubt(self) -> FloatArray:
+        """How far a fit may move each unknown [standard deviations], float[unknowns]."""
+        of = [unknown.effect for unknown in self.unknowns]
+        return np.array([DOUBT if of.count(one) > 1 else 1.0 for one in of])
 
     def at(self, steps: Sequence[float] | FloatArray) -> dict[str, Effect]:
         """The effects with unknowns so many standard deviations off their likeliest values."""

@@ -39,6 +39,12 @@ class Pair:
     unknown: FloatArray
 
     @property
+    def loose(self) -> FloatArray:
+        """`unknown`, as far as a fit may move the unknowns."""
+        doubt = np.concatenate([self.cause.doubt, self.rival.doubt])
+        return np.asarray(self.unknown * doubt[:, None, None])
+
+    @property
     def difference(self) -> FloatArray:
         """float[measurements, sensors]."""
         return np.asarray(self.predicted[0] - self.predicted[1])
@@ -82,7 +88,7 @@ def whitened(
     own[:, every, every] += np.maximum(noise, 1e-12) ** 2
     stacked = [
         errors.shared[:, here[0], here[1]],
-        *(pair.unknown[:, here[0], here[1]] for pair in pairs),
+        *(pair.loose[:, here[0], here[1]] for pair in pairs),
         *(pair.difference[here][None] for pair in pairs),
     ]
     columns = np.concatenate(stacked).transpose(2, 1, 0)
@@ -104,8 +110,7 @@ def whitened_apart(
     here = np.ix_(list(rows), list(sensors))
     own = np.maximum(np.hypot(errors.noise[here], errors.gain[here]), 1e-12)
     shared, unknown = (
-        (part[:, here[0], here[1]] / own).transpose(1, 2, 0)
-        for part in (errors.shared, pair.unknown)
+        (part[:, here[0], here[1]] / own).transpose(1, 2, 0) for part in (errors.shared, pair.loose)
     )
     return Whitened(shared, [unknown], [pair.difference[here] / own])
 
