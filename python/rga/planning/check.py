@@ -112,9 +112,7 @@ def checked(
     draw = np.random.default_rng(seed)
     both = (cause, rival)
     errors = [site.errors(one.effects) for one in both]
-    factors = [
-        np.asarray(np.linalg.cholesky(covariance(site, one, present)), float) for one in errors
-    ]
+    factors = [np.asarray(np.linalg.cholesky(covariance(one, present)), float) for one in errors]
     judges = [Judge(site, one, present, factors[0]) for one in both]
     ahead = []
     for number, one in enumerate(both):
@@ -127,5 +125,7 @@ def checked(
                 continue
             log = [judge.log_evidence(measured) for judge in judges]
             ahead.append(log[number] - log[1 - number])
+    if not ahead:
+        return Checked(0, 0.0, 0.0)
     won = np.array(ahead)
     return Checked(len(won), float((won > 0).mean()), float((won >= odds).mean()))

@@ -162,11 +162,11 @@ def with_one_more(before: Known, more: Whitened, number: int) -> FloatArray:
     return np.asarray(before.square + np.maximum((surprise * gained).sum(1), 0.0))
 
 
-def covariance(site: Site, errors: Errors, present: FloatArray) -> FloatArray:
+def covariance(errors: Errors, present: FloatArray) -> FloatArray:
     """Of the measurements that are present (a mask), unknowns left out, float[n, n]."""
     flat = errors.shared.reshape(len(errors.shared), -1)[:, present.ravel() > 0]
     whole = flat.T @ flat
-    column = np.broadcast_to(np.arange(len(site.sensors)), present.shape)[present > 0]
+    column = np.broadcast_to(np.arange(present.shape[1]), present.shape)[present > 0]
     gain = errors.gain[present > 0]
     whole += np.where(column[:, None] == column[None, :], np.outer(gain, gain), 0.0)
     whole[np.diag_indices_from(whole)] += np.maximum(errors.noise[present > 0], 1e-12) ** 2
