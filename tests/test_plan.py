@@ -242,6 +242,12 @@ def test_a_second_thermometer_tells_expansion_from_a_thermometer_that_misreads(
     assert [sensor.context for sensor in planned.sensors] == ["temperature"]
     assert planned.separations[0].separated
 
+    misread = effect("sensor_gain", 1.2, sensor="DX")
+    planned = plan(model, found(expansion, thermometer, misread), sensors=2, positions=0)
+    assert {sensor.context for sensor in planned.sensors} == {"temperature", None}
+    assert len(planned.separations) == 3
+    assert all(one.separated for one in planned.separations)
+
 
 def test_no_budget_buys_nothing(bridge: dict[str, Any]) -> None:
     model = read_model(bridge, "bridge")

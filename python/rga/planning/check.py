@@ -13,9 +13,9 @@ from rga.planning.site import Site
 
 #: draws with either explanation true
 DRAWS = 50
-#: steps of a fit, how often one is shortened, how far an unknown may go [standard deviations],
-#: and the loss worth another step
-STEPS, SHORTENED, FARTHEST, ENOUGH = 6, 4, 8.0, 0.05
+#: steps of a fit, how often one is shortened, how far an unknown may go and how far derivatives
+#: hold [standard deviations], and the loss worth another step
+STEPS, SHORTENED, FARTHEST, STRAIGHT, ENOUGH = 6, 4, 8.0, 1.0, 0.05
 
 
 @dataclass(frozen=True)
@@ -59,9 +59,10 @@ class Judge:
         steps, predicted, slope = self._start, self._at_start, self._slope_at_start
         residual = self._white(measured - predicted)
         loss = float(residual @ residual)
-        for number in range(STEPS if len(steps) else 0):
-            if number:
-                slope = self._slope(steps)
+        about = steps
+        for _ in range(STEPS if len(steps) else 0):
+            if np.abs(steps - about).max() > STRAIGHT:
+                slope, about = self._slope(steps), steps
             move = np.linalg.solve(
                 self._information(slope), slope.T @ residual - steps * self._precision
             )
