@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rga.diagnosis import Findings, diagnose
+    from rga.diagnosis.reading import load_findings
     from rga.model import Effect, Model, load_model
+    from rga.planning.planner import plan
+    from rga.planning.result import Plan
     from rga.records import Record, load_record
     from rga.simulation import Simulator
     from rga.twin import Twin, run
@@ -18,12 +21,15 @@ _DOORS = {
     "Effect": "rga.model",
     "Findings": "rga.diagnosis",
     "Model": "rga.model",
+    "Plan": "rga.planning.result",
     "Record": "rga.records",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
+    "load_findings": "rga.diagnosis.reading",
     "load_model": "rga.model",
     "load_record": "rga.records",
+    "plan": "rga.planning.planner",
     "run": "rga.twin",
 }
 
@@ -31,13 +37,16 @@ __all__ = [
     "Effect",
     "Findings",
     "Model",
+    "Plan",
     "Record",
     "Simulator",
     "Twin",
     "__version__",
     "diagnose",
+    "load_findings",
     "load_model",
     "load_record",
+    "plan",
     "run",
 ]
 

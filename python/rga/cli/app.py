@@ -11,6 +11,7 @@ from rga.cli.benchmark import benchmark
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.doctor import doctor
+from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
 from rga.cli.run import run
 from rga.cli.schema import schema
@@ -26,7 +27,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    run, diagnose, whatif, replay, rollback, simulate, dataset, verify, schema, doctor,
+    run, diagnose, plan, whatif, replay, rollback, simulate, dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command()(command)
 app.add_typer(benchmark, name="benchmark")

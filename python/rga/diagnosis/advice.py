@@ -1,72 +1,113 @@
-"""The added sensor that would tell a cause from its rival, by simulation of both."""
+"""The one measurement that would tell a cause from its rival: a sensor, or a load test."""
+
+from contextlib import suppress
 
 import numpy as np
 
 from rga.diagnosis.data import Data
+from rga.diagnosis.search import RIVAL
 from rga.errors import InputError
-from rga.model.schema import Model, Sensor
-from rga.simulation import Simulator
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.planning.candidates import LoadTest, added_sensors, settings, stands
+from rga.planning.explanation import Explanation
+from rga.planning.separation import (
+    LIKELY,
+    Pair,
+    nothing,
+    paired,
+    success,
+    whitened,
+    whitened_apart,
+    with_one_more,
+)
+from rga.planning.site import Site
+from rga.planning.truck import lane_of
+from rga.planning.usual import usual_truck
 
-#: what a good sensor resolves [its unit]
-RESOLUTION = {"displacement": 0.05, "strain": 1.0}
+#: rows of the record that stand for operation, and places at which a truck may stand
+ROWS, STANDS = 12, 9
+#: separation below which two explanations are alike
+ALIKE = 0.5
 
 
-def separating_sensor(cause: Simulator, rival: Simulator, data: Data) -> str:
-    """The one added displacement or strain sensor at which the two differ most, in words.
+class Advice:
+    """Looks for the measurement that separates a cause from its rival.
+
+    Everything that could be measured is simulated once, about the causes together.
 
     Args:
-        cause: simulator of the extended model.
-        rival: simulator with the rival in the place of the cause.
-        data: gives the contexts under which they are compared.
+        model: as it was diagnosed.
+        data: the channels that work, and the contexts of operation.
+        together: the causes.
+        levels: of the scatter, as `Problem.levels`.
     """
-    trial = _everywhere(cause.model)
-    try:
-        ours, theirs = (
-            Simulator(s.model.model_copy(update={"sensors": {**s.model.sensors, **trial}})).predict(
-                data.belief.table
-            )[:, len(s.model.sensors) :]
-            for s in (cause, rival)
-        )
-    except InputError:
-        return ""
-    difference = np.sqrt(np.nanmean((ours - theirs) ** 2, axis=0))
-    resolved = difference / np.array([RESOLUTION[sensor.kind] for sensor in trial.values()])
-    best = int(np.nanargmax(resolved))
-    sensor = list(trial.values())[best]
-    largest = float(np.nanmax(np.abs(ours - theirs)[:, best]))
-    if resolved[best] < 1.0:
+
+    def __init__(self, model: Model, data: Data, together: Explanation, levels: FloatArray) -> None:
+        self._together = together
+        self._site: Site | None = None
+        with suppress(InputError):  # a structure that cannot bear the tests: no advice
+            self._prepare(model, data, levels)
+
+    def _prepare(self, model: Model, data: Data, levels: FloatArray) -> None:
+        rows = np.unique(np.linspace(0, len(data.time) - 1, ROWS).astype(int))
+        operation = {name: column[rows] for name, column in data.belief.table.items()}
+        lane = lane_of(model)
+        self._truck = usual_truck(model, lane) if lane else None
+        needed = set(data.belief.centre) | set(data.belief.lines)
+        tests = settings(model, needed)
+        if lane and self._truck:
+            tests += stands(lane, self._truck, STANDS)
+        added = [one for one in added_sensors(model) if not one.context or one.context in needed]
+        site = Site(model, data.sensors, added, tests, operation, lane, self._truck, levels)
+        self._errors = site.errors(self._together.effects)
+        self._site = site
+
+    def against(self, rival: Explanation) -> str:
+        """What to measure against an explanation, in words; empty where it cannot be simulated."""
+        site = self._site
+        if site is None:
+            return ""
+        try:
+            pair = paired(site, self._together, rival)
+        except InputError:
+            return ""
+        options = [
+            *((f"measuring {one.words}", one.cost) for one in site.added),
+            *((self._words(one), one.cost) for one in site.tests),
+        ]
+        by_tests = self._by_tests(site, pair)
+        separation = np.concatenate([self._by_sensors(site, pair), by_tests]).tolist()
+        best = max(range(len(options)), key=lambda k: separation[k])
+        if success(separation[best], RIVAL) >= LIKELY:
+            enough = [k for k, one in enumerate(separation) if success(one, RIVAL) >= LIKELY]
+            best = min(enough, key=lambda k: (options[k][1], -separation[k]))
+            return f"{options[best][0]} tells them apart ({_figures(separation[best])})"
+        if separation[best] < ALIKE:
+            return "nothing that could be measured: they predict the same everywhere"
         return (
-            "no single added displacement or strain sensor under these loads: the two differ by "
-            "less than such a sensor resolves; another load case is needed"
+            "no single added sensor or load test; the best is "
+            f"{options[best][0]} ({_figures(separation[best])})"
         )
-    where = (
-        f"the strain of member {sensor.member}"
-        if sensor.kind == "strain"
-        else f"the displacement of node {sensor.node} along {_axis(sensor)}"
-    )
-    return f"measuring {where}: the two differ there by up to {largest:.3g} {sensor.unit}"
+
+    def _words(self, test: LoadTest) -> str:
+        words = f"a load test, {test.words},"
+        return words if test.position is None else f"{words} axles [kN] @ [m] {self._truck},"
+
+    def _by_sensors(self, site: Site, pair: Pair) -> FloatArray:
+        """d_perp with each added sensor alone, in operation."""
+        columns = range(site.standing, len(site.sensors))
+        more = whitened(self._errors, [pair], range(site.operating), columns)
+        return np.sqrt(with_one_more(nothing(self._errors, pair), more, 0))
+
+    def _by_tests(self, site: Site, pair: Pair) -> FloatArray:
+        """d_perp with each load test alone, read by the sensors that work."""
+        rows = range(site.operating, site.operating + len(site.tests))
+        if not rows or not site.standing:
+            return np.zeros(len(site.tests))
+        more = whitened_apart(self._errors, pair, rows, range(site.standing))
+        return np.sqrt(with_one_more(nothing(self._errors, pair), more, 0))
 
 
-def _everywhere(model: Model) -> dict[str, Sensor]:
-    gauged = {sensor.member for sensor in model.sensors.values()}
-    sensors = {
-        f"strain of {name}": Sensor(kind="strain", member=name, unit="microstrain")
-        for name in model.members
-        if name not in gauged
-    }
-    used = {node for member in model.members.values() for node in member.nodes}
-    for node in sorted(used):
-        for axis, direction in (
-            ("x", (1.0, 0.0, 0.0)),
-            ("y", (0.0, 1.0, 0.0)),
-            ("z", (0.0, 0.0, 1.0)),
-        ):
-            sensors[f"{axis} of {node}"] = Sensor(
-                kind="displacement", node=node, direction=direction, unit="mm"
-            )
-    return sensors
-
-
-def _axis(sensor: Sensor) -> str:
-    assert sensor.direction is not None  # made with one above
-    return "xyz"[int(np.argmax(np.abs(sensor.direction)))]
+def _figures(separation: float) -> str:
+    return f"d_perp {separation:.2g}, with a chance of {100 * success(separation, RIVAL):.0f} %"

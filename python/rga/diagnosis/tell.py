@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rga.diagnosis.account import Account
-from rga.diagnosis.advice import separating_sensor
+from rga.diagnosis.advice import Advice
 from rga.diagnosis.channels import Fault
 from rga.diagnosis.evidence import Fit, extended
 from rga.diagnosis.explanations import Tried
@@ -31,6 +31,7 @@ from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault, SensorGain
 from rga.model.parameter import Estimated, FloatArray
 from rga.model.schema import Model
+from rga.planning.explanation import explanation
 from rga.records import Record
 
 NORMAL_90 = 1.6448536269514722
@@ -75,18 +76,19 @@ def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
 
 def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Cause]:
     """The causes with their rivals and with what would tell them apart."""
-    told = []
+    told: list[Cause] = []
+    model, problem, advice = found.base.model, found.problem, None
+    fitted = [_effect(found.fit, number, record) for number in range(len(effects))]
+    together = explanation("the causes", model, fitted)
     for number, effect in enumerate(effects):
         rivals = _rivals(found, number)
         nearest = (found.alternatives[number] or (None,))[0]
         d_prime, d_perp = _sizes(found, number, nearest)
         separated = ""
         if nearest is not None:
-            found_out = separating_sensor(
-                found.fit.simulator(found.base),
-                nearest.fit.simulator(found.base),
-                found.problem.data,
-            )
+            advice = advice or Advice(model, problem.data, together, problem.levels)
+            other = [_effect(nearest.fit, k, record) for k in range(len(nearest.fit.hypotheses))]
+            found_out = advice.against(explanation("its rival", model, other))
             against = effect_words(_last_effect(nearest.fit, record))
             separated = f"against {against}: {found_out}" if found_out else ""
         told.append(

@@ -1,0 +1,269 @@
+"""The plan: a model and its findings in, the measurements that separate the rivals out."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from rga.diagnosis import scatter
+from rga.diagnosis.findings import Findings
+from rga.diagnosis.reading import findings_sha256
+from rga.diagnosis.search import RIVAL
+from rga.diagnosis.tell import versions
+from rga.errors import InputError
+from rga.model import Model
+from rga.model.parameter import FloatArray
+from rga.planning.candidates import LoadTest, added_sensors, settings, stands
+from rga.planning.check import Checked, checked
+from rga.planning.choice import Choice, Chooser
+from rga.planning.explanation import Explanation
+from rga.planning.result import Plan, PlannedTruck, Separation, Simulated
+from rga.planning.rivals import rival_pairs, working_sensors
+from rga.planning.separation import LIKELY, Pair, paired, success
+from rga.planning.site import Errors, Site
+from rga.planning.telling import planned_sensor, planned_test
+from rga.planning.truck import Lane, Truck, given_lane, lane_of, read_truck
+from rga.planning.usual import strain_share, usual_operation, usual_truck
+from rga.simulation import Simulator
+
+SENSORS, POSITIONS = 2, 3
+#: as-built scatter that is reckoned with: a deviation above what a diagnosis expects [-]
+LEVELS = np.array([level.median * np.exp(level.spread) for level in scatter.LEVELS])
+#: a truck that strains the structure so much more than its loads is told
+HEAVY = 1.1
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What is planned on.
+
+    Attributes:
+        site: with all that could be measured.
+        errors: about the causes.
+        pairs: of causes and rivals.
+        best: d_perp of each pair with everything measured, float[pairs].
+    """
+
+    site: Site
+    errors: Errors
+    pairs: list[Pair]
+    best: FloatArray
+
+
+def plan(
+    model: Model,
+    findings: Findings,
+    *,
+    sensors: int = SENSORS,
+    positions: int = POSITIONS,
+    truck: str | None = None,
+    paths: Sequence[Sequence[str]] = (),
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Plan:
+    """Choose the sensors and load tests that best separate what findings cannot tell apart.
+
+    Args:
+        model: the model that was diagnosed.
+        findings: of its diagnosis.
+        sensors: sensors that may be added.
+        positions: load tests that may be made: places of a truck, and settings of contexts.
+        truck: axle loads [kN] @ spacings [m], such as "60,100@3.5"; None: a truck that strains the
+            structure as its own loads do.
+        paths: of nodes that share the truck alike; none: those that the model's loads show.
+        seed: of the drawn readings.
+        progress: told a stage and the share of it that is done.
+
+    Returns:
+        The plan, with the separation that it gives and a check of it by simulation.
+
+    Raises:
+        InputError: findings of another model, a budget below zero, a truck that is none or does
+            not stand on its path, or explanations that cannot be simulated.
+    """
+    for value, option in ((sensors, "sensors"), (positions, "positions")):
+        if value < 0:
+            raise InputError(f"{option} are {value}", f"--{option}", "give 0 or more")
+    if findings.model_sha256 != model.sha256:
+        raise InputError(
+            "these findings are of another model",
+            f"findings of {findings.model_sha256[:12] or 'a model made in memory'}, "
+            f"model {model.sha256[:12] or 'made in memory'}",
+            "give the model file that was diagnosed, unchanged",
+        )
+    vehicle = None if truck is None else read_truck(truck)
+    with threadpool_limits(1):
+        return _planned(
+            model, findings, (sensors, positions), vehicle, paths, seed, progress or _silent
+        )
+
+
+def _planned(
+    model: Model,
+    findings: Findings,
+    budget: tuple[int, int],
+    truck: Truck | None,
+    paths: Sequence[Sequence[str]],
+    seed: int,
+    progress: Progress,
+) -> Plan:
+    lane = given_lane(model, paths) if paths else lane_of(model)
+    warnings: list[str] = []
+    if lane is None and truck is not None:
+        raise InputError(
+            "the model shows no path for a truck", "--truck", "name the nodes of it with --path"
+        )
+    if lane is not None:
+        share = strain_share(model, lane, truck) if truck is not None else 0.0
+        truck = truck or usual_truck(model, lane)
+        if share > HEAVY:
+            warnings.append(
+                f"the truck strains the structure {share:.2g} times as much as its loads at most"
+            )
+    stated: dict[str, Any] = {
+        "budget": {"sensors": budget[0], "positions": budget[1]},
+        "seed": seed,
+        "model_sha256": model.sha256,
+        "findings_sha256": findings_sha256(findings),
+        "versions": versions(),
+    }
+    rivalries = rival_pairs(model, findings)
+    if not rivalries:
+        return Plan(
+            sentence="The findings name no cause: there is nothing to tell apart.", **stated
+        )
+    progress("simulating what could be measured", 0.0)
+    scope = _scope(model, findings, rivalries, lane, truck, warnings)
+    progress("choosing measurements", 0.0)
+    chooser = Chooser(scope.site, scope.errors, [scope.pairs[k] for k in _separable(scope)])
+    choice = chooser.best(*budget)
+    everything = Chooser(scope.site, scope.errors, scope.pairs)
+    choice = Choice(
+        choice.sensors, choice.tests, everything.separation(choice.sensors, choice.tests)
+    )
+    separations = []
+    for number, pair in enumerate(scope.pairs):
+        progress("simulating the plan", number / len(scope.pairs))
+        found = _checked(scope.site, model, choice, pair, lane, truck, seed + number)
+        distance, best = float(choice.separation[number]), float(scope.best[number])
+        separations.append(
+            Separation(
+                one=pair.cause.words,
+                other=pair.rival.words,
+                d_perp=distance,
+                expected=success(distance, RIVAL),
+                d_perp_at_best=best,
+                separated=found.clearly >= LIKELY,
+                simulated=Simulated(draws=found.draws, won=found.won, clearly=found.clearly),
+            )
+        )
+    site, pairs = scope.site, scope.pairs
+    tests = [planned_test(site, scope.errors, pairs, choice, one) for one in choice.tests]
+    driven = any(test.position is not None for test in tests)
+    return Plan(
+        sentence=_sentence(separations, site, choice),
+        sensors=[planned_sensor(site, scope.errors, pairs, choice, one) for one in choice.sensors],
+        tests=tests,
+        truck=_truck(truck, lane) if driven and truck and lane else None,
+        separations=separations,
+        cost=chooser.cost(choice),
+        warnings=warnings,
+        **stated,
+    )
+
+
+def _scope(
+    model: Model,
+    findings: Findings,
+    rivalries: Sequence[tuple[Explanation, Explanation]],
+    lane: Lane | None,
+    truck: Truck | None,
+    warnings: list[str],
+) -> Scope:
+    """Everything that could be measured; pairs that cannot be simulated become warnings."""
+    needed = {
+        context
+        for both in rivalries
+        for one in both
+        for context in Simulator(model).extended(one.effects).needed
+    }
+    tests = settings(model, needed)
+    if lane is not None and truck is not None:
+        tests += stands(lane, truck)
+    working = working_sensors(model, findings)
+    added = [one for one in added_sensors(model) if not one.context or one.context in needed]
+    site = Site(model, working, added, tests, usual_operation(model), lane, truck, LEVELS)
+    pairs, failed = [], []
+    for cause, rival in rivalries:
+        try:
+            pairs.append(paired(site, cause, rival))
+        except InputError as error:
+            failed.append(error)
+            warnings.append(f"{rival.words} was left aside: {error}")
+    if not pairs:
+        raise failed[0]
+    errors = site.errors(rivalries[0][0].effects)
+    every = range(site.standing, len(site.sensors))
+    best = Chooser(site, errors, pairs).separation(every, range(len(tests)))
+    return Scope(site, errors, pairs, best)
+
+
+def _separable(scope: Scope) -> list[int]:
+    """Pairs that something could separate."""
+    return [k for k, best in enumerate(scope.best) if success(float(best), RIVAL) >= LIKELY]
+
+
+def _checked(
+    site: Site,
+    model: Model,
+    choice: Choice,
+    pair: Pair,
+    lane: Lane | None,
+    truck: Truck | None,
+    seed: int,
+) -> Checked:
+    """The check of a choice on a site that has nothing but what was chosen."""
+    added = [site.added[one - site.standing] for one in sorted(choice.sensors)]
+    tests: list[LoadTest] = [site.tests[one] for one in choice.tests]
+    working = site.sensors[: site.standing]
+    small = Site(model, working, added, tests, usual_operation(model), lane, truck, LEVELS)
+    present = np.zeros((small.operating + len(tests), len(small.sensors)))
+    present[: small.operating, small.standing :] = 1.0
+    present[small.operating :] = 1.0
+    return checked(small, pair.cause, pair.rival, present, RIVAL, seed)
+
+
+def _sentence(separations: Sequence[Separation], site: Site, choice: Choice) -> str:
+    told = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
+    told += [f"test: {site.tests[one].words}" for one in choice.tests]
+    words = "; ".join(told)
+    told = [f"{words[0].upper()}{words[1:]}."] if told else []
+    done = [one for one in separations if one.separated]
+    if done:
+        worst = min(one.simulated.clearly for one in done)
+        whom = "each explanation" if len(done) == len(separations) else "what it tells apart"
+        told.append(
+            f"With readings drawn, {whom} then wins by {RIVAL:g} log-odds in {100 * worst:.0f} % "
+            "of the draws in which it is true, or more."
+        )
+    for one in separations:
+        limit = f"everything that was thought of gives d_perp {one.d_perp_at_best:.2g}"
+        both = f"{one.one} from {one.other}"
+        if not one.separated and success(one.d_perp_at_best, RIVAL) < LIKELY:
+            told.append(f"Nothing affordable tells {both}: {limit}.")
+        elif not one.separated:
+            share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"
+            told.append(f"This budget does not tell {both} ({share}): {limit}.")
+    return " ".join(told)
+
+
+def _truck(truck: Truck, lane: Lane) -> PlannedTruck:
+    paths = [list(path) for path in lane.paths]
+    return PlannedTruck(loads=list(truck.loads), spacings=list(truck.spacings), paths=paths)
+
+
+def _silent(stage: str, done: float) -> None:
+    return None

@@ -1,0 +1,152 @@
+"""A plan: what to measure next, as it stands in a file."""
+
+import json
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Interval = tuple[float, float]
+
+
+class Part(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Says(Part):
+    """What an explanation predicts of a measurement.
+
+    Attributes:
+        explanation: in words.
+        value: [unit of the sensor].
+        ci90: from what is not sure of the explanation, of members, gains and noise.
+    """
+
+    explanation: str
+    value: float
+    ci90: Interval
+
+
+class Telling(Part):
+    """A change of one reading in which explanations differ.
+
+    Attributes:
+        sensor: its name, or where it goes.
+        change: between which states.
+    """
+
+    sensor: str
+    unit: str
+    change: str
+    says: list[Says]
+
+
+class PlannedSensor(Part):
+    """A sensor to add, or a second instrument for a context.
+
+    Attributes:
+        words: where it goes.
+        sensor: as it would stand in the model; None for an instrument.
+        context: that an instrument measures.
+        noise: standard deviation of a reading [unit].
+        cost: in strain gauges put on.
+        tells: where it tells most.
+    """
+
+    words: str
+    sensor: dict[str, Any] | None
+    context: str | None
+    unit: str
+    noise: float
+    cost: float
+    tells: list[Telling]
+
+
+class PlannedTest(Part):
+    """A load test: a state whose readings are compared with those of another.
+
+    Attributes:
+        words: what is done.
+        position: of the truck's first axle along its path [m]; None without a truck.
+        contexts, against: that are brought about in the two states.
+        cost: in strain gauges put on.
+        tells: the readings that tell most.
+    """
+
+    words: str
+    position: float | None
+    contexts: dict[str, float]
+    against: dict[str, float]
+    cost: float
+    tells: list[Telling]
+
+
+class PlannedTruck(Part):
+    """The truck of the tests: axle loads [kN], spacings [m], and the paths that share it."""
+
+    loads: list[float]
+    spacings: list[float]
+    paths: list[list[str]]
+
+
+class Simulated(Part):
+    """Drawn readings, half of them with each explanation true, and both explanations fitted.
+
+    Attributes:
+        won: share of draws in which the true one was likelier.
+        clearly: share in which it was likelier by 4.6 log-odds or more.
+    """
+
+    draws: int
+    won: float
+    clearly: float
+
+
+class Separation(Part):
+    """Two explanations, and how far the planned measurements separate them.
+
+    Attributes:
+        one, other: in words.
+        d_perp: difference that is left once either has imitated the other, in units of all errors.
+        expected: chance that the true one wins by 4.6 log-odds.
+        d_perp_at_best: with every sensor and every test that were thought of.
+        separated: the plan is to tell them apart: it wins clearly in nine of ten draws.
+        simulated: the check of that.
+    """
+
+    one: str
+    other: str
+    d_perp: float
+    expected: float
+    d_perp_at_best: float
+    separated: bool
+    simulated: Simulated
+
+
+class Plan(Part):
+    """What to measure next, so that rival explanations are told apart.
+
+    Attributes:
+        sentence: in plain words.
+        sensors, tests: what to measure; both empty where nothing is to be gained.
+        separations: of every two explanations.
+        cost: of all, in strain gauges put on.
+        budget: sensors and tests that were allowed.
+    """
+
+    rga_plan: Literal[1] = 1
+    sentence: str
+    sensors: list[PlannedSensor] = []
+    tests: list[PlannedTest] = []
+    truck: PlannedTruck | None = None
+    separations: list[Separation] = []
+    cost: float = 0.0
+    budget: dict[str, int]
+    warnings: list[str] = []
+    seed: int
+    model_sha256: str
+    findings_sha256: str
+    versions: dict[str, str] = Field(default_factory=dict)
+
+    def to_json(self) -> str:
+        """The content of a plan's file."""
+        return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False)

@@ -1,0 +1,102 @@
+"""The explanations between which findings leave a choice."""
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+from pydantic import ValidationError
+
+from rga.diagnosis.findings import Cause, Findings
+from rga.diagnosis.words import effect_words
+from rga.errors import InputError
+from rga.model import Effect, Model, read_effect
+from rga.planning.explanation import Explanation, explanation
+
+#: rivals of a cause that are told apart, and alternatives against which one without is confirmed
+NEAREST = 4
+FAULT = "sensor_fault"
+
+
+def rival_pairs(model: Model, findings: Findings) -> list[tuple[Explanation, Explanation]]:
+    """Each cause and its nearest rivals two by two, the other causes beside all of them.
+
+    Causes without rivals are put beside the nearest explanations that were tried, and beside no
+    effect at all.
+
+    Raises:
+        InputError: an effect of the findings is unknown, or does not fit the model.
+    """
+    causes = [cause for cause in findings.causes if cause.effect["kind"] != FAULT]
+    if not causes:
+        return []
+    named = [cause.effect for cause in causes]
+    together = _explained(model, named)
+    pairs = []
+    for number, cause in enumerate(causes):
+        others = [*named[:number], *named[number + 1 :]]
+        rivals = [
+            _explained(model, _as_fitted(findings, [*others, rival]))
+            for rival in cause.rivals[:NEAREST]
+        ]
+        pairs += list(combinations([together, *rivals], 2))
+    if pairs:
+        return pairs
+    return [(together, _explained(model, effects)) for effects in _nearest(findings, causes)]
+
+
+def working_sensors(model: Model, findings: Findings) -> list[str]:
+    """Sensors of the model that no finding calls faulty."""
+    faulty = {
+        cause.effect.get("sensor") for cause in findings.causes if cause.effect["kind"] == FAULT
+    }
+    return [name for name in model.sensors if name not in faulty]
+
+
+def _explained(model: Model, effects: Sequence[Mapping[str, Any]]) -> Explanation:
+    known = [_effect(model, effect) for effect in effects]
+    words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
+    return explanation(words, model, known)
+
+
+def _effect(model: Model, content: Mapping[str, Any]) -> Effect:
+    where = "findings"
+    try:
+        effect = read_effect(dict(content), where)
+        model.check_effect(effect, where)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        problem = f"{content.get('kind')}, {'.'.join(map(str, first['loc']))}: {first['msg']}"
+        raise InputError(problem, where, "give findings as the diagnosis wrote them") from None
+    except (ValueError, KeyError) as error:
+        raise InputError(
+            str(error), where, f"give the findings of the model {model.name!r}"
+        ) from None
+    return effect
+
+
+def _as_fitted(
+    findings: Findings, effects: Sequence[Mapping[str, Any]]
+) -> Sequence[Mapping[str, Any]]:
+    """The effects as they were fitted together, where they were."""
+    wanted = sorted(map(_place, effects))
+    for tried in findings.explanations:
+        if sorted(map(_place, tried.effects)) == wanted:
+            return tried.effects
+    return effects
+
+
+def _nearest(findings: Findings, causes: Sequence[Cause]) -> list[Sequence[Mapping[str, Any]]]:
+    """Explanations near the causes that leave out one of them at least; no effect at all."""
+    named = {_place(cause.effect) for cause in causes}
+    others: list[Sequence[Mapping[str, Any]]] = [
+        tried.effects
+        for tried in findings.explanations
+        if tried.effects and not named <= set(map(_place, tried.effects))
+    ]
+    return [*others[:NEAREST], []]
+
+
+def _place(effect: Mapping[str, Any]) -> str:
+    kind = Effect.vocabulary.get(effect.get("kind", ""))
+    fields = kind.place_fields() if kind else {}
+    return repr((effect.get("kind"), [(name, effect.get(name)) for name in fields]))
