@@ -73,9 +73,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     faults = {f"fault of {fault.sensor}": _fault_effect(fault) for fault in prepared.faults}
     named = {tell.cause_name(model, effect): effect for effect in effects}
     extended = model.extended({**named, **faults})
-    account = _account(model, extended, prepared, held_out, (start, found.problem), noise)
+    account = _account(model, extended, prepared, held_out, (start, found), noise)
     share = leftover.share_left(found.problem)
-    structure = share > STRUCTURE or bool(leftover.bent_contexts(found.problem))
+    structure = share > STRUCTURE or bool(leftover.bends(found.problem))
     grouped = sensor_groups(model, data.sensors)
     misfits = tell.misfits(account, grouped)
     findings = Findings(
@@ -88,7 +88,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         unidentifiable=tell.unidentifiable(screening.first),
         unexplained={
             "share": share,
-            "looks_like": leftover.in_words(found.problem, _drivers(found.problem.data, measured)),
+            "looks_like": leftover.in_words(
+                found.problem, leftover.known_contexts(found.problem, measured)
+            ),
         },
         explanations=tell.explanations(tried, found, prepared.record),
         groups=tell.groups(account, grouped),
@@ -126,16 +128,18 @@ def _account(
     extended: Model,
     prepared: Prepared,
     held_out: BoolArray,
-    problems: tuple[Problem, Problem],
+    ends: tuple[Problem, Found],
     noise_of: Problem,
 ) -> Account:
-    """What was measured and simulated, before and after (`problems`).
+    """What was measured and simulated, before and after: the search's `ends`.
 
     The gap is in units of the noise as it was before shared patterns were taken out of it.
     """
     full = prepared.data
-    before = _everywhere(full, problems[0]).predict(Simulator(model))
-    after = _everywhere(full, problems[1]).predict(Simulator(extended))
+    start, found = ends
+    before = _everywhere(full, start).predict(Simulator(model))
+    believed = _everywhere(full, found.problem)
+    after = believed.predict(Simulator(extended))
     record = prepared.record
     columns = [record.sensors.index(name) for name in full.sensors]
     rejected = np.array([name not in full.sensors for name in record.sensors])
@@ -163,6 +167,8 @@ def _account(
         after=placed(after),
         sigma=sigma,
         noise=placed(noise),
+        contexts=believed.belief.table,
+        found=found,
     )
 
 
@@ -196,12 +202,3 @@ def gain_of(account: Account, seed: int) -> Any:
 
 def _fault_effect(fault: Fault) -> Effect:
     return SensorFault(sensor=fault.sensor, mode=fault.mode)
-
-
-def _drivers(data: Data, measured: set[str]) -> dict[str, FloatArray]:
-    lines = set(data.belief.lines)
-    return {
-        name: data.belief.table[name]
-        for name in sorted(measured | lines)
-        if name in data.belief.table
-    }

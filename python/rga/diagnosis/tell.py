@@ -87,7 +87,7 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
                 nearest.fit.simulator(found.base),
                 found.problem.data,
             )
-            against = effect_words(_last_effect(nearest.fit, record))
+            against = effect_words(last_effect(nearest.fit, record))
             separated = f"against {against}: {found_out}" if found_out else ""
         told.append(
             Cause(
@@ -98,7 +98,7 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
                 log_odds=found.log_odds[number],
                 d_prime=d_prime,
                 d_perp=d_perp,
-                rivals=[_last_effect(one.fit, record) for one in rivals],
+                rivals=[last_effect(one.fit, record) for one in rivals],
                 separated_by=separated,
                 why=_why(found, number),
             )
@@ -294,7 +294,8 @@ def _dead(effect: Effect) -> Effect:
     return effect
 
 
-def _last_effect(one: Fit, record: Record) -> dict[str, Any]:
+def last_effect(one: Fit, record: Record) -> dict[str, Any]:
+    """The last hypothesis of a fit as an effect of a model file, with its estimates."""
     return content(_effect(one, len(one.hypotheses) - 1, record))
 
 
