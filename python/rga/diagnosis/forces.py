@@ -23,17 +23,17 @@ class Forces:
     """Axial forces of every member under the contexts of the record.
 
     An amplitude is the root mean square over the rows. A ratio is over what the model as it was
-    given calculates, NaN where that is next to nothing.
+    given calculates; where that is next to nothing it is infinite, or NaN if it stays so.
 
     Attributes:
         members: names, in the order of the model.
         row: the heaviest row: where the model as it was given stores most energy in its members.
         given, extended: in that row [N], float[members].
-        amplitude: of the model as it was given [N], float[members].
-        ratio: amplitude with all causes over `amplitude`, float[members].
+        amplitude, changed: of the model as it was given and with all causes [N], float[members].
+        ratio: `changed` over `amplitude`, float[members].
         credited: the same without bearings' restraint, float[members]; None where no cause is such.
         without: the same with all causes but one, by the cause's name, float[members] each;
-            none where there is one cause only.
+            none where there is one cause only, or the one is the only bearing.
         measured: amplitude measured by strain gauges over `amplitude`, float[members]; NaN where
             there is no gauge.
     """
@@ -43,6 +43,7 @@ class Forces:
     given: FloatArray
     extended: FloatArray
     amplitude: FloatArray
+    changed: FloatArray
     ratio: FloatArray
     credited: FloatArray | None
     without: dict[str, FloatArray]
@@ -68,23 +69,27 @@ def member_forces(account: Account) -> Forces | None:
     def forces(chosen: Mapping[str, Effect]) -> FloatArray:
         return _forces(given.extended(dict(chosen)), account.contexts)
 
+    held = {name for name, effect in causes.items() if effect.kind in NOT_CREDITED}
     try:
         whole = forces(causes)
         base = forces({})
         without = {
             name: forces({k: one for k, one in causes.items() if k != name})
             for name in (causes if len(causes) > 1 else ())
+            if held != {name}
         }
-        held = {name for name, effect in causes.items() if effect.kind in NOT_CREDITED}
         let_go = forces({k: one for k, one in causes.items() if k not in held}) if held else None
     except InputError:
         # Without one of its causes the structure may be unstable.
         return None
     amplitude = _amplitude(base)
-    idle = amplitude <= IDLE * amplitude.max(initial=0.0)
+    changed = _amplitude(whole)
+    least = IDLE * amplitude.max(initial=0.0)
+    idle = amplitude <= least
 
     def over(values: FloatArray) -> FloatArray:
-        return np.where(idle, np.nan, _amplitude(values) / np.where(idle, 1.0, amplitude))
+        new = np.where(_amplitude(values) > least, np.inf, np.nan)
+        return np.where(idle, new, _amplitude(values) / np.where(idle, 1.0, amplitude))
 
     row = int(np.argmax((base**2 * _compliance(given)).sum(1)))
     ratio = over(whole)
@@ -94,6 +99,7 @@ def member_forces(account: Account) -> Forces | None:
         given=base[row],
         extended=whole[row],
         amplitude=amplitude,
+        changed=changed,
         ratio=ratio,
         credited=None if let_go is None else over(let_go),
         without={name: over(values) for name, values in without.items()},

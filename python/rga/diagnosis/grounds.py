@@ -13,7 +13,8 @@ from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.search import NAMED, Found, without_cause
 from rga.model.parameter import FloatArray, listed
 
-STEPS = 5
+#: steps of a fit without a group of channels, and without one channel, which moves it little
+STEPS, FEW_STEPS = 5, 2
 #: channels that are left out one by one, at most: those that the cause changes most
 MOST_LEFT_OUT = 12
 HALVINGS = 30
@@ -170,9 +171,9 @@ def hold(found: Found, number: int) -> Hold | None:
         if sensor in own:
             continue
         part = hiding(problem, [sensor])
-        again = fit(part, base, causes.hypotheses, causes.z, STEPS).log_evidence
+        again = fit(part, base, causes.hypotheses, causes.z, FEW_STEPS).log_evidence
         for other in (nothing, nearest)[: 1 if nearest is nothing else 2]:
-            left = again - fit(part, base, other.hypotheses, other.z, STEPS).log_evidence
+            left = again - fit(part, base, other.hypotheses, other.z, FEW_STEPS).log_evidence
             holds.append(Hold(sensor, left, other is nothing))
     return min(holds, key=lambda one: one.left, default=None)
 
@@ -180,14 +181,16 @@ def hold(found: Found, number: int) -> Hold | None:
 def least_seen(found: Found, number: int) -> Least | None:
     """The smallest effect of this kind and place that would have been named in these data.
 
-    Evidence grows with half the square of d', and what places, kinds and parameters cost stays.
-    None where an effect of any size would not do.
+    What the data gain by an effect grows with its square; what places, kinds and parameters cost
+    stays. None where an effect of any size would not do.
     """
-    squared = _squared_size(found, number, found.fit.z)
-    cost = 0.5 * squared - found.log_odds[number]
-    share = float(np.sqrt(max(NAMED + cost, 0.0) / max(0.5 * squared, 1e-300)))
+    fewer = without_cause(found.problem, found.base, found.fit, number)
+    volume = np.linalg.slogdet(found.fit.information)[1] - np.linalg.slogdet(fewer.information)[1]
+    cost = 0.5 * float(volume) - found.fit.hypotheses[number].log_prior
+    share = float(np.sqrt(max(NAMED + cost, 0.0) / max(found.log_odds[number] + cost, 1e-300)))
     if not 0 < share < 1:
         return None
+    squared = _squared_size(found, number, found.fit.z)
     return Least(share, _value_at(found, number, share**2 * squared))
 
 

@@ -52,7 +52,7 @@ def force_table(forces: Forces, model: Model) -> ForceTable:
     ratios = {"all causes": forces.ratio}
     if forces.credited is not None:
         ratios["without bearings' restraint"] = forces.credited
-    ratios |= {f"without {name}": values for name, values in forces.without.items()}
+    ratios |= {f"without {label(name)}": values for name, values in forces.without.items()}
     if gauged.any():
         ratios["measured"] = forces.measured
     lines = []
@@ -141,7 +141,7 @@ def _members(
     for name in view.members:
         ends = [model.nodes[node] for node in model.members[name].nodes]
         x, y = ([end[axis] for end in ends] for axis in view.axes)
-        idle = not np.isfinite(ratio[name])
+        idle = np.isnan(ratio[name])
         look = (STEEL, 0.8, 1) if idle else (shades.colour(ratio[name]), 3.0, 2)
         axes.plot(x, y, color=look[0], linewidth=look[1], zorder=look[2])
         if name in chosen and size[name] > worth:
@@ -154,12 +154,13 @@ def _members(
 
 
 def _change(forces: Forces) -> FloatArray:
-    """Change of a member's amplitude [N]; zero where it carries next to nothing."""
-    return np.nan_to_num(np.abs(forces.ratio - 1)) * forces.amplitude
+    """Change of every member's amplitude [N]."""
+    return np.abs(forces.changed - forces.amplitude)
 
 
 def _ratio(value: float) -> str:
-    return fixed(float(value), 2) if np.isfinite(value) else DASH
+    """A ratio as text; "new" where the model as given calculates no force."""
+    return fixed(float(value), 2) if np.isfinite(value) else "new" if value > 0 else DASH
 
 
 def _box(model: Model, view: View) -> tuple[float, float, float, float]:

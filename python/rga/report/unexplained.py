@@ -19,6 +19,8 @@ from rga.report.quantities import DASH, duration, fixed, scale
 from rga.report.svg import INK, MEASURED, grid, inline, label, style
 
 CONTEXTS, STRONGEST = 2, 5
+#: ends of the scale of colours
+STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 #: correlation from row to row from which on a context runs on, and its points are joined
 RUNS_ON = 0.7
 EARLY_TO_LATE = LinearSegmentedColormap.from_list("time", ["#9ec9e6", "#0072b2", "#0b2a4a"])
@@ -38,11 +40,12 @@ def draw_pattern(account: Account, found: list[Leftover], sensors: tuple[str, ..
         values = np.array([by_name.get(name, np.nan) for name in account.record.sensors])
         panels.append((f"Pattern {number}" if len(found) > 1 else "", values))
     most = max(float(np.nanmax(np.abs(values))) for _, values in panels)
-    top = next((step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if most <= step), 100.0)
+    top = next((step for step in STEPS if most <= step), STEPS[-1])
+    decimals = 1 if top > 1 else 2
     shades = Shades(
         norm=Normalize(-top, top),
         colours=EITHER_WAY,
-        text=lambda value: fixed(value, 1, sign=True) if np.isfinite(value) else DASH,
+        text=lambda value: fixed(value, decimals, sign=True) if np.isfinite(value) else DASH,
         longest="+10.0",
         words="root mean square over the noise; signs alike: they move together",
     )
