@@ -55,14 +55,17 @@ def force_table(forces: Forces, model: Model) -> ForceTable:
     ratios |= {f"without {label(name)}": values for name, values in forces.without.items()}
     if gauged.any():
         ratios["measured"] = forces.measured
+    heaviest = float(np.abs(forces.given).max(initial=0.0))
     lines = []
     for k in shown:
         name = forces.members[k]
         given, extended = float(forces.given[k]), float(forces.extended[k])
-        idle = abs(given) <= IDLE * np.abs(forces.given).max()
+        idle = abs(given) <= IDLE * heaviest
         row = [
-            number(given / 1e3),
-            number(extended / 1e3),
+            *(
+                number(one / 1e3 if abs(one) > 1e-6 * heaviest else 0.0)
+                for one in (given, extended)
+            ),
             DASH if idle else _ratio(extended / given),
         ]
         groups = ", ".join(model.members[name].groups[:1])
