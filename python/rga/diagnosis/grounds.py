@@ -7,14 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.diagnosis.evidence import FARTHEST, Fit, extended, fit
+from rga.diagnosis.evidence import FARTHEST, Fit, extended, fit, refit
 from rga.diagnosis.explanations import hiding, sensor_groups, variance
 from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.search import NAMED, Found, without_cause
 from rga.model.parameter import FloatArray, listed
 
-#: steps of a fit without a group of channels, and without one channel, which moves it little
-STEPS, FEW_STEPS = 5, 2
 #: channels that are left out one by one, at most: those that the cause changes most
 MOST_LEFT_OUT = 12
 HALVINGS = 30
@@ -127,7 +125,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
     spread = variance(problem)
     told = []
     for word, names in groups.items():
-        blind = fit(hiding(problem, names), base, causes.hypotheses, causes.z, STEPS)
+        blind = refit(hiding(problem, names), base, causes)
         columns = [problem.data.sensors.index(name) for name in names]
         seen = problem.data.observed[:, columns]
         if not seen.any():
@@ -171,9 +169,9 @@ def hold(found: Found, number: int) -> Hold | None:
         if sensor in own:
             continue
         part = hiding(problem, [sensor])
-        again = fit(part, base, causes.hypotheses, causes.z, FEW_STEPS).log_evidence
+        again = refit(part, base, causes).log_evidence
         for other in (nothing, nearest)[: 1 if nearest is nothing else 2]:
-            left = again - fit(part, base, other.hypotheses, other.z, FEW_STEPS).log_evidence
+            left = again - refit(part, base, other).log_evidence
             holds.append(Hold(sensor, left, other is nothing))
     return min(holds, key=lambda one: one.left, default=None)
 

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.diagnosis.evidence import fit
+from rga.diagnosis.evidence import extended
 from rga.diagnosis.search import Found, onset_chances
+from rga.errors import InputError
 from rga.model.parameter import FloatArray
 
 #: standard deviations about the estimate at which the model is simulated
@@ -82,6 +83,11 @@ def onset_profile(found: Found, number: int, first: float) -> Onset | None:
 
 
 def _height(found: Found, z: FloatArray) -> float:
-    """Log posterior probability of parameters, up to a constant."""
-    there = fit(found.problem, found.base, found.fit.hypotheses, z, steps=0)
-    return there.log_evidence + 0.5 * float(np.linalg.slogdet(there.information)[1])
+    """Log posterior probability of parameters up to a constant, from the real model."""
+    problem = found.problem
+    try:
+        simulated = problem.data.predict(extended(found.base, found.fit.hypotheses, z))
+    except InputError:
+        return -np.inf
+    residual = problem.covariance.reduce(problem.residual(simulated).T[None])
+    return -0.5 * float(problem.covariance.squares(residual)[0] + z @ z)

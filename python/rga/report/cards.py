@@ -116,7 +116,8 @@ def onset(cause: Cause) -> str:
     """When the cause begins, as the record writes time."""
     if cause.onset is None:
         return "throughout the record"
-    said = f"from {moment(cause.onset)}"
+    grows = ", growing to the last row" if cause.effect.get("profile") == "ramp" else ""
+    said = f"from {moment(cause.onset)}{grows}"
     if cause.onset_ci90 is not None:
         first, last = cause.onset_ci90
         said += f" (90\u00a0% interval {moment(first)} to {moment(last)})"
