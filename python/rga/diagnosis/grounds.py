@@ -15,7 +15,7 @@ from rga.model.parameter import FloatArray, listed
 
 #: channels that are left out one by one, at most: those that the cause changes most
 MOST_LEFT_OUT = 12
-HALVINGS = 30
+HALVINGS = 16
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.diagnosis.covariance import Reduced
 from rga.diagnosis.evidence import extended
 from rga.diagnosis.search import Found, onset_chances
 from rga.errors import InputError
@@ -46,7 +47,8 @@ def profiles(found: Found, number: int) -> list[Profile]:
     """The profile of every parameter of a cause.
 
     Beside every value the other parameters, those of the other causes included, take what is
-    likeliest with it by the information matrix; the height is that of the real model there.
+    likeliest with it: by the information matrix first, then by a step from the residual there.
+    The height is that of the real model.
 
     Args:
         found: the end of a search.
@@ -61,7 +63,7 @@ def profiles(found: Found, number: int) -> list[Profile]:
         range(where.start, where.stop), hypothesis.priors.items(), strict=True
     ):
         along = covariance[:, column] / np.sqrt(covariance[column, column])
-        heights = np.array([_height(found, one.z + step * along) for step in AWAY])
+        heights = np.array([_height(found, one.z + step * along, column) for step in AWAY])
         values = [prior.value(float(one.z[column] + step * along[column])) for step in AWAY]
         height = heights - heights[len(AWAY) // 2]
         told.append(Profile(name, marks[name].unit, np.array(values), AWAY, height))
@@ -82,12 +84,26 @@ def onset_profile(found: Found, number: int, first: float) -> Onset | None:
     return Onset(moments - first, chances)
 
 
-def _height(found: Found, z: FloatArray) -> float:
-    """Log posterior probability of parameters up to a constant, from the real model."""
+def _height(found: Found, z: FloatArray, held: int) -> float:
+    """Log posterior probability with one parameter held, the others adapted, up to a constant."""
+    here, residual = _at(found, z)
+    others = np.delete(np.arange(len(z)), held)
+    if residual is None or not len(others):
+        return here
+    covariance, information = found.problem.covariance, found.fit.information
+    signatures = covariance.reduce(found.fit.signatures[others])
+    slope = covariance.product(signatures, residual)[:, 0] - z[others]
+    moved = z.copy()
+    moved[others] += np.linalg.solve(information[np.ix_(others, others)], slope)
+    return max(here, _at(found, moved)[0])
+
+
+def _at(found: Found, z: FloatArray) -> tuple[float, Reduced | None]:
+    """Log posterior probability of parameters up to a constant, and the residual."""
     problem = found.problem
     try:
         simulated = problem.data.predict(extended(found.base, found.fit.hypotheses, z))
     except InputError:
-        return -np.inf
+        return -np.inf, None
     residual = problem.covariance.reduce(problem.residual(simulated).T[None])
-    return -0.5 * float(problem.covariance.squares(residual)[0] + z @ z)
+    return -0.5 * float(problem.covariance.squares(residual)[0] + z @ z), residual
