@@ -12,7 +12,8 @@ import rga
 from rga.diagnosis.evidence import extended
 from rga.diagnosis.findings import Findings
 from rga.diagnosis.forces import member_forces
-from rga.diagnosis.grounds import contrast, hold, least_seen, unseen_groups
+from rga.diagnosis.grounds import contrast, hold, unseen_groups
+from rga.diagnosis.least_seen import least_seen
 from rga.diagnosis.leftover import known_contexts, leftovers
 from rga.diagnosis.profiles import onset_profile, profiles
 from rga.model import Effect, Model, read_model

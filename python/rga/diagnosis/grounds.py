@@ -7,15 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.diagnosis.evidence import FARTHEST, Fit, extended, fit, refit
+from rga.diagnosis.evidence import Fit, fit, refit
 from rga.diagnosis.explanations import hiding, sensor_groups, variance
 from rga.diagnosis.row_covariance import BoolArray
-from rga.diagnosis.search import NAMED, Found, without_cause
+from rga.diagnosis.search import Found, without_cause
 from rga.model.parameter import FloatArray, listed
 
 #: channels that are left out one by one, at most: those that the cause changes most
 MOST_LEFT_OUT = 12
-HALVINGS = 16
 
 
 @dataclass(frozen=True)
@@ -77,20 +76,6 @@ class Hold:
     channel: str
     left: float
     alone: bool
-
-
-@dataclass(frozen=True)
-class Least:
-    """The smallest effect that would still have been named.
-
-    Attributes:
-        share: of the effect that was found, in d' [-].
-        value: of its parameter there; None of a cause with several, or one that has no value at
-            which it does nothing.
-    """
-
-    share: float
-    value: float | None
 
 
 def contrast(found: Found, number: int, most: int = 3) -> Contrast | None:
@@ -174,59 +159,6 @@ def hold(found: Found, number: int) -> Hold | None:
             left = again - refit(part, base, other).log_evidence
             holds.append(Hold(sensor, left, other is nothing))
     return min(holds, key=lambda one: one.left, default=None)
-
-
-def least_seen(found: Found, number: int) -> Least | None:
-    """The smallest effect of this kind and place that would have been named in these data.
-
-    What the data gain by an effect grows with its square; what places, kinds and parameters cost
-    stays. None where an effect of any size would not do.
-    """
-    fewer = without_cause(found.problem, found.base, found.fit, number)
-    volume = np.linalg.slogdet(found.fit.information)[1] - np.linalg.slogdet(fewer.information)[1]
-    cost = 0.5 * float(volume) - found.fit.hypotheses[number].log_prior
-    share = float(np.sqrt(max(NAMED + cost, 0.0) / max(found.log_odds[number] + cost, 1e-300)))
-    if not 0 < share < 1:
-        return None
-    squared = _squared_size(found, number, found.fit.z)
-    return Least(share, _value_at(found, number, share**2 * squared))
-
-
-def _value_at(found: Found, number: int, squared: float) -> float | None:
-    """The value of a cause's parameter at which d'^2 is so large, by halving the way to nothing."""
-    hypothesis, where = found.fit.hypotheses[number], found.fit.slices()[number]
-    marks = hypothesis.kind.parameters()
-    if len(hypothesis.priors) != 1:
-        return None
-    ((name, prior),) = hypothesis.priors.items()
-    neutral = marks[name].neutral
-    if neutral is None:
-        return None
-    with np.errstate(divide="ignore"):
-        low = float(np.clip(prior.z(neutral), -FARTHEST, FARTHEST))
-    high = float(found.fit.z[where.start])
-
-    def reached(coordinate: float) -> bool:
-        z = found.fit.z.copy()
-        z[where] = coordinate
-        return _squared_size(found, number, z) >= squared
-
-    if reached(low):
-        return None
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return prior.value(high)
-
-
-def _squared_size(found: Found, number: int, z: FloatArray) -> float:
-    """d'^2 of a cause at coordinates z, the other causes beside it."""
-    problem, where = found.problem, found.fit.slices()[number]
-    others = [one for k, one in enumerate(found.fit.hypotheses) if k != number]
-    whole = problem.data.predict(extended(found.base, found.fit.hypotheses, z))
-    without = problem.data.predict(extended(found.base, others, np.delete(z, where)))
-    own = problem.covariance.reduce((whole - without).T[None])
-    return float(problem.covariance.squares(own)[0])
 
 
 def _own_channels(found: Found, number: int) -> set[str]:

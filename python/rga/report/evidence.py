@@ -3,7 +3,8 @@
 from typing import Any
 
 from rga.diagnosis.findings import Cause, Findings
-from rga.diagnosis.grounds import Contrast, Hold, Least, contrast, hold, least_seen
+from rga.diagnosis.grounds import Contrast, Hold, contrast, hold
+from rga.diagnosis.least_seen import Least, least_seen
 from rga.diagnosis.profiles import onset_profile, profiles
 from rga.diagnosis.search import NAMED, RIVAL, Found
 from rga.diagnosis.tell import last_effect
