@@ -171,8 +171,8 @@ def test_report_says_all_and_fetches_nothing(tmp_path: Path) -> None:
     reader, html = read(findings, tmp_path)
     assert not reader.fetched
     assert "script" not in reader.tags
-    assert reader.tags.count("svg") == 4
-    assert html.count('<svg role="img" aria-label="') == 4
+    assert reader.tags.count("svg") == 5
+    assert html.count('<svg role="img" aria-label="') == 5
     plain = reader.text.replace("\u00a0", " ")
     for words in re.split(r" \| |\n", SAID):
         assert words in plain
@@ -250,7 +250,7 @@ def test_a_single_sensor(tmp_path: Path) -> None:
     reader, _ = read(
         found(model.model_copy(update={"sensors": {"D0": model.sensors["D0"]}})), tmp_path
     )
-    assert reader.tags.count("svg") == 3
+    assert reader.tags.count("svg") == 4
 
 
 @pytest.mark.parametrize("panels", [3, 20])

@@ -1,11 +1,16 @@
 """The arrays behind a diagnosis: what a report draws."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from rga.diagnosis.row_covariance import BoolArray
+from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
+
+if TYPE_CHECKING:
+    from rga.diagnosis.search import Found
 
 
 @dataclass(frozen=True)
@@ -23,6 +28,9 @@ class Account:
         sigma: standard deviation of the noise of each sensor [its unit], float[sensors].
         noise: noise that a faultless simulation would still show, contexts' errors included,
             float[rows, sensors].
+        contexts: as the extended model believes them, `time` [s] included, float[rows] each.
+        found: the end of the search, from which the grounds of the findings are worked out when
+            they are asked for; None where nothing was searched.
     """
 
     model: Model
@@ -34,3 +42,5 @@ class Account:
     after: FloatArray
     sigma: FloatArray
     noise: FloatArray
+    contexts: Values = field(default_factory=dict)
+    found: "Found | None" = None

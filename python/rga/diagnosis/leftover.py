@@ -5,13 +5,13 @@ their innovations. The largest eigenvalue of that correlation is compared with w
 independent noise give (Marchenko and Pastur 1967 for its edge, a margin for its scatter).
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lstsq
 from scipy.stats import spearmanr
 
+from rga.diagnosis.bends import bends
 from rga.diagnosis.noise import unexplainable
 from rga.diagnosis.problem import Problem, load_basis, pose
 from rga.diagnosis.row_covariance import BoolArray
@@ -21,10 +21,6 @@ from rga.model.parameter import FloatArray
 MOST = 3
 MARGIN = 1.25
 CORRELATED, SWINGING = 0.4, 0.2
-#: standard deviations beyond which a bend is no chance
-BENT = 7.0
-#: how much of such a bend any slope may be off by, as a prior spread
-BENDING = 1.5
 
 
 @dataclass(frozen=True)
@@ -41,18 +37,22 @@ class Pattern:
 
 
 @dataclass(frozen=True)
-class Bend:
-    """A response that is no straight line.
+class Leftover:
+    """A pattern of unknown origin, drawn out in time.
 
     Attributes:
-        context: that it is a response to.
-        by: the context that it bends with.
-        share: change of its slope over a standard deviation of the context [-].
+        pattern: over the sensors, root mean square over the noise of each [-], float[sensors];
+            the sign is that of a positive amplitude.
+        amplitude: float[rows], scaled to a root mean square of one [-].
+        follows: what the amplitude goes with, in words.
+        drivers: contexts with the rank correlation of the amplitude with each, or with its
+            distance from its middle or its rate where that is stronger, the strongest first.
     """
 
-    context: str
-    by: str
-    share: float
+    pattern: FloatArray
+    amplitude: FloatArray
+    follows: str
+    drivers: dict[str, float]
 
 
 def with_leftovers(problem: Problem) -> Problem:
@@ -64,16 +64,6 @@ def with_leftovers(problem: Problem) -> Problem:
         factors = np.column_stack([problem.factors, pattern.direction])
         problem = pose(problem.simulator, problem.data, problem, factors)
     return problem
-
-
-def with_free_slopes(problem: Problem, bends: Sequence[Bend]) -> Problem:
-    """The problem where no response to a measured context has one slope.
-
-    What answers to one load along a curve does so to others.
-    """
-    bend = BENDING * max(one.share for one in bends)
-    slopes = dict.fromkeys(problem.data.belief.measured, bend)
-    return pose(problem.simulator, problem.data, problem, slopes=slopes)
 
 
 def shared_pattern(problem: Problem) -> Pattern | None:
@@ -120,84 +110,92 @@ def share_left(problem: Problem) -> float:
     return float(np.mean(patterns / (patterns + variance)))
 
 
-def bent_contexts(problem: Problem) -> list[Bend]:
-    """Measured contexts whose errors bend with a context.
-
-    The errors of a measurement know nothing of what is measured. Where they grow with the square of
-    a context, the structure answers to it otherwise than in proportion.
-    """
-    belief = problem.data.belief
+def _errors(problem: Problem) -> FloatArray:
+    """Errors of the contexts and amplitudes of the patterns, float[rows, contexts + patterns]."""
     residual = problem.residual(problem.simulated)
     estimate = problem.covariance.scatter_estimate(residual)
-    error = problem.covariance.rows.context_error(
-        residual - problem.covariance.scatter.at(estimate)
-    )
+    scatter = problem.covariance.scatter.at(estimate)
+    return problem.covariance.rows.context_error(residual - scatter)
+
+
+def known_contexts(problem: Problem, measured: Collection[str]) -> Values:
+    """The contexts that were measured or are a line in time, float[rows] each."""
+    belief = problem.data.belief
+    names = sorted({*measured, *belief.lines} & belief.table.keys())
+    return {name: belief.table[name] for name in names}
+
+
+def leftovers(problem: Problem, contexts: Values) -> list[Leftover]:
+    """The patterns of unknown origin with what they follow.
+
+    Args:
+        problem: at the end of a diagnosis.
+        contexts: that the amplitude may follow, float[rows] each.
+    """
+    error = _errors(problem)
+    first = error.shape[1] - problem.factors.shape[1]
     found = []
-    for number, name in enumerate(belief.spread):
-        if name in belief.latent:
-            continue
-        sizes = {by: _bend(belief.centre[by], error[:, number]) for by in belief.spread}
-        by = max(sizes, key=lambda each: sizes[each][1])
-        weight, size = sizes[by]
-        if size > BENT:
-            spread = float(belief.centre[name].std())
-            found.append(Bend(name, by, 2 * abs(weight) / max(spread, 1e-300)))
+    for number, direction in enumerate(problem.factors.T):
+        amplitude = error[:, first + number]
+        scale = max(float(np.sqrt((amplitude**2).mean())), 1e-300)
+        drivers = _drivers(amplitude, problem.data.time, contexts)
+        found.append(
+            Leftover(
+                pattern=direction * scale / problem.noise.sigma,
+                amplitude=amplitude / scale,
+                follows=_follows(amplitude, problem.data.time, drivers),
+                drivers=_by_context(drivers),
+            )
+        )
     return found
-
-
-def _bend(context: FloatArray, error: FloatArray) -> tuple[float, float]:
-    """The quadratic part of an error over a scaled context, and that in standard deviations."""
-    scaled = (context - context.mean()) / max(float(context.std()), 1e-300)
-    design = np.column_stack([np.ones(len(scaled)), scaled, scaled**2])
-    # A context of two values has no square of its own.
-    weights, _, rank, _ = lstsq(design, error, cond=1e-6)
-    if rank < design.shape[1]:
-        return 0.0, 0.0
-    rest = error - design @ weights
-    variance = float(rest @ rest) / max(len(rest) - design.shape[1], 1)
-    own = variance * np.linalg.inv(design.T @ design)[2, 2]
-    return float(weights[2]), float(abs(weights[2]) / np.sqrt(max(own, 1e-300)))
 
 
 def in_words(problem: Problem, contexts: Values) -> str:
     """What is left: patterns with what they follow, and the scatter that had to be assumed."""
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
     chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
-    bends = [f"the response to {one.context} bends with {one.by}" for one in bent_contexts(problem)]
-    scatter = "; ".join([*bends, chance])
+    bent = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
+    scatter = "; ".join([*bent, chance])
     if problem.factors.shape[1] == 0:
         return f"nothing that varies in common from row to row; {scatter}"
-    rows = problem.covariance.rows
-    residual = problem.residual(problem.simulated)
-    estimate = problem.covariance.scatter_estimate(residual)
-    error = rows.context_error(residual - problem.covariance.scatter.at(estimate))
-    first = error.shape[1] - problem.factors.shape[1]
     told = []
-    for number, direction in enumerate(problem.factors.T):
-        strongest = np.argsort(-np.abs(direction) / problem.noise.sigma)[:4]
+    for one in leftovers(problem, contexts):
+        strongest = np.argsort(-np.abs(one.pattern))[:4]
         signs = (
-            f"{problem.data.sensors[k]} ({'+' if direction[k] > 0 else '-'})" for k in strongest
+            f"{problem.data.sensors[k]} ({'+' if one.pattern[k] > 0 else '-'})" for k in strongest
         )
-        follows = _follows(error[:, first + number], problem.data.time, contexts)
-        told.append(f"a pattern of {', '.join(signs)} that {follows}")
+        told.append(f"a pattern of {', '.join(signs)} that {one.follows}")
     return f"{'; '.join(told)}; {scatter}"
 
 
-def _follows(amplitude: FloatArray, time: FloatArray, contexts: Values) -> str:
-    """What an amplitude goes with: a context by rank correlation, else a frequency, else time."""
+def _drivers(
+    amplitude: FloatArray, time: FloatArray, contexts: Values
+) -> dict[tuple[str, str], float]:
+    """Rank correlation of an amplitude with each context, by the context and the way of it."""
     drivers = {}
     for name, column in contexts.items():
         if np.ptp(column) > 0:
-            drivers[f"goes with {name}"] = column
-            drivers[f"goes with the distance of {name} from its middle"] = np.abs(
-                column - np.median(column)
-            )
-    found = {
-        words: abs(float(spearmanr(column, amplitude)[0])) for words, column in drivers.items()
-    }
-    best = max(found, key=lambda words: found[words], default="")
-    if best and found[best] > CORRELATED:
-        return f"{best} (rank correlation {found[best]:.2f})"
+            drivers[name, "{}"] = column
+            drivers[name, "the distance of {} from its middle"] = np.abs(column - np.median(column))
+        rate = np.gradient(column, time)
+        if np.ptp(rate) > 1e-6 * np.abs(rate).max():
+            drivers[name, "the rate of {}, in a loop: a lag, or friction"] = rate
+    return {way: abs(float(spearmanr(column, amplitude)[0])) for way, column in drivers.items()}
+
+
+def _by_context(drivers: dict[tuple[str, str], float]) -> dict[str, float]:
+    strongest: dict[str, float] = {}
+    for (name, _), size in drivers.items():
+        strongest[name] = max(size, strongest.get(name, 0.0))
+    return dict(sorted(strongest.items(), key=lambda one: -one[1]))
+
+
+def _follows(amplitude: FloatArray, time: FloatArray, drivers: dict[tuple[str, str], float]) -> str:
+    """What an amplitude goes with: a context by rank correlation, else a frequency, else time."""
+    best = max(drivers, key=lambda way: drivers[way], default=None)
+    if best is not None and drivers[best] > CORRELATED:
+        name, way = best
+        return f"goes with {way.format(name)} (rank correlation {drivers[best]:.2f})"
     centred = amplitude - amplitude.mean()
     period, power = _period(centred, time)
     if power > SWINGING:

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
+from rga.diagnosis.bends import bends, with_free_slopes
 from rga.diagnosis.channels import Fault
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
@@ -81,9 +82,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     faults = {f"fault of {fault.sensor}": _fault_effect(fault) for fault in prepared.faults}
     named = {tell.cause_name(model, effect): effect for effect in effects}
     extended = model.extended({**named, **faults})
-    account = _account(model, extended, prepared, held_out, (start, found.problem), noise)
+    account = _account(model, extended, prepared, held_out, (start, found), noise)
     share = leftover.share_left(found.problem)
-    structure = share > STRUCTURE or bool(leftover.bent_contexts(found.problem))
+    structure = share > STRUCTURE or bool(bends(found.problem))
     grouped = sensor_groups(model, data.sensors)
     misfits = tell.misfits(account, grouped)
     findings = Findings(
@@ -96,7 +97,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         unidentifiable=tell.unidentifiable(screening.first),
         unexplained={
             "share": share,
-            "looks_like": leftover.in_words(found.problem, _drivers(found.problem.data, measured)),
+            "looks_like": leftover.in_words(
+                found.problem, leftover.known_contexts(found.problem, measured)
+            ),
         },
         explanations=tell.explanations(tried, found, prepared.record),
         groups=tell.groups(account, grouped),
@@ -123,10 +126,10 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     doubtful = problem is not found.problem
     if doubtful:
         found = weighed(problem, found.base, found.fit, screening, progress)
-    if bends := leftover.bent_contexts(found.problem):
+    if bent := bends(found.problem):
         doubtful = True
-        free = leftover.with_free_slopes(found.problem, bends)
-        standing = without_needless(free, found.base, found.fit)
+        free = with_free_slopes(found.problem, bent)
+        standing = without_needless(free, found)
         if len(standing.hypotheses) < len(found.fit.hypotheses):
             problem, standing = settled_with(found.base, found.problem, standing)
             found = weighed(problem, found.base, standing, screening, progress)
@@ -143,16 +146,18 @@ def _account(
     extended: Model,
     prepared: Prepared,
     held_out: BoolArray,
-    problems: tuple[Problem, Problem],
+    ends: tuple[Problem, Found],
     noise_of: Problem,
 ) -> Account:
-    """What was measured and simulated, before and after (`problems`).
+    """What was measured and simulated, before and after: the search's `ends`.
 
     The gap is in units of the noise as it was before shared patterns were taken out of it.
     """
     full = prepared.data
-    before = _everywhere(full, problems[0]).predict(Simulator(model))
-    after = _everywhere(full, problems[1]).predict(Simulator(extended))
+    start, found = ends
+    before = _everywhere(full, start).predict(Simulator(model))
+    believed = _everywhere(full, found.problem)
+    after = believed.predict(Simulator(extended))
     record = prepared.record
     columns = [record.sensors.index(name) for name in full.sensors]
     rejected = np.array([name not in full.sensors for name in record.sensors])
@@ -180,6 +185,8 @@ def _account(
         after=placed(after),
         sigma=sigma,
         noise=placed(noise),
+        contexts=believed.belief.table,
+        found=found,
     )
 
 
@@ -213,12 +220,3 @@ def gain_of(account: Account, seed: int) -> Any:
 
 def _fault_effect(fault: Fault) -> Effect:
     return SensorFault(sensor=fault.sensor, mode=fault.mode)
-
-
-def _drivers(data: Data, measured: set[str]) -> dict[str, FloatArray]:
-    lines = set(data.belief.lines)
-    return {
-        name: data.belief.table[name]
-        for name in sorted(measured | lines)
-        if name in data.belief.table
-    }

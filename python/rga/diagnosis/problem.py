@@ -1,6 +1,6 @@
 """A record about a simulation: the residual, its derivatives and its covariance."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,6 +19,8 @@ STEP = 1e-3
 LEAST_OWN_NOISE = 0.6
 #: how well measured contexts are calibrated: offset in deviations of their noise, and gain [-]
 OFFSET, GAIN = 0.3, 0.005
+#: a random effect, float[rows, sensors], with its prior spread
+Calibration = tuple[FloatArray, float]
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def pose(
     data: Data,
     before: Problem | None = None,
     factors: FloatArray | None = None,
-    slopes: Mapping[str, float] | None = None,
+    more: Sequence[Calibration] = (),
 ) -> Problem:
     """Linearise a record about a simulation, and estimate noise and scatter.
 
@@ -78,8 +80,7 @@ def pose(
         data: the readings with the belief of the contexts.
         before: an earlier problem on the same data, to start the estimates from.
         factors: patterns over the sensors that vary for reasons unknown, float[sensors, factors].
-        slopes: share by which the response to a measured context may be off, where it is no
-            straight line [-].
+        more: further random effects.
     """
     belief = data.belief
     simulated = data.read(simulator, data.about(simulator).response)
@@ -118,7 +119,7 @@ def pose(
     given = simulator if before is None else before.given
     # What a cause does is no pattern that every channel may show a little of.
     patterns = basis if given is simulator else load_basis(given, data)
-    calibrations = _calibrations(belief, jacobian, noise, slopes or {})
+    calibrations = [*_calibrations(belief, jacobian, noise), *more]
     scatter = scatter_effects(simulator, data, simulated, patterns, factors, calibrations)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
@@ -138,22 +139,15 @@ def pose(
     )
 
 
-def _calibrations(
-    belief: Belief, jacobian: FloatArray, noise: Noise, slopes: Mapping[str, float]
-) -> list[tuple[FloatArray, float]]:
-    """What measured contexts do that are off for the whole record, and how far they may be.
-
-    Returns:
-        float[rows, sensors], the change per unit of offset or gain, with its prior spread.
-    """
+def _calibrations(belief: Belief, jacobian: FloatArray, noise: Noise) -> list[Calibration]:
+    """What measured contexts do that are off for the whole record."""
     found = []
     for number, name in enumerate(belief.spread):
         if name in belief.latent:
             continue
         along, course = jacobian[:, :, number], belief.centre[name]
-        off = slopes.get(name, 0.0)
-        found.append((along, OFFSET * float(noise.context_sigma[number]) + off * course.std()))
-        found.append((along * (course - course.mean())[:, None], GAIN + off))
+        found.append((along, OFFSET * float(noise.context_sigma[number])))
+        found.append((along * course[:, None], GAIN))
     return found
 
 

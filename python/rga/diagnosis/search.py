@@ -18,6 +18,8 @@ from rga.simulation import Simulator
 NAMED = 6.9
 #: log-odds within which two causes cannot be told apart, a hundred to one
 RIVAL = 4.6
+#: share of its log-odds that a cause must keep where slopes are free
+KEPT = 0.5
 FITTED = 10
 JUDGED = 3
 EXCHANGES = 3
@@ -248,11 +250,21 @@ def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, F
     return problem, current
 
 
-def without_needless(problem: Problem, base: Simulator, current: Fit) -> Fit:
-    """The causes, less those that would not be named if the problem were this one."""
-    current = fit(problem, base, current.hypotheses, current.z)
-    while (best := _without_least(problem, base, current)) is not None:
-        current = best
+def without_needless(problem: Problem, found: Found) -> Fit:
+    """The causes, less those that another problem on the same record speaks for much less."""
+    base, kept = found.base, list(range(len(found.fit.hypotheses)))
+    current = fit(problem, base, found.fit.hypotheses, found.fit.z)
+    while kept:
+        fits = [without_cause(problem, base, current, k) for k in range(len(kept))]
+        over = [
+            current.log_evidence - one.log_evidence - max(NAMED, KEPT * found.log_odds[number])
+            for one, number in zip(fits, kept, strict=True)
+        ]
+        least = int(np.argmin(over))
+        if over[least] >= 0:
+            break
+        current = fits[least]
+        del kept[least]
     return current
 
 

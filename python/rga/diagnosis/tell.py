@@ -89,7 +89,7 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
             advice = advice or Advice(model, problem.data, together, problem.levels)
             other = [_effect(nearest.fit, k, record) for k in range(len(nearest.fit.hypotheses))]
             found_out = advice.against(explanation("its rival", model, other))
-            against = effect_words(_last_effect(nearest.fit, record))
+            against = effect_words(last_effect(nearest.fit, record))
             separated = f"against {against}: {found_out}" if found_out else ""
         told.append(
             Cause(
@@ -100,7 +100,7 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
                 log_odds=found.log_odds[number],
                 d_prime=d_prime,
                 d_perp=d_perp,
-                rivals=[_last_effect(one.fit, record) for one in rivals],
+                rivals=[last_effect(one.fit, record) for one in rivals],
                 separated_by=separated,
                 why=_why(found, number),
             )
@@ -296,7 +296,8 @@ def _dead(effect: Effect) -> Effect:
     return effect
 
 
-def _last_effect(one: Fit, record: Record) -> dict[str, Any]:
+def last_effect(one: Fit, record: Record) -> dict[str, Any]:
+    """The last hypothesis of a fit as an effect of a model file, with its estimates."""
     return content(_effect(one, len(one.hypotheses) - 1, record))
 
 

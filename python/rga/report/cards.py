@@ -94,7 +94,7 @@ def values(effect: dict[str, Any], model: Model) -> list[tuple[str, str]]:
     for key, value in effect.items():
         if key in OTHER | known or value is None or (kind and key not in units):
             continue
-        unit = _own_unit(units.get(key, "-"), effect, model)
+        unit = own_unit(units.get(key, "-"), effect, model)
         if isinstance(value, dict) and "value" in value:
             found.append((plain(key), quantity(value["value"], unit, value.get("ci90"))))
         elif isinstance(value, int | float) and not isinstance(value, bool):
@@ -104,7 +104,7 @@ def values(effect: dict[str, Any], model: Model) -> list[tuple[str, str]]:
     return found
 
 
-def _own_unit(unit: str, effect: dict[str, Any], model: Model) -> str:
+def own_unit(unit: str, effect: dict[str, Any], model: Model) -> str:
     """The unit with the word `unit` replaced by that of the sensor or context in question."""
     sensor = model.sensors.get(str(effect.get("sensor")))
     context = model.context.get(str(effect.get("context")))
@@ -116,7 +116,8 @@ def onset(cause: Cause) -> str:
     """When the cause begins, as the record writes time."""
     if cause.onset is None:
         return "throughout the record"
-    said = f"from {moment(cause.onset)}"
+    grows = ", growing to the last row" if cause.effect.get("profile") == "ramp" else ""
+    said = f"from {moment(cause.onset)}{grows}"
     if cause.onset_ci90 is not None:
         first, last = cause.onset_ci90
         said += f" (90\u00a0% interval {moment(first)} to {moment(last)})"

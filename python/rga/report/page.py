@@ -6,15 +6,22 @@ from typing import Any
 import numpy as np
 
 from rga.diagnosis.findings import Findings
+from rga.diagnosis.forces import member_forces
+from rga.diagnosis.grounds import unseen_groups
 from rga.diagnosis.words import effect_words
-from rga.report.bridge import draw_bridge
+from rga.report.actions import BY_VERDICT, actions
+from rga.report.bridge import draw_bridge, draw_residuals
 from rga.report.cards import card, generic, moment, plain
 from rga.report.deviation import percent_off, runs
+from rga.report.evidence import evidence
 from rga.report.explanations import draw_explanations, kept, ranked
 from rga.report.gain import draw_gain
+from rga.report.member_forces import draw_forces, force_table, restraint_words
 from rga.report.quantities import DASH, duration, number, percent, short
 from rga.report.series import draw_series
 from rga.report.svg import FONTS
+from rga.report.unexplained import unexplained
+from rga.report.unseen import draw_unseen
 
 VERDICTS = {
     "nothing_wrong": "Nothing wrong found",
@@ -49,17 +56,25 @@ def page(findings: Findings) -> dict[str, Any]:
         "period": period(findings),
         "gain": gain(findings),
         "warnings": list(dict.fromkeys([*findings.warnings, *record.warnings])),
+        "next": BY_VERDICT[findings.verdict],
+        "tasks": tasks(findings),
         "cards": [
-            card(
-                cause,
-                model,
-                effect_words(cause.effect),
-                [effect_words(rival) for rival in cause.rivals],
-            )
+            {
+                "said": card(
+                    cause,
+                    model,
+                    effect_words(cause.effect),
+                    [effect_words(rival) for rival in cause.rivals],
+                ),
+                "actions": actions(cause.effect),
+                "evidence": evidence(findings, cause),
+            }
             for cause in effects
         ],
         "rejected": rejected(findings),
         "bridge": draw_bridge(findings) if len(record) else None,
+        "residuals": draw_residuals(findings) if len(record) else None,
+        "forces": forces(findings),
         "groups": [
             (
                 group.group,
@@ -86,11 +101,13 @@ def page(findings: Findings) -> dict[str, Any]:
             for one in ranked(findings.explanations)
         ],
         "explanations_figure": draw_explanations(findings),
+        "unseen": unseen(findings),
         "gain_figure": draw_gain(findings),
         "contexts": contexts(findings),
         "unexplained": {
             "share": percent(100 * findings.unexplained.share, sign=False),
             "looks_like": findings.unexplained.looks_like,
+            **unexplained(account),
         },
         "unidentifiable": [
             (plain(one.kind), one.place, number(one.d_prime_at_largest))
@@ -159,6 +176,44 @@ def rejected(findings: Findings) -> list[dict[str, str]]:
             }
         )
     return found
+
+
+def tasks(findings: Findings) -> list[tuple[str, str, str]]:
+    """The first thing that every cause calls for: its kind, what sort of action, in words."""
+    effects = [cause.effect for cause in findings.causes]
+    return [(plain(str(effect.get("kind"))), *actions(effect)[0]) for effect in effects]
+
+
+def forces(findings: Findings) -> dict[str, Any] | None:
+    """What the causes mean for the members; None where no cause changes a force."""
+    account = findings.account
+    found = member_forces(account)
+    if found is None:
+        return None
+    table = force_table(found, account.model)
+    if not table.lines:
+        return None
+    record = account.record
+    return {
+        "table": table,
+        "row": moment(record.time_label(float(record.time[found.row]))),
+        "restraint": restraint_words(found, [str(c.effect["kind"]) for c in findings.causes]),
+        "figure": draw_forces(found, account.model),
+    }
+
+
+def unseen(findings: Findings) -> dict[str, Any] | None:
+    """Groups of channels that were left out and predicted; None where there are none."""
+    account = findings.account
+    groups = unseen_groups(account.found) if account.found is not None else []
+    figure = draw_unseen(groups, account.model)
+    if figure is None:
+        return None
+    lines = [
+        (one.group, len(one.channels), number(one.gap_without), number(one.gap_with))
+        for one in groups
+    ]
+    return {"figure": figure, "lines": lines}
 
 
 def sensors(findings: Findings) -> list[dict[str, str]]:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rga.model.parameter import FloatArray
-from rga.report.bridge import MARKERS
+from rga.report.drawing import MARKERS
 from rga.report.gap_colours import GapColours, gap_colours
 from rga.report.labels import marker_offset, marker_row, place_labels
 from rga.report.places import Spot, spots

@@ -28,10 +28,12 @@ def positions(states: FloatArray) -> FloatArray | None:
 
     >>> positions(np.array([[1.0, 2.0], [2.0, 4.0]]))
     """
-    if len(states) <= MOST:
+    if len(states) <= MOST or not np.isfinite(states).all():
         return None
     start, end = states[0], states[np.argmax(np.abs(states - states[0]).sum(1))]
     along = end - start
+    if not along.any():
+        return None
     place = (states - start) @ along / (along @ along)
     off = states - start - place[:, None] * along
     scale = np.abs(states).max(0)

@@ -1,0 +1,96 @@
+"""The evidence for one cause: how sure its values are, how its rival fits, what would change it."""
+
+from typing import Any
+
+from rga.diagnosis.findings import Cause, Findings
+from rga.diagnosis.grounds import Contrast, Hold, contrast, hold
+from rga.diagnosis.least_seen import Least, least_seen
+from rga.diagnosis.profiles import onset_profile, profiles
+from rga.diagnosis.search import NAMED, RIVAL, Found
+from rga.diagnosis.tell import last_effect
+from rga.diagnosis.words import effect_words
+from rga.model.effect import Effect
+from rga.model.schema import Model
+from rga.report.cards import moment, own_unit, plain
+from rga.report.contrast import draw_contrast
+from rga.report.profiles import draw_profiles
+from rga.report.quantities import number, percent, quantity
+from rga.report.series import runs_on
+
+
+def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
+    """Variables of the template for one cause; None where nothing was searched."""
+    account = findings.account
+    found = account.found
+    if found is None:
+        return None
+    # Faults of channels were told before what the search found.
+    place = findings.causes.index(cause)
+    place -= len(findings.causes) - len(found.fit.hypotheses)
+    shown = profiles(found, place)
+    units = [own_unit(one.unit, cause.effect, account.model) for one in shown]
+    record = account.record
+    onset = onset_profile(found, place, record.origin + float(record.time[0]))
+    likeliest = "" if cause.onset is None else moment(cause.onset)
+    against = contrast(found, place)
+    rival = effect_words(last_effect(against.against, record)) if against else ""
+    return {
+        "profiles": draw_profiles(shown, units, onset, likeliest, f"profiles-{place}"),
+        "onset": onset is not None,
+        "rival": rival,
+        "contrast": draw_contrast(against, account.model, runs_on(account), f"contrast-{place}")
+        if against
+        else None,
+        "doubts": doubts(found, place, cause, account.model, against, rival),
+    }
+
+
+def doubts(
+    found: Found, place: int, cause: Cause, model: Model, against: Contrast | None, rival: str
+) -> list[str]:
+    """What would change the verdict, in words and numbers."""
+    alone = f"It leads by {number(cause.log_odds)} log-odds over leaving it out; "
+    told = [f"{alone}below {NAMED:g} it would not be named."]
+    if against is not None:
+        closest = max(against.size)
+        told.append(
+            f"It leads by {number(against.lead)} log-odds over its nearest rival, {rival}; below "
+            f"{RIVAL:g} the two cannot be told apart. On no channel do they differ by more than "
+            f"{number(closest, 2)} times its noise (root mean square)."
+        )
+    hangs = hold(found, place)
+    if hangs is not None:
+        told.append(_hold_words(hangs))
+    least = least_seen(found, place)
+    if least is not None:
+        told.append(_least_words(least, cause, model))
+    if cause.separated_by:
+        told.append(f"To tell it from its rivals: {cause.separated_by}.")
+    return told
+
+
+def _hold_words(one: Hold) -> str:
+    over = "leaving it out" if one.alone else "its nearest rival"
+    least = NAMED if one.alone else RIVAL
+    then = (
+        "the verdict does not hang on any one channel"
+        if one.left >= least
+        else "the verdict hangs on this channel: check it first"
+    )
+    return (
+        f"Its lead hangs most on channel {one.channel}: without it {number(one.left)} log-odds "
+        f"over {over} would be left; {then}."
+    )
+
+
+def _least_words(one: Least, cause: Cause, model: Model) -> str:
+    share = percent(100 * one.share, sign=False)
+    if one.value is None:
+        return f"An effect of less than {share} of its size would not have been named."
+    name = next(key for key, value in cause.effect.items() if isinstance(value, dict))
+    unit = Effect.vocabulary[cause.effect["kind"]].parameters()[name].unit
+    shown = quantity(one.value, own_unit(unit, cause.effect, model))
+    return (
+        f"At a {plain(name)} of {shown} its effect would be {share} as large, and would not have "
+        "been named."
+    )
