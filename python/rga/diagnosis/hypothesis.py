@@ -24,7 +24,8 @@ class Hypothesis:
         place: as in the model file.
         priors: of the parameters, by name.
         onset: time at which the effect begins [s], or None for always.
-        profile: how it comes: at once, or growing to the last row.
+        profile: how it comes: at once, or growing.
+        end: time at which it is fully grown [s]; None: the last row.
         places: number of places at which the kind could act, and of forms that it has there.
         kinds: number of kinds that could act.
     """
@@ -36,6 +37,7 @@ class Hypothesis:
     kinds: int
     onset: float | None = None
     profile: Profile = "step"
+    end: float | None = None
 
     def effect(self, z: Sequence[float] | FloatArray) -> Effect:
         """The effect with parameters at standard normal coordinates z, one a parameter."""
@@ -43,7 +45,8 @@ class Hypothesis:
             name: prior.value(float(one))
             for (name, prior), one in zip(self.priors.items(), z, strict=True)
         }
-        given = {**self.place, **values, "onset": self.onset, "profile": self.profile}
+        late = {"onset": self.onset, "profile": self.profile, "end": self.end}
+        given = {**self.place, **values, **late}
         return self.kind(kind=self.name, **given)
 
     @property
@@ -57,13 +60,15 @@ class Hypothesis:
         onset = np.log(2) + (0.0 if self.onset is None else np.log(2 * ONSETS))
         return float(-np.log(self.places) - np.log(self.kinds) - onset)
 
-    def beginning(self, onset: float | None, profile: Profile = "step") -> "Hypothesis":
+    def beginning(
+        self, onset: float | None, profile: Profile = "step", end: float | None = None
+    ) -> "Hypothesis":
         """The same with another onset."""
-        return replace(self, onset=onset, profile=profile)
+        return replace(self, onset=onset, profile=profile, end=end)
 
     def beginning_with(self, other: "Hypothesis") -> "Hypothesis":
         """The same with the onset of another."""
-        return self.beginning(other.onset, other.profile)
+        return self.beginning(other.onset, other.profile, other.end)
 
     def same_place(self, other: "Hypothesis") -> bool:
         """True for the same kind at the same place with the same parameters."""

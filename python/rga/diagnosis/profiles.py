@@ -6,7 +6,8 @@ import numpy as np
 
 from rga.diagnosis.covariance import Reduced
 from rga.diagnosis.evidence import extended
-from rga.diagnosis.search import Found, onset_chances
+from rga.diagnosis.onsets import beginnings
+from rga.diagnosis.search import Found
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 
@@ -80,8 +81,8 @@ def onset_profile(found: Found, number: int, first: float) -> Onset | None:
     """
     if found.fit.hypotheses[number].onset is None:
         return None
-    moments, chances = onset_chances(found.problem, found.base, found.fit, number)
-    return Onset(moments - first, chances)
+    possible = beginnings(found.problem, found.base, found.fit, number)
+    return Onset(possible.moments - first, possible.chances)
 
 
 def _height(found: Found, z: FloatArray, held: int) -> float:

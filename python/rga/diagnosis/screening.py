@@ -14,7 +14,7 @@ from rga.simulation import Simulator
 #: an onset leaves at least this share of a signature out of reach of constant scatter
 OUT_OF_REACH = 0.08
 #: prospects that are judged anew, by signatures about the simulation as it stands
-JUDGED = 60
+JUDGED = 80
 #: d' below which not even the largest of a hypothesis' trial values will ever be named
 HOPELESS = 1.5
 PROFILES: tuple[Profile, ...] = ("step", "ramp")
@@ -121,22 +121,26 @@ class Screening:
         data = problem.data
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
-        best: dict[int, Prospect] = {}
+        best: dict[tuple[int, bool], Prospect] = {}
+        largest: dict[int, float] = {}
         onsets = not data.belief.passing
         for judged in self._judged:
             for one in _promises(judged, weighted, data.time, onsets, beginning):
-                known = best.get(one.number, one)
-                better = max(known, one, key=lambda each: each.score)
-                best[one.number] = replace(better, largest=max(known.largest, one.largest))
+                # What an onset promises is a bound, and must not hide what is sure without.
+                key = one.number, one.hypothesis.onset is None
+                best[key] = max(best.get(key, one), one, key=lambda each: each.score)
+                largest[one.number] = max(largest.get(one.number, 0.0), one.largest)
         kept = [
-            one
+            replace(one, largest=largest[one.number])
             for one in best.values()
             if not any(one.hypothesis.same_place(other) for other in taken)
         ]
         kept.sort(key=_rank)
-        return sorted(
-            [*judged_anew(problem, simulator, kept[:JUDGED], weighted), *kept[JUDGED:]], key=_rank
-        )
+        kept = [*judged_anew(problem, simulator, kept[:JUDGED], weighted), *kept[JUDGED:]]
+        first: dict[int, Prospect] = {}
+        for one in sorted(kept, key=_rank):
+            first.setdefault(one.number, one)
+        return list(first.values())
 
 
 def judged_anew(
@@ -177,7 +181,7 @@ def _promises(
     onsets: bool,
     beginning: Hypothesis | None,
 ) -> list[Prospect]:
-    """The best prospect of every signature: from the start, or from its likeliest moment on."""
+    """The prospects of every signature: from the start, and from its likeliest moment on."""
     block = judged.block
     along = block.along(weighted)
     members = block.members
@@ -195,7 +199,7 @@ def _promises(
         options.append(_scored(block, along.sum(1), judged.size, before))
         moments.append((None, "step"))
     else:
-        weight = _weights(time, beginning.profile)[int(np.searchsorted(time, beginning.onset))]
+        weight = beginning.effect([0.0] * len(beginning.priors)).weight(time)
         options.append(_scored(block, along @ weight, share * (white @ weight**2), later))
         moments.append((np.full(len(members), beginning.onset), beginning.profile))
     if beginning is None and onsets:
@@ -209,17 +213,15 @@ def _promises(
             row = np.argmax(sums**2 / sizes, axis=1)
             options.append(_scored(block, sums[every, row], sizes[every, row], later))
             moments.append((time[inner][row], profile))
-    chosen = np.argmax([score for score, _ in options], axis=0)
     found = []
     for k, (number, hypothesis, z) in enumerate(members):
-        (moment, profile), (score, start) = moments[chosen[k]], options[chosen[k]]
-        if moment is not None:
-            hypothesis = hypothesis.beginning(float(moment[k]), profile)
-        found.append(
-            Prospect(
-                number, hypothesis, _coordinates(z, start[k]), float(score[k]), float(largest[k]), z
-            )
-        )
+        for (moment, profile), (score, start) in zip(moments, options, strict=True):
+            one = hypothesis
+            if moment is not None:
+                end = None if beginning is None else beginning.end
+                one = hypothesis.beginning(float(moment[k]), profile, end)
+            start_z = _coordinates(z, start[k])
+            found.append(Prospect(number, one, start_z, float(score[k]), float(largest[k]), z))
     return found
 
 

@@ -1,17 +1,17 @@
 """The search for causes: forward, backward and swap, by evidence."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rga.diagnosis.data import Data
-from rga.diagnosis.evidence import Fit, extended, fit
+from rga.diagnosis.evidence import Fit, fit
 from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.onsets import beginnings
 from rga.diagnosis.problem import Problem, pose, relaxed
-from rga.diagnosis.scatter import level_evidence
+from rga.diagnosis.scatter import MEDIANS, level_evidence
 from rga.diagnosis.screening import Prospect, Screening
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: log-odds that a cause must have to be named, a thousand to one
@@ -22,6 +22,8 @@ RIVAL = 4.6
 KEPT = 0.5
 FITTED = 10
 JUDGED = 3
+#: prospects that are tried because they would stand out of less scatter
+HIDDEN = 5
 EXCHANGES = 3
 WORTH_EXCHANGE = 1.0
 ROUNDS = 4
@@ -88,6 +90,7 @@ def search(
             progress(f"looking for cause {number + 1}", 0.0)
             prospects = screening.again(problem, current.simulator(base), current.hypotheses)
         best = _best(problem, base, current, prospects)
+        best = best or _hidden_by_scatter(problem, base, current, prospects, screening)
         if best is None:
             break
         best = with_moment(problem, base, best, len(best.hypotheses) - 1)
@@ -144,33 +147,9 @@ def with_moment(problem: Problem, base: Simulator, current: Fit, number: int) ->
     hypothesis = current.hypotheses[number]
     if hypothesis.onset is None:
         return current
-    moments, chances = onset_chances(problem, base, current, number)
-    moved = hypothesis.beginning(float(moments[np.argmax(chances)]))
+    moved = beginnings(problem, base, current, number).likeliest
     hypotheses = [moved if k == number else one for k, one in enumerate(current.hypotheses)]
     return fit(problem, base, hypotheses, current.z)
-
-
-def onset_chances(
-    problem: Problem, base: Simulator, current: Fit, number: int
-) -> tuple[FloatArray, FloatArray]:
-    """Possible onsets of a hypothesis [s] and their probabilities, float[moments] each."""
-    always = [
-        one.beginning(None) if k == number else one for k, one in enumerate(current.hypotheses)
-    ]
-    full = problem.data.predict(extended(base, always, current.z))
-    others = [one for k, one in enumerate(current.hypotheses) if k != number]
-    z = np.delete(current.z, current.slices()[number])
-    without = problem.data.predict(extended(base, others, z))
-    time = problem.data.time
-    rows = np.unique(np.linspace(1, len(time) - 1, 400).astype(int))
-    change = np.where(problem.data.observed, full - without, 0.0)
-    steps = time >= time[rows][:, None]
-    covariance = problem.covariance
-    columns = covariance.reduce(change.T * steps[:, None, :])
-    residual = covariance.reduce(problem.residual(without).T[None])
-    log_chance = covariance.product(columns, residual)[:, 0] - covariance.squares(columns) / 2
-    chances = np.exp(log_chance - log_chance.max())
-    return time[rows], chances / chances.sum()
 
 
 def _best(
@@ -178,14 +157,43 @@ def _best(
 ) -> Fit | None:
     """The likeliest of the prospects beside the causes so far, if it is to be named."""
     fits = [
-        _with_one_more(problem, base, current, p) for p in worth_fitting(prospects) if p.score > 0
+        _with_one_more(problem, base, current, one)
+        for one in worth_fitting(prospects)
+        if one.score > 0
     ]
-    fits.sort(key=lambda one: -one.log_evidence)
-    for one in fits[:JUDGED]:
-        gained = one.log_evidence - current.log_evidence
-        if gained >= NAMED or gained + _lower_scatter(problem, current, one) >= NAMED:
-            return one
-    return None
+    best = max(fits, key=evidence, default=current)
+    return best if best.log_evidence - current.log_evidence >= NAMED else None
+
+
+def _hidden_by_scatter(
+    problem: Problem,
+    base: Simulator,
+    current: Fit,
+    prospects: Sequence[Prospect],
+    screening: Screening,
+) -> Fit | None:
+    """A cause that is to be named if the scatter may be as low as it makes it.
+
+    What changes the response of many members a little passes for scatter, and is looked for where
+    scatter is low.
+    """
+    fits = [
+        _with_one_more(problem, base, current, one) for one in prospects[:JUDGED] if one.score > 0
+    ]
+    if (problem.levels > MEDIANS).any():
+        usual = np.minimum(problem.levels, MEDIANS)
+        covariance = problem.covariance.with_spread(problem.scatter.spread(usual))
+        lower = replace(problem, covariance=covariance, levels=usual)
+        hidden = screening.again(lower, current.simulator(base), current.hypotheses)
+        fits += [
+            _with_one_more(lower, base, current, one) for one in hidden[:HIDDEN] if one.score > 0
+        ]
+    if not fits:
+        return None
+    before = _at_free_levels(problem, current)
+    gained = [_at_free_levels(problem, one) - before for one in fits]
+    best = int(np.argmax(gained))
+    return fits[best] if gained[best] >= NAMED else None
 
 
 def _with_one_more(problem: Problem, base: Simulator, current: Fit, prospect: Prospect) -> Fit:
@@ -193,15 +201,14 @@ def _with_one_more(problem: Problem, base: Simulator, current: Fit, prospect: Pr
     return fit(problem, base, together, [*current.z, *prospect.z], beside=current)
 
 
-def _lower_scatter(problem: Problem, current: Fit, one: Fit) -> float:
-    """What a fit gains beyond fixed levels, once the scatter may be as low as it makes it."""
-    gains = []
-    for simulated in (one.simulated, current.simulated):
-        residual = problem.residual(simulated)
-        free = level_evidence(problem.covariance, problem.scatter, residual, problem.levels)
-        reduced = problem.covariance.reduce(residual.T[None])
-        gains.append(free + 0.5 * float(problem.covariance.squares(reduced)[0]))
-    return gains[0] - gains[1]
+def _at_free_levels(problem: Problem, one: Fit) -> float:
+    """Log evidence of a fit with the scatter that suits it, up to a constant."""
+    if not np.isfinite(one.log_evidence):
+        return -np.inf
+    residual = problem.residual(one.simulated)
+    free = level_evidence(problem.covariance, problem.scatter, residual, problem.levels)
+    freedom = float(one.z @ one.z) + float(np.linalg.slogdet(one.information)[1])
+    return free - 0.5 * freedom + sum(each.log_prior for each in one.hypotheses)
 
 
 def worth_fitting(prospects: Sequence[Prospect]) -> list[Prospect]:

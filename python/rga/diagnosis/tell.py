@@ -23,9 +23,10 @@ from rga.diagnosis.findings import (
     Verdict,
 )
 from rga.diagnosis.heldout import Gain
+from rga.diagnosis.onsets import beginnings
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.screening import Prospect
-from rga.diagnosis.search import RIVAL, Alternative, Found, onset_chances
+from rga.diagnosis.search import RIVAL, Alternative, Found
 from rga.diagnosis.words import effect_words, place_words
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault, SensorGain
@@ -278,7 +279,12 @@ def _effect(one: Fit, number: int, record: Record) -> Effect:
     effect = hypothesis.beginning(None).effect(one.z[where]).with_values(values)
     if hypothesis.onset is None:
         return effect
-    return effect.model_copy(update={"onset": record.time_label(hypothesis.onset - record.origin)})
+    late: dict[str, Any] = {"onset": record.time_label(hypothesis.onset - record.origin)}
+    if hypothesis.profile == "ramp":
+        late["profile"] = "ramp"
+    if hypothesis.end is not None:
+        late["end"] = record.time_label(hypothesis.end - record.origin)
+    return effect.model_copy(update=late)
 
 
 def _same(one: Fit, other: Fit) -> bool:
@@ -326,8 +332,8 @@ def _onset_interval(
 ) -> tuple[float | str, float | str] | None:
     if found.fit.hypotheses[number].onset is None:
         return None
-    moments, chances = onset_chances(found.problem, found.base, found.fit, number)
-    below = np.cumsum(chances)
+    possible = beginnings(found.problem, found.base, found.fit, number)
+    moments, below = possible.moments, np.cumsum(possible.chances)
     # What shows first on a row began after the row before it, maybe a held-out block back.
     first = moments[max(0, int(np.searchsorted(below, 0.05)) - 1)]
     last = moments[min(int(np.searchsorted(below, 0.95)), len(moments) - 1)]

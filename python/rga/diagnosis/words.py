@@ -31,10 +31,11 @@ def effect_words(effect: Mapping[str, Any]) -> str:
         if effect.get(name) is not None
     )
     mode = f" ({effect['mode']})" if "mode" in effect else ""
-    onset = f", from {_moment(effect['onset'])} on" if effect.get("onset") is not None else ""
     of = f" of {place}" if place else ""
     return (
-        f"{effect['kind'].replace('_', ' ')}{of}{mode}" + (f": {values}" if values else "") + onset
+        f"{effect['kind'].replace('_', ' ')}{of}{mode}"
+        + (f": {values}" if values else "")
+        + _onset(effect)
     )
 
 
@@ -93,6 +94,16 @@ def verdict_sentence(findings: "Findings") -> str:
     if findings.verdict in ("partial", "unknown"):
         told.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
     return " ".join(told)
+
+
+def _onset(effect: Mapping[str, Any]) -> str:
+    if effect.get("onset") is None:
+        return ""
+    begun = f"from {_moment(effect['onset'])} on"
+    if effect.get("profile") != "ramp":
+        return f", {begun}"
+    full = "" if effect.get("end") is None else f" to {_moment(effect['end'])}"
+    return f", growing {begun}{full}"
 
 
 def _moment(onset: Any) -> str:
