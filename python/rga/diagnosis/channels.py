@@ -1,6 +1,7 @@
 """Channels that do not work, from the data alone and against the loads."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy.linalg import lstsq
@@ -15,6 +16,9 @@ SPIKE = 12.0
 SPIKES = 0.02
 #: a channel that shows less than this share of the expected variation is dead
 DEAD = 0.05
+#: rows that a channel repeats itself to the last before it is silent, times what chance allows, and
+#: the share of its variation that the simulation must have meanwhile
+SILENT, UNLIKELY, MOVES = 10, 4.0, 0.2
 #: rows that a spike lasts at most
 LONGEST_SPIKE = 2
 
@@ -27,21 +31,23 @@ class Fault:
         sensor: its name.
         mode: "dead", "stuck" or "spiking".
         why: what in the data shows it.
+        row: from which on it does not work; None: from the first.
         readings: number of readings that a working channel would show once in a thousand.
     """
 
     sensor: str
-    mode: str
+    mode: Literal["dead", "stuck", "spiking"]
     why: str
     readings: int
+    row: int | None = None
 
 
 def find_faults(
     sensors: tuple[str, ...],
     readings: FloatArray,
     observed: BoolArray,
-    expected: FloatArray,
-    basis: FloatArray | None,
+    simulated: FloatArray | None = None,
+    basis: FloatArray | None = None,
 ) -> list[Fault]:
     """Channels that do not work.
 
@@ -49,9 +55,9 @@ def find_faults(
         sensors: names.
         readings: float[rows, sensors].
         observed: bool[rows, sensors].
-        expected: float[sensors], the variation (standard deviation) that the simulation has.
-        basis: float[rows, patterns], load coefficients; None where the loads are not known yet:
-            then only stuck channels are found.
+        simulated: float[rows, sensors]; None where the loads are not known yet: then only channels
+            are found that are stuck over most of the record.
+        basis: float[rows, patterns], load coefficients; None as well then.
     """
     faults = []
     for number, sensor in enumerate(sensors):
@@ -70,7 +76,16 @@ def find_faults(
                 )
             )
             continue
-        if basis is None:
+        if basis is None or simulated is None:
+            continue
+        expected = float(simulated[:, number].std())
+        silent = _falls_silent(column, simulated[seen, number])
+        if silent is not None:
+            row = int(np.flatnonzero(seen)[silent])
+            value = column[silent]
+            mode: Literal["dead", "stuck"] = "dead" if value == 0 else "stuck"
+            why = f"it reads {value:.6g} exactly from row {row + 1} to the last"
+            faults.append(Fault(sensor, mode, why, len(column) - silent, row))
             continue
         deviation = _robust_deviation(column - np.median(column))
         spread = float(column.std())
@@ -86,17 +101,36 @@ def find_faults(
                     int(spikes * len(column)),
                 )
             )
-        elif expected[number] > 0 and spread < DEAD * expected[number]:
+        elif spread < DEAD * expected:
             faults.append(
                 Fault(
                     sensor,
                     "dead",
-                    f"it varies by {spread:.3g} where {expected[number]:.3g} is expected "
+                    f"it varies by {spread:.3g} where {expected:.3g} is expected "
                     f"(median deviation {deviation:.3g})",
                     len(column),
                 )
             )
     return faults
+
+
+def _falls_silent(column: FloatArray, simulated: FloatArray) -> int | None:
+    """The reading from which on a channel repeats itself to the last, if it does for long.
+
+    Args:
+        column: readings, float[readings].
+        simulated: what they should be, float[readings]: it must vary meanwhile.
+    """
+    changes = np.flatnonzero(np.diff(column) != 0)
+    first = int(changes[-1]) + 1 if len(changes) else 0
+    # Readings of coarse steps repeat themselves by chance, the more the coarser.
+    repeats = float((np.diff(column[: first + 1]) == 0).mean()) if first else 1.0
+    by_chance = 1 + np.log(len(column)) / np.log(1 / max(repeats, 1e-3)) if repeats < 1 else np.inf
+    silent = len(column) - first
+    if silent < max(SILENT, UNLIKELY * by_chance):
+        return None
+    moves = simulated[first:].std() > MOVES * simulated.std()
+    return first if moves else None
 
 
 def lone_spikes(readings: FloatArray, observed: BoolArray, basis: FloatArray) -> BoolArray:

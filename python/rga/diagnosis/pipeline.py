@@ -10,7 +10,6 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
 from rga.diagnosis.bends import bends, with_free_slopes
-from rga.diagnosis.channels import Fault
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
@@ -30,8 +29,6 @@ from rga.diagnosis.search import (
     weighed,
     without_needless,
 )
-from rga.model.effect import Effect
-from rga.model.effects.sensors import SensorFault
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
@@ -79,9 +76,10 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     tried = compare(found, screening.first, lambda done: progress("comparing explanations", done))
 
     effects = tell.effects_of(found, prepared.record)
-    faults = {f"fault of {fault.sensor}": _fault_effect(fault) for fault in prepared.faults}
+    faults = {fault: tell.fault_effect(fault, prepared.record) for fault in prepared.faults}
     named = {tell.cause_name(model, effect): effect for effect in effects}
-    extended = model.extended({**named, **faults})
+    broken = {f"fault of {fault.sensor}": effect for fault, effect in faults.items()}
+    extended = model.extended({**named, **broken})
     account = _account(model, extended, prepared, held_out, (start, found), noise)
     share = leftover.share_left(found.problem)
     structure = share > STRUCTURE or bool(bends(found.problem))
@@ -91,7 +89,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         verdict=tell.verdict(found, bool(prepared.faults), structure),
         gap=tell.gap(account, gain_of(account, seed)),
         causes=[
-            *(tell.fault_cause(fault) for fault in prepared.faults),
+            *(tell.fault_cause(fault, effect) for fault, effect in faults.items()),
             *tell.causes(found, effects, prepared.record),
         ],
         unidentifiable=tell.unidentifiable(screening.first),
@@ -216,7 +214,3 @@ def gain_of(account: Account, seed: int) -> Any:
     before = ((measured - account.before) / account.noise) ** 2
     after = ((measured - account.after) / account.noise) ** 2
     return gain(before, after, account.held_out, seed)
-
-
-def _fault_effect(fault: Fault) -> Effect:
-    return SensorFault(sensor=fault.sensor, mode=fault.mode)

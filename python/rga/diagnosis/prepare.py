@@ -50,16 +50,14 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     check_length(record)
     simulator = Simulator(model)
     data = _data(model, record)
-    stuck = find_faults(
-        data.sensors, data.readings, data.observed, np.zeros(len(data.sensors)), None
-    )
+    stuck = find_faults(data.sensors, data.readings, data.observed)
     data = _without(data, stuck)
     data = guess_lines(simulator, data, progress)
     chosen = _loaded_rows(simulator, data)
     data = guess_rows(simulator, data.rows(chosen))
     basis = load_basis(simulator, data)
-    expected = data.predict(simulator).std(0)
-    broken = find_faults(data.sensors, data.readings, data.observed, expected, basis)
+    simulated = data.predict(simulator)
+    broken = find_faults(data.sensors, data.readings, data.observed, simulated, basis)
     data = _without(data, broken)
     if not data.sensors:
         fault = [*stuck, *broken][0]

@@ -109,11 +109,18 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
     return told
 
 
-def fault_cause(fault: Fault) -> Cause:
+def fault_effect(fault: Fault, record: Record) -> SensorFault:
+    """A rejected channel as it stands in the extended model."""
+    onset = None if fault.row is None else record.time_label(float(record.time[fault.row]))
+    return SensorFault(sensor=fault.sensor, mode=fault.mode, onset=onset)
+
+
+def fault_cause(fault: Fault, effect: SensorFault) -> Cause:
     """A rejected channel as a cause: each of its odd readings has odds of one in a thousand."""
     odds = max(fault.readings, 1) * FAULT_NATS
     return Cause(
-        effect={"kind": "sensor_fault", "sensor": fault.sensor, "mode": fault.mode},
+        effect=content(effect),
+        onset=effect.onset,
         status="named",
         log_odds=odds,
         d_prime=float(np.sqrt(2 * odds)),

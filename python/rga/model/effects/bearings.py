@@ -96,7 +96,8 @@ class BearingFriction(Effect):
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"mu": Positive(0.1, 0.7)}
+        # What the loads of the model leave out is mostly the weight of the bridge itself.
+        return {"mu": Positive(0.1, 0.7), "permanent_force": Positive(5e4, 1.0, trials=(0.0,))}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for node in supported(structure, self.support):
