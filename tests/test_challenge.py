@@ -49,7 +49,9 @@ def outcome(name: str, **changes: Any) -> Outcome:
         reality="truss",
         hidden=hidden,
         verdict="nothing_wrong" if draw.null else "named",
-        named=[{"kind": one["kind"], "log_odds": 20.0, "rivals": []} for one in hidden],
+        named=[
+            {"kind": one["kind"], "hidden": True, "log_odds": 20.0, "rivals": []} for one in hidden
+        ],
         deviations={one["kind"]: {"factor": 0.5} for one in hidden},
         onsets=[],
         gaps=None if draw.null else {"given": 5.0, "found": 1.2, "true": 1.0},
@@ -227,6 +229,9 @@ def test_kind_and_place_must_be_right() -> None:
     assert not truth.is_at({"kind": "support_spring", "support": "a", "dof": "ux"})
     assert not truth.is_at({"kind": "support_spring", "support": ["b", "a"], "dof": "uy"})
     assert not truth.is_at({"kind": "support_gap", "support": ["b", "a"], "dof": "ux"})
+    joints = Truth("joint_rigidity", {"group": ["a", "b"]}, {}, None, None, 0.0)
+    assert joints.is_at({"kind": "joint_rigidity", "group": ["c", "b", "a"]})
+    assert not joints.is_at({"kind": "joint_rigidity", "group": "a"})
     wind = Truth("unmodelled_load", {"group": "g", "direction": [0, 0, -1]}, {}, None, None, 0.0)
     assert wind.is_at({"kind": "unmodelled_load", "group": "g", "direction": (0.0, 0.0, 1.0)})
     assert not wind.is_at({"kind": "unmodelled_load", "group": "g", "direction": (0.0, 1.0, 0.0)})
@@ -248,7 +253,15 @@ def test_figures_count_what_they_say() -> None:
     assert figure(several, "unknown or partial, though").count == 1
     assert figure(several, "share of the true gain, d_perp 8 to 15").value == pytest.approx(0.95)
     assert figure(several, "advice").value is None
+    beside = [*plain[5].named, {**plain[5].named[0], "hidden": False}]
+    several[5] = replace(plain[5], named=beside)
+    assert figure(several, "a false name beside").count == 1
+    late = {"kind": "x", "inside": True, "error": 0.01, "ramp": False}
+    several[6] = replace(plain[6], onsets=[late, {**late, "inside": False, "ramp": True}])
+    assert figure(several, "onset within its 90 % interval: a jump").value == 1
+    assert figure(several, "onset within its 90 % interval: a ramp").value == 0
     lines = list(failures(several))
+    assert sum(line.startswith("  1-single-5 ") for line in lines) == 1
     assert sum(line.startswith("  1-single-0 ") for line in lines) == 1
     assert sum(line.startswith("  1-single-0-null ") for line in lines) == 1
 

@@ -151,9 +151,8 @@ def _finding(outcomes: Sequence[Outcome]) -> list[Figure]:
             for null in NULLS
         ),
         rate(
-            "a false name beside a single effect",
-            (len(o.named) > (o.hidden[0]["cause"] is not None) for o in of(outcomes, "single")
-             if o.found),
+            "a false name beside a single effect that was found",
+            (not all(one["hidden"] for one in o.named) for o in of(outcomes, "single") if o.found),
         ),
     ]  # fmt: skip
 
@@ -242,18 +241,22 @@ def _gains(outcomes: Sequence[Outcome]) -> list[Figure]:
 
 
 def _onsets(outcomes: Sequence[Outcome]) -> list[Figure]:
-    told = [(o, one) for o in outcomes for one in o.onsets]
+    told = [one for o in outcomes for one in o.onsets]
     large = [
         onset["error"]
-        for o, onset in told
+        for o in outcomes
+        for onset in o.onsets
         for one in o.hidden
-        if one["kind"] == onset["kind"] and one["end"] is None and one["d_prime"] >= LARGE
+        if one["kind"] == onset["kind"] and not onset["ramp"] and one["d_prime"] >= LARGE
     ]
     return [
-        rate(
-            "onset within its 90 % interval",
-            (onset["inside"] for _, onset in told),
-            (0.85, 0.95), (0.88, 0.92),
+        *(
+            rate(
+                f"onset within its 90 % interval: {word}",
+                (one["inside"] for one in told if one["ramp"] == ramp),
+                (0.85, 0.95), (0.88, 0.92),
+            )
+            for ramp, word in ((False, "a jump"), (True, "a ramp"))
         ),
         middle(f"onset, error at d' {LARGE:g}: median", large, (0.0, 0.05), (0.0, 0.02), 0.5),
         middle("  nine in ten within", large, (0.0, 0.05), (0.0, 0.02), 0.9),

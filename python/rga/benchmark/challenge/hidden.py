@@ -70,8 +70,16 @@ class Truth:
         return Effect.vocabulary[self.kind](kind=self.kind, **self.place, **self.values, **late)
 
     def is_at(self, effect: dict[str, Any]) -> bool:
-        """Kind and place of an effect right: the order of a list, or up for down, do not matter."""
-        return effect["kind"] == self.kind and all(
+        """Kind and place of an effect right: the order of a list, or up for down, do not matter.
+
+        Stiff joints are proposed for one group or for all that bend: a place that holds the true
+        one is right.
+        """
+        if effect["kind"] != self.kind:
+            return False
+        if self.kind == "joint_rigidity":
+            return _names(self.place["group"]) <= _names(effect["group"])
+        return all(
             effect.get(name) is not None and _alike(effect[name], value)
             for name, value in self.place.items()
             if name != "mode"

@@ -42,11 +42,11 @@ class Outcome:
             the `nearest` rival, whether it was `found`: kind and place right, as a cause or
             among at most three rivals; `cause`: number of the cause that names it, or None.
         verdict: of the diagnosis.
-        named: causes, each with kind, place, `log_odds` and `rivals`; the true stiffness of
-            joints left out.
+        named: causes, each with kind, place, `onset`, `log_odds`, `d_perp` and `rivals`, and
+            whether something `hidden` is among these; the true stiffness of joints left out.
         deviations: by kind and parameter, the truth from the estimate in standard deviations.
-        onsets: of effects named with one that begin late: `inside` their 90 % interval, and
-            `error` as a share of the record.
+        onsets: of effects named that begin late: `inside` their 90 % interval, `error` as a
+            share of the record, and whether it is a `ramp`.
         gaps: where the record shows nothing, of the model as given, as found, and true.
         gain_covered: whether the 90 % interval of the gain holds the true gain; None: no cause.
         chances: of the likeliest explanations, with whether each is the truth.
@@ -132,7 +132,7 @@ def judge(draw: Draw) -> Outcome:
         reality=case.truth["reality"],
         hidden=hidden,
         verdict=findings.verdict,
-        named=[_named(cause) for cause in causes],
+        named=[_named(cause, truths) for cause in causes],
         deviations=deviations,
         onsets=_onsets(case, truths, causes),
         gaps=None if gaps is None else vars(gaps).copy(),
@@ -148,9 +148,12 @@ def _added(findings: Findings) -> dict[str, Effect]:
     return {name: one for name, one in extended.effects.items() if name not in model.effects}
 
 
-def _named(cause: Cause) -> dict[str, Any]:
+def _named(cause: Cause, truths: list[Truth]) -> dict[str, Any]:
+    told = [cause.effect, *cause.rivals]
     return {
         **kind_and_place(cause.effect),
+        "hidden": any(truth.is_at(one) for truth in truths for one in told),
+        "onset": cause.onset,
         "log_odds": cause.log_odds,
         "d_perp": cause.d_perp,
         "rivals": [kind_and_place(rival) for rival in cause.rivals],
@@ -188,6 +191,7 @@ def _onsets(case: Case, truths: list[Truth], causes: list[Cause]) -> list[dict[s
                 "kind": truth.kind,
                 "inside": bool(low <= truth.onset <= high),
                 "error": abs(told - truth.onset) / length,
+                "ramp": truth.end is not None,
             }
         )
     return out

@@ -141,7 +141,7 @@ def _failure(one: Outcome) -> str:
         return f"{one.draw.stratum} not found"
     if any(abs(x) > FAR for found in one.deviations.values() for x in found.values()):
         return f"truth more than {FAR:g} standard deviations off"
-    if one.found and len(one.named) > sum(hidden["cause"] is not None for hidden in one.hidden):
+    if one.found and not all(cause["hidden"] for cause in one.named):
         return "a false name beside what was found"
     return "unknown or partial, though the vocabulary has it" if one.verdict in UNSURE else ""
 
@@ -169,10 +169,10 @@ def _line(one: Outcome) -> str:
 
 
 def _place(effect: dict[str, object]) -> str:
-    apart = ("kind", "log_odds", "d_perp", "rivals", "mode", "dof")
+    apart = ("kind", "hidden", "onset", "log_odds", "d_perp", "rivals", "mode", "dof")
     words = [
         "+".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
         for key, value in effect.items()
-        if key not in apart
+        if key not in apart and value is not None
     ]
     return " ".join(words) + " " if words else ""
