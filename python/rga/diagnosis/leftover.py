@@ -20,6 +20,8 @@ from rga.model.parameter import FloatArray
 
 MOST = 3
 MARGIN = 1.25
+#: rows over which patterns are looked for together, and pieces of that length that are needed
+WIDTHS, LEAST_PIECES = (1, 8), 20
 CORRELATED, SWINGING = 0.4, 0.2
 
 
@@ -72,17 +74,36 @@ def shared_pattern(problem: Problem) -> Pattern | None:
     working = seen.sum(0) > 0.5 * len(seen)
     if working.sum() < 3:
         return None
-    columns = white[:, working]
-    scale = np.sqrt((columns**2).sum(0) / np.maximum(seen[:, working].sum(0), 1))
-    columns = columns / np.maximum(scale, 1e-12)
-    rows, sensors = columns.shape
-    values, vectors = np.linalg.eigh(columns.T @ columns / rows)
-    edge = (1 + np.sqrt(sensors / rows)) ** 2
-    if values[-1] <= MARGIN * edge:
-        return None
-    direction = np.zeros(len(working))
-    direction[working] = vectors[:, -1] * np.sqrt(values[-1]) * problem.noise.sigma[working]
-    return Pattern(direction, float((values[-1] - 1) / sensors))
+    noise = problem.noise
+    best: Pattern | None = None
+    for width in WIDTHS:
+        columns = _averaged(white[:, working], seen[:, working], width)
+        rows, sensors = columns.shape
+        if rows < LEAST_PIECES:
+            break
+        scale = np.sqrt((columns**2).mean(0))
+        columns = columns / np.maximum(scale, 1e-12)
+        values, vectors = np.linalg.eigh(columns.T @ columns / rows)
+        edge = (1 + np.sqrt(sensors / rows)) ** 2
+        if values[-1] <= MARGIN * edge:
+            continue
+        # What moves slowly is small in the innovations of noise with a memory.
+        slow = np.sqrt((1 + noise.phi) / (1 - noise.phi) / width) if width > 1 else 1.0
+        size = np.sqrt(values[-1]) * noise.sigma * slow
+        direction = np.zeros(len(working))
+        direction[working] = vectors[:, -1] * (size * np.ones(len(working)))[working]
+        found = Pattern(direction, float((values[-1] - 1) / sensors))
+        if best is None or found.share > best.share:
+            best = found
+    return best
+
+
+def _averaged(white: FloatArray, seen: BoolArray, width: int) -> FloatArray:
+    """Innovations put together over so many rows, of variance one, float[pieces, sensors]."""
+    pieces = len(white) // width
+    few = white[: pieces * width].reshape(pieces, width, -1).sum(1)
+    count = seen[: pieces * width].reshape(pieces, width, -1).sum(1)
+    return np.asarray(few / np.sqrt(np.maximum(count, 1)))
 
 
 def innovations(problem: Problem) -> tuple[FloatArray, BoolArray]:

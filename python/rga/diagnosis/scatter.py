@@ -20,6 +20,8 @@ APART = 10.0
 ROUNDS = 3
 #: prior spread of how a pattern of unknown origin follows time and loads [its own deviation]
 FACTOR_MEAN = 3.0
+#: slow courses that such a pattern may follow
+WAVES = 8
 #: share of an effect that may be left out of its courses
 EXACT = 1e-9
 
@@ -79,7 +81,7 @@ def scatter_effects(
         data: the readings.
         simulated: float[rows, sensors].
         basis: load coefficients, float[rows, patterns].
-        factors: patterns of unknown origin; that they follow the loads, or change steadily, are
+        factors: patterns of unknown origin; that they follow the loads, or change slowly, are
             random effects too.
         calibrations: further random effects, float[rows, sensors], with their prior spread.
     """
@@ -87,7 +89,8 @@ def scatter_effects(
     size = np.sqrt((simulated**2).mean(0))
     patterns = basis[:, : min(PATTERNS, max(2, ALL_PATTERNS // sensors))]
     clock = data.time - data.time.mean()
-    drift = np.column_stack([np.ones(len(clock)), clock / max(float(clock.std()), 1e-12), patterns])
+    waves = np.cos(np.pi * np.arange(1, WAVES + 1) * (clock - clock[0])[:, None] / np.ptp(clock))
+    drift = np.column_stack([np.ones(len(clock)), waves, patterns])
     members = _by_members(simulator, data, simulated)
     moved = _by_lines(simulator, data)
     known = [basis, *([drift] if factors.size else [])]
