@@ -14,7 +14,7 @@ from rga.simulation import Simulator
 #: an onset leaves at least this share of a signature out of reach of constant scatter
 OUT_OF_REACH = 0.08
 #: prospects that are judged anew, by signatures about the simulation as it stands
-JUDGED = 80
+JUDGED = 100
 #: d' below which not even the largest of a hypothesis' trial values will ever be named
 HOPELESS = 1.5
 PROFILES: tuple[Profile, ...] = ("step", "ramp")
@@ -121,13 +121,14 @@ class Screening:
         data = problem.data
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
-        best: dict[tuple[int, bool], Prospect] = {}
+        best: dict[tuple[int, Profile | None], Prospect] = {}
         largest: dict[int, float] = {}
         onsets = not data.belief.passing
         for judged in self._judged:
             for one in _promises(judged, weighted, data.time, onsets, beginning):
-                # What an onset promises is a bound, and must not hide what is sure without.
-                key = one.number, one.hypothesis.onset is None
+                # What an onset promises is rough, and must not hide another way to begin.
+                late = one.hypothesis.onset is not None
+                key = one.number, one.hypothesis.profile if late else None
                 best[key] = max(best.get(key, one), one, key=lambda each: each.score)
                 largest[one.number] = max(largest.get(one.number, 0.0), one.largest)
         kept = [

@@ -112,6 +112,8 @@ def weighed(
     A cause for which something likelier is found, now that others stand beside it, is exchanged.
     """
     current = fit(problem, base, current.hypotheses, current.z)
+    for number in range(len(current.hypotheses)):
+        current = with_moment(problem, base, current, number)
     for _ in range(EXCHANGES):
         problem, current = _pruned(base, problem, current)
         alternatives, odds = [], []
@@ -148,8 +150,10 @@ def with_moment(problem: Problem, base: Simulator, current: Fit, number: int) ->
     if hypothesis.onset is None:
         return current
     moved = beginnings(problem, base, current, number).likeliest
+    if moved == hypothesis:
+        return current
     hypotheses = [moved if k == number else one for k, one in enumerate(current.hypotheses)]
-    return fit(problem, base, hypotheses, current.z)
+    return max(current, fit(problem, base, hypotheses, current.z), key=evidence)
 
 
 def _best(
