@@ -17,7 +17,11 @@ from rga.diagnosis.heldout import gain, held_out_rows
 from rga.diagnosis.hypothesis import hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
 from rga.diagnosis.problem import Problem, pose, relaxed
-from rga.diagnosis.robustness import with_hanging_leads, without_unhelpful
+from rga.diagnosis.robustness import (
+    with_better_prediction,
+    with_hanging_leads,
+    without_unhelpful,
+)
 from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.screening import Screening
 from rga.diagnosis.search import (
@@ -136,7 +140,8 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     helpful = without_unhelpful(found.problem, found.base, found.fit)
     if len(helpful.hypotheses) < len(found.fit.hypotheses):
         found = weighed(found.problem, found.base, helpful, screening, progress)
-    return with_hanging_leads(found, lambda done: progress("leaving out channels", done))
+    hanging = with_hanging_leads(found, lambda done: progress("leaving out channels", done))
+    return with_better_prediction(hanging)
 
 
 def _account(

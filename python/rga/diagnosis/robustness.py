@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from rga.diagnosis.evidence import Fit, refit
+from rga.diagnosis.evidence import Fit, fit, refit
 from rga.diagnosis.explanations import hiding, sensor_groups, unseen_gap
 from rga.diagnosis.problem import Problem
-from rga.diagnosis.search import Alternative, Found, without_cause
+from rga.diagnosis.search import RIVAL, Alternative, Found, without_cause
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
@@ -21,6 +21,10 @@ from rga.simulation import Simulator
 DOUBTFUL = 30.0
 #: channels that favour a cause most, which are left out one after the other
 FAVOURABLE = 8
+#: share of the gap on unseen channels by which a rival predicts them much better
+PREDICTS = 0.5
+#: times the least gap on unseen channels within which evidence decides again
+ALIKE = 1.5
 
 
 def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
@@ -77,6 +81,60 @@ def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found
 
 def _nearer(one: Alternative, behind: float | None) -> Alternative:
     return one if behind is None else replace(one, behind=behind)
+
+
+def with_better_prediction(found: Found) -> Found:
+    """The causes, with a rival in the place of one where channels unseen speak for it.
+
+    Where the lead of a cause hangs on a channel, evidence cannot tell the two. What predicts
+    channels to which it was not fitted much better then goes before what fits better.
+    """
+    problem, base = found.problem, found.base
+    groups = sensor_groups(base.model, problem.data.sensors)
+    if len(groups) < 2:
+        return found
+    hidden = {word: hiding(problem, names) for word, names in groups.items()}
+    whole = unseen_gap(problem, hidden, groups, base, found.fit)
+    better = [
+        (gap, number, one)
+        for number, ranked in enumerate(found.alternatives)
+        if not found.fit.hypotheses[number].kind.on_sensors
+        for one in ranked
+        if one.behind < RIVAL and not one.hypothesis.kind.on_sensors
+        if (gap := unseen_gap(problem, hidden, groups, base, one.fit)) < PREDICTS * whole
+    ]
+    if not better:
+        return found
+    least = min(gap for gap, _, _ in better)
+    alike = [(number, one) for gap, number, one in better if gap <= ALIKE * least]
+    return _exchanged(found, *max(alike, key=lambda pair: pair[1].fit.log_evidence))
+
+
+def _exchanged(found: Found, number: int, rival: Alternative) -> Found:
+    """A rival in the place of a cause, and the cause among its rivals."""
+    behind = rival.fit.log_evidence - found.fit.log_evidence
+    cause = found.fit.hypotheses[number]
+    where = found.fit.slices()[number]
+    order = [*(k for k in range(len(found.fit.hypotheses)) if k != number), number]
+    z = np.concatenate(
+        [*(found.fit.z[found.fit.slices()[k]] for k in order[:-1]), found.fit.z[where]]
+    )
+    former = fit(found.problem, found.base, [found.fit.hypotheses[k] for k in order], z)
+    others = [
+        replace(one, behind=one.behind + behind)
+        for one in found.alternatives[number]
+        if one is not rival
+    ]
+    ranked = (Alternative(cause, former, behind), *others)
+    return replace(
+        found,
+        fit=rival.fit,
+        alternatives=(*(found.alternatives[k] for k in order[:-1]), ranked),
+        log_odds=(
+            *(found.log_odds[k] for k in order[:-1]),
+            found.log_odds[number] + behind,
+        ),
+    )
 
 
 def _favourable(found: Found, close: Iterable[Alternative]) -> list[str]:

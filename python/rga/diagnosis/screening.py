@@ -107,7 +107,8 @@ class Screening:
             problem: gives residual and covariance.
             simulator: the simulation to which the candidates are added.
             taken: hypotheses that are left out.
-            beginning: one whose onset all candidates share; None: onsets are searched for.
+            beginning: one whose onset candidates may have beside acting always, or which has none,
+                as they have then; None: onsets are searched for.
         """
         return self._prospects(problem, simulator, taken, beginning)
 
@@ -196,10 +197,9 @@ def _promises(
     moments: list[tuple[FloatArray | None, Profile]] = []
     white = judged.by_row.astype(float)
     share = judged.size / np.maximum(white.sum(1), 1e-300)
-    if beginning is None or beginning.onset is None:
-        options.append(_scored(block, along.sum(1), judged.size, before))
-        moments.append((None, "step"))
-    else:
+    options.append(_scored(block, along.sum(1), judged.size, before))
+    moments.append((None, "step"))
+    if beginning is not None and beginning.onset is not None:
         weight = beginning.effect([0.0] * len(beginning.priors)).weight(time)
         options.append(_scored(block, along @ weight, share * (white @ weight**2), later))
         moments.append((np.full(len(members), beginning.onset), beginning.profile))

@@ -128,6 +128,7 @@ def weighed(
         better = max((one[0].fit for one in alternatives if one), key=evidence, default=current)
         if better.log_evidence <= current.log_evidence + WORTH_EXCHANGE:
             break
+        better = with_moment(problem, base, better, len(better.hypotheses) - 1)
         problem, current = settled_with(base, problem, better)
     return found
 
@@ -303,8 +304,9 @@ def _alternatives(
 ) -> list[Alternative]:
     """Other hypotheses in the place of a cause, fitted beside the others, the best first."""
     cause = current.hypotheses[number]
+    beginning = None if cause.onset is None else cause
     simulator = without.simulator(base)
-    prospects = screening.again(problem, simulator, current.hypotheses, beginning=cause)
+    prospects = screening.again(problem, simulator, current.hypotheses, beginning)
     found = []
     for prospect in worth_fitting(prospects):
         one = _with_one_more(problem, base, without, prospect)
