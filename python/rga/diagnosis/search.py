@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -94,7 +95,10 @@ def search(
         if best is None:
             break
         best = with_moment(problem, base, best, len(best.hypotheses) - 1)
+        scattered = bool((problem.levels > MEDIANS).any())
         problem, current = settled_with(base, problem, best)
+        if scattered:
+            problem, current = _swapped(problem, base, current, screening)
         problem, current = _merged(base, problem, current, candidates)
         problem, current = _pruned(base, problem, current)
     return weighed(problem, base, current, screening, progress)
@@ -201,6 +205,23 @@ def _hidden_by_scatter(
     return fits[best] if gained[best] >= NAMED else None
 
 
+def _swapped(
+    problem: Problem, base: Simulator, current: Fit, screening: Screening
+) -> tuple[Problem, Fit]:
+    """Something likelier in the place of the last cause, if there is.
+
+    What a cause leaves out passes for scatter until it is named: causes that were much alike among
+    that scatter may be far apart without it.
+    """
+    last = len(current.hypotheses) - 1
+    without = without_cause(problem, base, current, last)
+    for one in _alternatives(problem, base, current, without, last, screening)[:1]:
+        if one.fit.log_evidence > current.log_evidence + WORTH_EXCHANGE:
+            better = with_moment(problem, base, one.fit, last)
+            return settled_with(base, problem, better)
+    return problem, current
+
+
 def _with_one_more(problem: Problem, base: Simulator, current: Fit, prospect: Prospect) -> Fit:
     together = [*current.hypotheses, prospect.hypothesis]
     return fit(problem, base, together, [*current.z, *prospect.z], beside=current)
@@ -245,8 +266,14 @@ def _merged(
         slices = current.slices()
         kept = [k for k in range(len(current.hypotheses)) if k not in parts]
         hypotheses = [*(current.hypotheses[k] for k in kept), candidate]
-        start = np.concatenate([*(current.z[slices[k]] for k in kept), current.z[slices[parts[0]]]])
-        merged = fit(problem, base, hypotheses, start)
+        others = [current.z[slices[k]] for k in kept]
+        # Shared by many, the effect is smaller at each.
+        trials = product(*(prior.trials for prior in candidate.priors.values()))
+        starts = [current.z[slices[parts[0]]], *map(np.array, trials)]
+        merged = max(
+            (fit(problem, base, hypotheses, np.concatenate([*others, one])) for one in starts),
+            key=evidence,
+        )
         if merged.log_evidence > current.log_evidence:
             return settled_with(base, problem, merged)
     return problem, current
