@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rga.diagnosis import Findings, diagnose
+    from rga.diagnosis.many import diagnose_many
     from rga.diagnosis.reading import load_findings
     from rga.model import Effect, Model, load_model
     from rga.planning.planner import plan
@@ -26,6 +27,7 @@ _DOORS = {
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
+    "diagnose_many": "rga.diagnosis.many",
     "load_findings": "rga.diagnosis.reading",
     "load_model": "rga.model",
     "load_record": "rga.records",
@@ -43,6 +45,7 @@ __all__ = [
     "Twin",
     "__version__",
     "diagnose",
+    "diagnose_many",
     "load_findings",
     "load_model",
     "load_record",

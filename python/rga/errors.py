@@ -10,7 +10,11 @@ class InputError(ValueError):
 
     def __init__(self, what: str, where: str, remedy: str) -> None:
         self.what, self.where, self.remedy = what, where, remedy
-        super().__init__(f"{what} ({where}): {remedy}")
+        # The parts are the arguments, so that the error passes from process to process.
+        super().__init__(what, where, remedy)
+
+    def __str__(self) -> str:
+        return f"{self.what} ({self.where}): {self.remedy}"
 
 
 class UnstableStructureError(InputError):

@@ -10,6 +10,7 @@ from rga import __version__
 from rga.cli.benchmark import benchmark
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
+from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
@@ -27,7 +28,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    run, diagnose, plan, whatif, replay, rollback, simulate, dataset, verify, schema, doctor,
+    run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify, schema,
+    doctor,
 ):  # fmt: skip
     app.command()(command)
 app.add_typer(benchmark, name="benchmark")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rga.cli.options import JsonTarget, Seed
+from rga.cli.options import DaskAddress, JsonTarget, Seed, Workers
 from rga.errors import InputError
 
 benchmark = typer.Typer(help="Measure what rga can do.", no_args_is_help=True)
@@ -13,7 +13,6 @@ benchmark = typer.Typer(help="Measure what rga can do.", no_args_is_help=True)
 Draws = Annotated[
     int, typer.Option("-n", "--draws", min=1, help="Hidden effects; each beside its null twin.")
 ]
-Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes at work.")]
 Minutes = Annotated[
     float | None, typer.Option("--minutes", min=0.0, help="Begin no further draw after these.")
 ]
@@ -46,6 +45,7 @@ def diagnosis(
     draws: Draws = 3000,
     seed: Seed = 1,
     workers: Workers = 2,
+    dask: DaskAddress = None,
     quick: Quick = False,
     minutes: Minutes = None,
     output: KeptIn = None,
@@ -80,6 +80,7 @@ def diagnosis(
             chosen,
             folder=output,
             workers=workers,
+            dask=dask,
             minutes=minutes,
             progress=lambda done: progress("blind challenge", done),
         )

@@ -4,12 +4,10 @@ from typing import Annotated
 
 import typer
 
-from rga.cli.options import ModelFile, OutputFile, Seed
+from rga.cli.options import ModelFile, OutputFile, Seed, Workers
 
 Rows = Annotated[int, typer.Option("-n", min=1, help="Number of rows.")]
 Noise = Annotated[bool, typer.Option("--noise", help="Add the sensors' noise.")]
-
-Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes at work.")]
 
 
 def dataset(

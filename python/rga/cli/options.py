@@ -29,4 +29,15 @@ JsonTarget = Annotated[
         "--json", metavar="[FILE]", help="Write the result as JSON; without FILE to the output."
     ),
 ]
+Workers = Annotated[
+    int, typer.Option("--workers", min=1, help="Processes at work on this machine.")
+]
+DaskAddress = Annotated[
+    str | None,
+    typer.Option(
+        "--dask",
+        metavar="ADDRESS",
+        help="Scheduler of a Dask cluster, whose workers do the work instead.",
+    ),
+]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]

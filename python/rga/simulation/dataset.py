@@ -1,17 +1,12 @@
 """Synthetic datasets: contexts drawn over their ranges, and what the sensors show."""
 
 import json
-import os
 import shutil
-import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.metadata import version
-from multiprocessing import get_context
 from pathlib import Path
-from threading import Thread
 
 import numpy as np
 import polars as pl
@@ -21,6 +16,7 @@ from threadpoolctl import threadpool_limits
 from rga.errors import InputError
 from rga.model import Model
 from rga.simulation.simulator import Simulator
+from rga.workers import finished
 
 #: rows of a part: a power of two keeps the sequence of the contexts balanced
 CHUNK = 16_384
@@ -86,7 +82,10 @@ def write_dataset(
     ]
     waiting = [task for task in tasks if not task.is_whole()]
     done = len(tasks) - len(waiting)
-    for number, _ in enumerate(_written(waiting, workers), start=done + 1):
+    workers = min(workers, max(len(waiting), 1))
+    written = finished(_Part.write, waiting, workers=workers)
+    for number, (_, part) in enumerate(written, start=done + 1):
+        part.result()
         if progress is not None:
             progress("simulating", number / len(tasks))
     draft = parts / "whole.parquet"
@@ -137,30 +136,6 @@ class _Part:
             generator = np.random.default_rng([self.seed, 1, self.begin])
             readings = readings + spread * generator.standard_normal(readings.shape)
         return pl.DataFrame({**contexts, **dict(zip(model.sensors, readings.T, strict=True))})
-
-
-def _written(parts: list[_Part], workers: int) -> Iterator[None]:
-    if workers == 1 or len(parts) < 2:
-        yield from map(_Part.write, parts)
-        return
-    context = get_context("spawn")
-    with ProcessPoolExecutor(workers, context, _end_with, (os.getpid(),)) as pool:
-        try:
-            yield from pool.map(_Part.write, parts)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-
-
-def _end_with(parent: int) -> None:
-    """A worker whose parent was killed ends by itself: nobody will take what it makes."""
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(1.0)
-        os._exit(1)
-
-    Thread(target=watch, daemon=True).start()
 
 
 def _begin(parts: Path, key: str) -> None:

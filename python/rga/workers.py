@@ -1,0 +1,157 @@
+"""Tasks in several processes: of this machine, or of a Dask cluster."""
+
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
+from contextlib import AbstractContextManager, contextmanager
+from importlib.metadata import PackageNotFoundError, version
+from itertools import islice
+from multiprocessing import get_context
+from threading import Lock, Thread
+from typing import Any, TypeVar
+
+from rga.errors import InputError
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+#: an executor, and a count of the processes that it has now
+Processes = tuple[Executor, Callable[[], int]]
+
+#: time that a Dask cluster has to answer [s]
+PATIENCE = 5.0
+_ALONE = Lock()
+
+
+def finished(
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    *,
+    workers: int = 1,
+    dask: str | None = None,
+) -> Iterator[tuple[Task, Future[Result]]]:
+    """Tasks as they are finished, each with its result or error.
+
+    A task is taken when a process is free for it, so that tasks may be made as they are needed.
+
+    Args:
+        function: of a module that the processes can import.
+        tasks: can be pickled, as can be the results and errors.
+        workers: processes of this machine; 1: this one.
+        dask: address of the scheduler of a Dask cluster; its processes do the work instead.
+
+    Raises:
+        InputError: the cluster does not answer, cannot run rga, or is lost.
+    """
+    waiting = iter(tasks)
+    with _processes(workers, dask) as (executor, count):
+        going: dict[Future[Result], Task] = {}
+        while True:
+            # A cluster that has no worker left may get one again.
+            for task in islice(waiting, max(count(), 1) - len(going)):
+                going[executor.submit(_alone, function, task)] = task
+            if not going:
+                return
+            for future in wait(going, return_when=FIRST_COMPLETED).done:
+                if future.cancelled():
+                    raise CancelledError
+                yield going.pop(future), future
+
+
+def _alone(function: Callable[[Task], Result], task: Task) -> Result:
+    """One task at a time in a process: limits of numerical threads hold for all of its threads."""
+    with _ALONE:
+        return function(task)
+
+
+def _processes(workers: int, dask: str | None) -> AbstractContextManager[Processes]:
+    if dask is not None:
+        return _cluster(dask)
+    return _here() if workers == 1 else _local(workers)
+
+
+@contextmanager
+def _here() -> Iterator[Processes]:
+    with _Here() as executor:
+        yield executor, lambda: 1
+
+
+@contextmanager
+def _local(workers: int) -> Iterator[Processes]:
+    context = get_context("spawn")
+    with ProcessPoolExecutor(workers, context, _end_with, (os.getpid(),)) as pool:
+        yield pool, lambda: workers
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Processes]:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InputError(
+            "Dask's package distributed is not installed", "--dask", "pip install 'rga[dask]'"
+        ) from None
+    where = f"Dask cluster {address!r}"
+    try:
+        if not address:
+            raise ValueError("the address is empty")
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"no Dask scheduler answers: {error}",
+            where,
+            "give the address that `dask scheduler` shows, such as tcp://host:8786",
+        ) from None
+    with client:
+        _check(client, where)
+        try:
+            yield client.get_executor(pure=False), lambda: len(client.nthreads())
+        except (OSError, CancelledError):
+            raise InputError(
+                "the cluster was lost", where, "see to its scheduler, and begin again"
+            ) from None
+
+
+def _check(client: Any, where: str) -> None:
+    """Refuse a cluster without workers, or whose workers have another rga or none."""
+    needed = version("rga")
+    remedy = f"install rga {needed} where the workers run"
+    try:
+        present = client.run(version, "rga")
+    except PackageNotFoundError:
+        raise InputError("a worker does not have rga", where, remedy) from None
+    if not present:
+        raise InputError("it has no worker", where, "start one with `dask worker ADDRESS`")
+    for worker, found in present.items():
+        if found != needed:
+            raise InputError(f"the worker {worker} has rga {found}", where, remedy)
+
+
+class _Here(Executor):
+    """Does every task at once, in this process."""
+
+    def submit(self, function: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*given, **named))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def _end_with(parent: int) -> None:
+    """A worker whose parent was killed ends by itself: nobody will take what it makes."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
