@@ -115,7 +115,7 @@ class Yardstick:
         for one in self._candidates:
             known = one.priors and one.priors.keys() <= truth.values.keys()
             if known and truth.is_at({"kind": one.name, **one.place}):
-                return one.beginning(truth.onset, truth.profile)
+                return one.beginning(truth.onset, truth.profile, truth.end)
         return None
 
     def _seen(self, change: FloatArray) -> FloatArray:
@@ -135,7 +135,7 @@ class Yardstick:
         ]
         least, nearest = size, None
         screening = Screening(alone, self._base, others)
-        alike = others[0].beginning(truth.onset, truth.profile)
+        alike = others[0].beginning(truth.onset, truth.profile, truth.end)
         for prospect in screening.again(alone, self._base, (), alike)[:RIVALS]:
             one = fit(alone, self._base, [prospect.hypothesis], prospect.z)
             other = covariance.reduce((one.simulated - problem.simulated).T[None])
