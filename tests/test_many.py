@@ -45,7 +45,7 @@ def alone(bridges: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return output
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def cluster() -> Iterator[str]:
     """A Dask cluster: one process with two threads that must not work at once."""
     distributed = pytest.importorskip("distributed", reason="needs rga[dask]")
