@@ -23,6 +23,7 @@ def test_a_stiff_truss_that_softens_with_warmth(rate: float) -> None:
         for k in range(0, 90, 10)
     ]
     anew = np.concatenate(few)
+    assert Simulator(model).predict(contexts).tobytes() == whole.tobytes()
     assert np.abs(whole - anew).max() <= 1e-10 * np.abs(anew).max()
     assert (np.abs(whole - anew).max(0) <= 1e-9 * np.abs(anew).max(0)).all()
 

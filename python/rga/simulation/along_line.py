@@ -62,7 +62,12 @@ def between(
         for point in set(points) - known.keys():
             known[point] = solve(first + point * (last - first))
         there = np.stack([known[point] for point in points])
-        found: Callable[[FloatArray], FloatArray] = BarycentricInterpolator(points, there)
+        # The weights of Chebyshev points are known; else they are worked out in random order.
+        weights = (-1.0) ** np.arange(count)
+        weights[[0, -1]] /= 2
+        found: Callable[[FloatArray], FloatArray] = BarycentricInterpolator(
+            points, there, wi=weights
+        )
         return found
 
     tried = np.linspace(0.0, 1.0, TRIED)
