@@ -148,6 +148,20 @@ def test_an_address_that_does_not_answer(
         assert "such as tcp://host:8786" in outcome.err
 
 
+def test_a_port_that_never_answers(
+    bridges: Path, tmp_path: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("distributed", reason="needs rga[dask]")
+    monkeypatch.setattr("rga.workers.PATIENCE", 0.5)
+    with socket.socket() as silent:
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        outcome = rga("diagnose-many", bridges, "-o", tmp_path / "out", "--dask", address)
+    assert outcome.code == 2
+    assert "no Dask scheduler answers" in outcome.err
+
+
 def test_without_dask_the_error_says_what_to_install(
     bridges: Path, tmp_path: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -102,7 +102,9 @@ def _cluster(address: str) -> Iterator[Processes]:
     try:
         if not address:
             raise ValueError("the address is empty")
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client = _within(
+            2 * PATIENCE, lambda: Client(address, timeout=PATIENCE, set_as_default=False)
+        )
     except (OSError, ValueError) as error:
         raise InputError(
             f"no Dask scheduler answers: {error}",
@@ -117,6 +119,23 @@ def _cluster(address: str) -> Iterator[Processes]:
             raise InputError(
                 "the cluster was lost", where, "see to its scheduler, and begin again"
             ) from None
+
+
+def _within(seconds: float, connect: Callable[[], Any]) -> Any:
+    """A connection; TimeoutError where a port takes one and never answers."""
+    made: Future[Any] = Future()
+
+    def run() -> None:
+        try:
+            made.set_result(connect())
+        except Exception as error:
+            made.set_exception(error)
+
+    Thread(target=run, daemon=True).start()
+    try:
+        return made.result(seconds)
+    except TimeoutError:
+        raise TimeoutError(f"nothing comes back in {seconds:g} s") from None
 
 
 def _check(client: Any, where: str) -> None:
