@@ -26,6 +26,18 @@ def observe(world: World, contexts: Contexts, time: Array) -> Array:
     return reading
 
 
+def slopes(world: World, contexts: Contexts, time: Array) -> dict[str, Array]:
+    """Derivatives of the channels by every context, [n, c] each."""
+    found = {}
+    for name, variable in world.model["context"].items():
+        low, high = variable["range"]
+        step = 1e-3 * (high - low)
+        ahead = observe(world, {**contexts, name: contexts[name] + step}, time)
+        behind = observe(world, {**contexts, name: contexts[name] - step}, time)
+        found[name] = (ahead - behind) / (2.0 * step)
+    return found
+
+
 def _spoil(
     channel: Array, op: str, amount: float, time: Array, world: World, contexts: Contexts
 ) -> None:

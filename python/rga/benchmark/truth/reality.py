@@ -13,7 +13,7 @@ from .contexts import courses, errors
 from .draft import Bridge
 from .effect import Setting
 from .frame import Array
-from .gauges import observe
+from .gauges import observe, slopes
 from .noise import long_run_variance, stream
 from .response import Contexts, respond
 from .score import d_prime
@@ -143,12 +143,10 @@ def _sight(
     latent: frozenset[str],
 ) -> Sight:
     """What the given channels can see where a context was not measured."""
-    derivatives, spread = [], []
-    for name, variable in world.model["context"].items():
-        low, high = variable["range"]
-        step = 1e-3 * (high - low)
-        ahead = observe(world, {**contexts, name: contexts[name] + step}, time)
-        behind = observe(world, {**contexts, name: contexts[name] - step}, time)
-        derivatives.append(of_given(ahead - behind, given) / (2.0 * step))
-        spread.append((high - low) / np.sqrt(12.0) if name in latent else errors_sd[name])
+    context = world.model["context"]
+    derivatives = [of_given(one, given) for one in slopes(world, contexts, time).values()]
+    spread = [
+        float(np.ptp(context[name]["range"])) / np.sqrt(12.0) if name in latent else errors_sd[name]
+        for name in context
+    ]
     return Sight(np.stack(derivatives, axis=2), np.array(spread), shares, variance)

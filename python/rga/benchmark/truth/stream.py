@@ -14,7 +14,7 @@ from .case_study import case_study_bridge
 from .draft import Bridge
 from .effect import Setting, Span
 from .frame import Array
-from .gauges import observe
+from .gauges import observe, slopes
 from .hidden import HIDDEN, sized
 from .noise import autoregressive, long_run_variance, missing, stream
 from .operation import event, ordinary
@@ -131,14 +131,11 @@ def _drift(time: Array, contexts: Contexts, weight: Array) -> dict[str, Any]:
 
 
 def _sight(world: World, contexts: Contexts, time: Array, variance: Array) -> Sight:
-    derivatives, spread = [], []
-    for name, variable in world.model["context"].items():
-        low, high = variable["range"]
-        step = 1e-3 * (high - low)
-        ahead = observe(world, {**contexts, name: contexts[name] + step}, time)
-        behind = observe(world, {**contexts, name: contexts[name] - step}, time)
-        derivatives.append((ahead - behind) / (2.0 * step))
-        spread.append(variable.get("noise", (high - low) / np.sqrt(12.0)))
+    spread = [
+        variable.get("noise", float(np.ptp(variable["range"])) / np.sqrt(12.0))
+        for variable in world.model["context"].values()
+    ]
+    derivatives = list(slopes(world, contexts, time).values())
     shares = list(respond(world, contexts, time)[1].values())
     return Sight(np.stack(derivatives, axis=2), np.array(spread), shares, variance)
 
