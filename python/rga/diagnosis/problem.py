@@ -19,6 +19,8 @@ STEP = 1e-3
 LEAST_OWN_NOISE = 0.6
 #: how well measured contexts are calibrated: offset in deviations of their noise, and gain [-]
 OFFSET, GAIN = 0.3, 0.005
+#: share of such a change that the courses of the loads may leave
+FOLLOWED = 1e-6
 #: a random effect, float[rows, sensors], with its prior spread
 Calibration = tuple[FloatArray, float]
 
@@ -119,7 +121,7 @@ def pose(
     given = simulator if before is None else before.given
     # What a cause does is no pattern that every channel may show a little of.
     patterns = basis if given is simulator else load_basis(given, data)
-    calibrations = [*_calibrations(belief, jacobian, noise), *more]
+    calibrations = [*_calibrations(belief, jacobian, noise, patterns), *more]
     scatter = scatter_effects(simulator, data, simulated, patterns, factors, calibrations)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
@@ -139,16 +141,27 @@ def pose(
     )
 
 
-def _calibrations(belief: Belief, jacobian: FloatArray, noise: Noise) -> list[Calibration]:
-    """What measured contexts do that are off for the whole record."""
-    found = []
+def _calibrations(
+    belief: Belief, jacobian: FloatArray, noise: Noise, basis: FloatArray
+) -> list[Calibration]:
+    """What measured contexts do that are off for the whole record.
+
+    Those that act along courses of the loads; what else a place that is off does is dear to follow,
+    and small.
+    """
+    courses, _ = np.linalg.qr(np.column_stack([np.ones(len(basis)), basis]))
+    found: list[Calibration] = []
     for number, name in enumerate(belief.spread):
         if name in belief.latent:
             continue
         along, course = jacobian[:, :, number], belief.centre[name]
         found.append((along, OFFSET * float(noise.context_sigma[number])))
         found.append((along * course[:, None], GAIN))
-    return found
+    return [
+        (change, spread)
+        for change, spread in found
+        if ((change - courses @ (courses.T @ change)) ** 2).sum() <= FOLLOWED * (change**2).sum()
+    ]
 
 
 def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) -> FloatArray:
