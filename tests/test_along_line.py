@@ -1,12 +1,15 @@
 """Structures along a line of parameters: interpolated responses against structures solved anew."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from rga.benchmark.truth import draw_case
 from rga.model import read_effect, read_model
+from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
-from rga.simulation.along_line import MOST, between, positions
+from rga.simulation.along_line import FEWEST, MOST, between, positions
 
 
 @pytest.mark.parametrize("rate", [-4e-3, 8e-3])
@@ -35,7 +38,7 @@ def test_only_parameters_on_a_line_are_interpolated() -> None:
     place = positions([3.0, 1.0] + line * [2.0, -0.5])
     assert place is not None
     assert np.allclose(place, line[:, 0])
-    assert positions(line[:MOST]) is None
+    assert positions(line[:FEWEST]) is None
 
 
 def test_what_no_few_points_follow_is_told() -> None:
@@ -44,3 +47,18 @@ def test_what_no_few_points_follow_is_told() -> None:
     assert smooth is not None
     assert smooth(np.array([0.3]))[0, 0, 0] == pytest.approx(1 / 1.5, rel=1e-11)
     assert between(*ends, lambda state: np.array([[abs(state[0] - 0.4)]])) is None
+
+
+def test_a_stop_that_grows_is_no_line(small_bridge: dict[str, Any]) -> None:
+    time = np.arange(80.0)
+    contexts = {"time": time, **{name: 40.0 * np.cos(time) for name in small_bridge["context"]}}
+    stop = {"kind": "support_gap", "support": "east", "dof": "ux", "gap": 1e-5, "stiffness": 1e7}
+    model = read_model(small_bridge, "small bridge")
+
+    def shown(effect: dict[str, Any]) -> FloatArray:
+        extended = model.extended({"stop": read_effect(effect, "stop")})
+        return Simulator(extended).predict(contexts)
+
+    grown = shown({**stop, "onset": 10.0, "profile": "ramp", "end": 60.0})
+    assert np.allclose(grown[60:], shown(stop)[60:], rtol=1e-12)
+    assert np.abs(grown[60:] - shown({**stop, "gap": 0.0})[60:]).max() > 1e-3

@@ -94,7 +94,7 @@ class Data:
     belief: Belief
     zero: Values
     _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, init=False, compare=False)
-    _tried: dict[tuple[Vicinity, str], FloatArray] = field(
+    _tried: dict[tuple[Vicinity, str, bool], tuple[FloatArray, bool]] = field(
         default_factory=dict, init=False, compare=False
     )
 
@@ -136,16 +136,29 @@ class Data:
         Raises:
             InputError: the effects cannot be simulated.
         """
-        key = repr(effects)
+        return self._kept(about, effects, True)[0]
+
+    def nearly(self, about: Vicinity, effects: dict[str, Effect]) -> tuple[FloatArray, bool]:
+        """The same as `Vicinity.nearly` has them, and whether they are exact."""
+        return self._kept(about, effects, False)
+
+    def _kept(
+        self, about: Vicinity, effects: dict[str, Effect], exactly: bool
+    ) -> tuple[FloatArray, bool]:
+        key = about, repr(effects), exactly
         known = self._tried
-        if (about, key) not in known:
-            known[about, key] = self.read(*about.trial(effects))
+        if key not in known:
+            if exactly:
+                known[key] = self.read(*about.trial(effects)), True
+            else:
+                read, exact = about.nearly(effects)
+                known[key] = self._told(read[:, self.columns]), exact
             if len(known) > TRIALS:
                 del known[next(iter(known))]
-        return known[about, key]
+        return known[key]
 
     def change(self, about: Vicinity, effect: Effect) -> tuple[IntArray, FloatArray]:
-        """What an effect changes about a simulation, on the channels that it touches.
+        """What an effect changes about a simulation, nearly, on the channels that it touches.
 
         Returns:
             Numbers of the channels, int[c], and their change, float[rows, c].
@@ -159,8 +172,8 @@ class Data:
             channels = np.flatnonzero(touched)
             columns = [self.columns[channel] for channel in channels]
             return channels, self._told(changed[:, columns]) - self._told(about.read[:, columns])
-        changed = self.read(*about.trial({"trial": effect}))
-        change = changed - self._told(about.read[:, self.columns])
+        nearly, _ = about.nearly({"trial": effect})
+        change = self._told(nearly[:, self.columns]) - self._told(about.read[:, self.columns])
         channels = np.flatnonzero(change.any(0))
         return channels, change[:, channels]
 

@@ -25,6 +25,8 @@ from rga.simulation import Simulator
 
 STEP = 1e-3
 STEPS = 12
+#: points at which a cheap simulation is put right at most, and how far a step there is shortened
+CORRECTED = 3
 #: bounds of z, of a step in z, of how often a step is shortened, and of the loss worth a step
 FARTHEST, LONGEST, SHORTENED, ENOUGH = 8.0, 2.0, 6, 1e-3
 
@@ -40,6 +42,7 @@ class Fit:
         signatures: S, derivatives by z, float[parameters, sensors, rows].
         information: I + S' C^-1 S, float[parameters, parameters].
         log_evidence: against no effect at all.
+        exact: False where the simulation leaves out what effects do to each other.
     """
 
     hypotheses: tuple[Hypothesis, ...]
@@ -48,6 +51,7 @@ class Fit:
     signatures: FloatArray
     information: FloatArray
     log_evidence: float
+    exact: bool = True
     _simulators: dict[Simulator, Simulator] = field(
         default_factory=dict, init=False, compare=False, repr=False
     )
@@ -95,6 +99,7 @@ def fit(
     hypotheses: Sequence[Hypothesis],
     start: Sequence[float] | FloatArray,
     beside: Fit | None = None,
+    exactly: bool = True,
 ) -> Fit:
     """The most likely parameters of hypotheses together, by Gauss-Newton steps on the real model.
 
@@ -105,62 +110,129 @@ def fit(
         start: coordinates to begin with.
         beside: a fit of hypotheses that stand first among these: they move along its signatures,
             which costs less than to simulate them anew.
+        exactly: False where what `Vicinity.nearly` gives will do.
 
     Returns:
         The fit; its log evidence is minus infinity where the model cannot be simulated.
     """
-    covariance, data = problem.covariance, problem.data
+    data = problem.data
     known = 0 if beside is None else len(beside.z)
     about = data.about(base if beside is None else beside.simulator(base))
     added = hypotheses if beside is None else hypotheses[len(beside.hypotheses) :]
 
-    def simulate(z: FloatArray) -> FloatArray | None:
-        try:
-            simulated = data.tried(about, effects_at(added, z[known:], len(hypotheses)))
-        except InputError:
-            return None
+    def effects(z: FloatArray) -> dict[str, Effect]:
+        return effects_at(added, z[known:], len(hypotheses))
+
+    def with_known(simulated: FloatArray, z: FloatArray) -> FloatArray:
         if beside is None or not known:
             return simulated
         return np.asarray(simulated + np.tensordot(z[:known] - beside.z, beside.signatures, 1).T)
 
-    def misfit(simulated: FloatArray, z: FloatArray) -> tuple[float, Reduced]:
-        residual = covariance.reduce(problem.residual(simulated).T[None])
-        return float(covariance.squares(residual)[0] + z @ z), residual
-
     z = np.array(start, dtype=float)
-    simulated = simulate(z)
-    if simulated is None:
+    try:
+        nearly, exact = data.nearly(about, effects(z))
+        final = exact or not exactly
+        there = nearly if final else data.tried(about, effects(z))
+    except InputError:
         return _impossible(problem, hypotheses, z)
-    loss, residual = misfit(simulated, z)
-    information = np.eye(len(z))
-    signatures = np.zeros((0, *simulated.T.shape))
-    for step in range(STEPS + 1 if len(z) else 0):
-        here = _signatures(simulate, simulated, z, known)
-        if here is None:
+    # What the cheap simulation misses is put right at every point that it leads to.
+    missed = there - nearly
+
+    def simulate(z: FloatArray) -> FloatArray | None:
+        try:
+            return with_known(data.nearly(about, effects(z))[0] + missed, z)
+        except InputError:
+            return None
+
+    def corrected(z: FloatArray) -> _Point | None:
+        try:
+            return _Point.of(problem, z, with_known(data.tried(about, effects(z)), z))
+        except InputError:
+            return None
+
+    here = _Point.of(problem, z, with_known(there, z))
+    signatures = None if beside is None else beside.signatures
+    for _ in range(CORRECTED):
+        reached = _descended(problem, simulate, here, signatures)
+        if reached is None:
             return _impossible(problem, hypotheses, z)
-        signatures = here if beside is None else np.concatenate([beside.signatures, here])
-        reduced = covariance.reduce(signatures)
-        information = covariance.product(reduced, reduced) + np.eye(len(z))
-        if step == STEPS:
+        nearest, columns, information = reached
+        if final:
+            here = nearest
             break
-        move = np.linalg.solve(information, covariance.product(reduced, residual)[:, 0] - z)
-        move *= min(1.0, LONGEST / max(np.abs(move).max(), 1e-12))
-        lower = None
-        for _ in range(SHORTENED):
-            trial = np.clip(z + move, -FARTHEST, FARTHEST)
-            there = simulate(trial)
-            if there is not None and (found := misfit(there, trial))[0] < loss:
-                lower = found
-                break
-            move = move / 3
-        if lower is None or there is None:
+        lower = _lower(here, np.asarray(nearest.z - here.z), corrected, CORRECTED)
+        if lower is None:
             break
-        gained, z, simulated, (loss, residual) = loss - lower[0], trial, there, lower
+        nearly = with_known(data.nearly(about, effects(lower.z))[0], lower.z)
+        missed, gained, here = lower.simulated - nearly, here.loss - lower.loss, lower
         if gained < ENOUGH:
             break
-    return _weighed(
-        problem, base, Fit(tuple(hypotheses), z, simulated, signatures, information, 0.0), loss
-    )
+    known_exactly = exact or exactly
+    found = Fit(tuple(hypotheses), here.z, here.simulated, columns, information, 0.0, known_exactly)
+    return _weighed(problem, base, found, here.loss)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Coordinates, the simulation there, and its residual with what it costs."""
+
+    z: FloatArray
+    simulated: FloatArray
+    residual: Reduced
+    loss: float
+
+    @classmethod
+    def of(cls, problem: Problem, z: FloatArray, simulated: FloatArray) -> "_Point":
+        residual = problem.covariance.reduce(problem.residual(simulated).T[None])
+        loss = float(problem.covariance.squares(residual)[0] + z @ z)
+        return cls(z, simulated, residual, loss)
+
+
+def _descended(
+    problem: Problem,
+    simulate: Callable[[FloatArray], FloatArray | None],
+    here: _Point,
+    known: FloatArray | None,
+) -> tuple[_Point, FloatArray, FloatArray] | None:
+    """Gauss-Newton steps of a simulation: where they end, with signatures and information there.
+
+    Args:
+        problem: gives residual and covariance.
+        simulate: by coordinates; None where it cannot be.
+        here: to start from.
+        known: signatures of the first coordinates; None: of none.
+
+    Returns:
+        None where there is no derivative.
+    """
+    covariance, count = problem.covariance, len(here.z)
+    given = np.zeros((0, *here.simulated.T.shape)) if known is None else known
+    if not count:
+        return here, given, np.eye(0)
+
+    def point(z: FloatArray) -> _Point | None:
+        simulated = simulate(z)
+        return None if simulated is None else _Point.of(problem, z, simulated)
+
+    for step in range(STEPS + 1):
+        columns = _signatures(simulate, here, len(given))
+        if columns is None:
+            return None
+        signatures = np.concatenate([given, columns])
+        reduced = covariance.reduce(signatures)
+        information = covariance.product(reduced, reduced) + np.eye(count)
+        if step == STEPS:
+            break
+        along = covariance.product(reduced, here.residual)[:, 0]
+        move = np.linalg.solve(information, along - here.z)
+        length = min(1.0, LONGEST / max(np.abs(move).max(), 1e-12))
+        lower = _lower(here, np.asarray(length * move), point, SHORTENED)
+        if lower is None:
+            break
+        gained, here = here.loss - lower.loss, lower
+        if gained < ENOUGH:
+            break
+    return here, signatures, information
 
 
 def refit(problem: Problem, base: Simulator, one: Fit) -> Fit:
@@ -200,19 +272,28 @@ def _weighed(problem: Problem, base: Simulator, one: Fit, loss: float) -> Fit:
     return replace(one, log_evidence=log_evidence)
 
 
+def _lower(
+    here: _Point, move: FloatArray, point: Callable[[FloatArray], _Point | None], shortened: int
+) -> _Point | None:
+    """A point of less loss on the way of a move, or None where even a short one has more."""
+    for _ in range(shortened):
+        there = point(np.clip(here.z + move, -FARTHEST, FARTHEST))
+        if there is not None and there.loss < here.loss:
+            return there
+        move = np.asarray(move / 3)
+    return None
+
+
 def _signatures(
-    simulate: Callable[[FloatArray], FloatArray | None],
-    simulated: FloatArray,
-    z: FloatArray,
-    known: int,
+    simulate: Callable[[FloatArray], FloatArray | None], here: _Point, known: int
 ) -> FloatArray | None:
-    """Derivatives of the simulation by z behind those known, float[parameters, sensors, rows]."""
-    columns = np.zeros((len(z) - known, *simulated.T.shape))
-    for number, along in enumerate(np.eye(len(z))[known:]):
-        ahead = simulate(z + STEP * along)
+    """Derivatives of a simulation by z behind those known, float[parameters, sensors, rows]."""
+    columns = np.zeros((len(here.z) - known, *here.simulated.T.shape))
+    for number, along in enumerate(np.eye(len(here.z))[known:]):
+        ahead = simulate(here.z + STEP * along)
         if ahead is None:
             return None
-        columns[number] = (ahead - simulated).T / STEP
+        columns[number] = (ahead - here.simulated).T / STEP
     return columns
 
 

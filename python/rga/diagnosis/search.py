@@ -25,6 +25,8 @@ FITTED = 10
 JUDGED = 3
 #: prospects that are tried because they would stand out of less scatter
 HIDDEN = 5
+#: log-odds to the likeliest within which fits are made exact
+CLOSE = 15.0
 EXCHANGES = 3
 WORTH_EXCHANGE = 1.0
 ROUNDS = 4
@@ -165,11 +167,8 @@ def _best(
     problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]
 ) -> Fit | None:
     """The likeliest of the prospects beside the causes so far, if it is to be named."""
-    fits = [
-        _with_one_more(problem, base, current, one)
-        for one in worth_fitting(prospects)
-        if one.score > 0
-    ]
+    promising = [one for one in worth_fitting(prospects) if one.score > 0]
+    fits = fitted_beside(problem, base, current, promising)
     best = max(fits, key=evidence, default=current)
     return best if best.log_evidence - current.log_evidence >= NAMED else None
 
@@ -186,17 +185,15 @@ def _hidden_by_scatter(
     What changes the response of many members a little passes for scatter, and is looked for where
     scatter is low.
     """
-    fits = [
-        _with_one_more(problem, base, current, one) for one in prospects[:JUDGED] if one.score > 0
-    ]
+    promising = [one for one in prospects[:JUDGED] if one.score > 0]
+    fits = fitted_beside(problem, base, current, promising)
     if (problem.levels > MEDIANS).any():
         usual = np.minimum(problem.levels, MEDIANS)
         covariance = problem.covariance.with_spread(problem.scatter.spread(usual))
         lower = replace(problem, covariance=covariance, levels=usual)
         hidden = screening.again(lower, current.simulator(base), current.hypotheses)
-        fits += [
-            _with_one_more(lower, base, current, one) for one in hidden[:HIDDEN] if one.score > 0
-        ]
+        promising = [one for one in hidden[:HIDDEN] if one.score > 0]
+        fits += fitted_beside(lower, base, current, promising)
     if not fits:
         return None
     before = _at_free_levels(problem, current)
@@ -222,9 +219,22 @@ def _swapped(
     return problem, current
 
 
-def _with_one_more(problem: Problem, base: Simulator, current: Fit, prospect: Prospect) -> Fit:
-    together = [*current.hypotheses, prospect.hypothesis]
-    return fit(problem, base, together, [*current.z, *prospect.z], beside=current)
+def fitted_beside(
+    problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]
+) -> list[Fit]:
+    """Each prospect fitted beside the causes of a fit; those near the likeliest exactly."""
+
+    def beside(hypothesis: Hypothesis, z: Sequence[float], exactly: bool) -> Fit:
+        return fit(problem, base, [*current.hypotheses, hypothesis], z, current, exactly)
+
+    fits = [beside(one.hypothesis, [*current.z, *one.z], False) for one in prospects]
+    near = max(map(evidence, fits), default=0.0) - CLOSE
+    return [
+        one
+        if one.exact or one.log_evidence < near
+        else beside(one.hypotheses[-1], list(one.z), True)
+        for one in fits
+    ]
 
 
 def _at_free_levels(problem: Problem, one: Fit) -> float:
@@ -334,9 +344,8 @@ def _alternatives(
     beginning = None if cause.onset is None else cause
     simulator = without.simulator(base)
     prospects = screening.again(problem, simulator, current.hypotheses, beginning)
-    found = []
-    for prospect in worth_fitting(prospects):
-        one = _with_one_more(problem, base, without, prospect)
-        behind = current.log_evidence - one.log_evidence
-        found.append(Alternative(prospect.hypothesis, one, behind))
+    found = [
+        Alternative(one.hypotheses[-1], one, current.log_evidence - one.log_evidence)
+        for one in fitted_beside(problem, base, without, worth_fitting(prospects))
+    ]
     return sorted(found, key=lambda one: -one.fit.log_evidence)

@@ -113,6 +113,11 @@ class Structure:
         default_factory=dict, repr=False, compare=False
     )
 
+    @property
+    def linear(self) -> bool:
+        """True where loads that add up make responses that add up."""
+        return not (self.bearings or self.laws or self.nonlinear)
+
     def once(self, build: Callable[[], T], *of: object) -> T:
         """What `build` makes of some objects and this structure, built at the first call.
 

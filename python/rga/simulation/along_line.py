@@ -1,4 +1,4 @@
-"""Many structures along a straight line of parameters: a few are solved, the rest lie between.
+"""Many structures along straight lines of parameters: a few are solved, the rest lie between.
 
 The response of a structure to unit loads is a rational function of its parameters, smooth between
 stable structures. So its interpolant in Chebyshev points converges geometrically (Trefethen,
@@ -7,18 +7,92 @@ they add is rounding.
 """
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
 from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray, Structure
+
+if TYPE_CHECKING:
+    from rga.simulation.plan import Request
 
 #: Chebyshev points to begin with and at most
-FIRST, MOST = 9, 33
+FIRST, MOST = 9, 65
 #: share of the largest response that the last doubling may change
-EXACT = 1e-11
+EXACT = 1e-10
 #: places at which that is looked for
 TRIED = 40
+#: values of a parameter that are few, and states on a line that are solved one by one
+FEW, FEWEST = 4, 33
+#: rows that are answered together
+TOGETHER = 256
+
+
+def along_line(
+    request: "Request", solve: Callable[[Structure], tuple[FloatArray, FloatArray]]
+) -> FloatArray | None:
+    """Rows whose structures lie on a few lines, without memory, play or large displacements.
+
+    Args:
+        request: what is asked.
+        solve: coefficients of the load patterns on a structure, float[rows, patterns], and the
+            response to each pattern, float[patterns, outputs]; patterns in the same order always.
+
+    Returns:
+        float[rows, outputs], or None where few points do not suffice.
+    """
+    if not request.fixed_patterns:
+        return None
+    found: FloatArray | None = None
+    for chosen in _apart(request.states):
+        states = request.states[chosen]
+        rows = np.flatnonzero(np.isin(request.state_of_row, chosen))
+        of_rows = np.searchsorted(chosen, request.state_of_row[rows])
+        coefficients: list[FloatArray] = []
+
+        def response_at(state: FloatArray, known: list[FloatArray] = coefficients) -> FloatArray:
+            q, response = solve(request.change(state))
+            known[:] = [q]
+            return response
+
+        place = positions(states)
+        if place is None and len(states) > FEWEST:
+            return None
+        # A stop that comes with time is none at one end of its line.
+        ends = states if place is None else states[[np.argmin(place), np.argmax(place)]]
+        if not all(request.change(state).linear for state in ends):
+            return None
+        if place is None:
+            each = np.stack([response_at(state) for state in states])
+            part = np.einsum("tp,tpo->to", coefficients[0][rows], each[of_rows])
+        else:
+            response = between(ends[0], ends[-1], response_at)
+            if response is None:
+                return None
+            few = [slice(start, start + TOGETHER) for start in range(0, len(rows), TOGETHER)]
+            parts = [
+                np.einsum("tp,tpo->to", coefficients[0][rows[some]], response(place[of_rows[some]]))
+                for some in few
+            ]
+            part = np.concatenate(parts)
+        if found is None:
+            found = np.empty((len(request.state_of_row), part.shape[1]))
+        found[rows] = part
+    return found
+
+
+def _apart(states: FloatArray) -> list[IntArray]:
+    """Numbers of the states that share the parameters of few values, in their order.
+
+    What begins late takes two values; what follows a context takes many.
+    """
+    few = [len(np.unique(column)) <= FEW for column in states.T]
+    if not any(few):
+        return [np.arange(len(states))]
+    _, part = np.unique(states[:, few], axis=0, return_inverse=True)
+    return [np.flatnonzero(part.ravel() == number) for number in range(part.max() + 1)]
 
 
 def positions(states: FloatArray) -> FloatArray | None:
@@ -28,7 +102,7 @@ def positions(states: FloatArray) -> FloatArray | None:
 
     >>> positions(np.array([[1.0, 2.0], [2.0, 4.0]]))
     """
-    if len(states) <= MOST or not np.isfinite(states).all():
+    if len(states) <= FEWEST or not np.isfinite(states).all():
         return None
     start, end = states[0], states[np.argmax(np.abs(states - states[0]).sum(1))]
     along = end - start

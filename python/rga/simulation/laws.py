@@ -70,6 +70,8 @@ def respond_with_laws(structure: Structure, linear: Linear, coefficients: FloatA
         pseudo = -stiffness * np.where(side == 0, idle, side * size)
         left = elongation + pseudo @ unit - apart[rows]
         slope = np.where(side == 0, (TRACE - 1) * stiffness, 0.0)
+        if len(laws) == 1:
+            return np.asarray(elongation - left / (1.0 + unit[0, 0] * slope))
         matrix = np.eye(len(laws)) + unit * slope[:, None, :]
         return np.asarray(elongation - np.linalg.solve(matrix, left[:, :, None])[:, :, 0])
 

@@ -12,7 +12,7 @@ from rga import _core
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
-from rga.simulation.along_line import between, positions
+from rga.simulation.along_line import along_line
 from rga.simulation.condensation import Condensation, DependentTerms
 from rga.simulation.factorisation import Factorisation
 from rga.simulation.friction import respond_with_friction
@@ -26,8 +26,6 @@ NOTHING: IntArray = np.zeros(0, np.int64)
 APART = 4
 #: terms that vary, beyond which a factorisation of the whole structure is no dearer
 MOST_TERMS = 32
-#: rows whose responses are interpolated together
-TOGETHER = 256
 #: condensed structures that a simulator keeps
 KEPT = 8
 Path = Literal["C1", "C2", "C3", "C4"]
@@ -139,7 +137,7 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
 
     if not loads or not sensors:
         return plan("C1"), np.zeros((len(rows), sensors))
-    if structure.bearings or structure.laws or structure.nonlinear:
+    if not structure.linear:
         return plan("C4"), _each_state(request)
     varied = None
     if len(request.states) == 1:
@@ -196,7 +194,13 @@ def linear_paths(
 
 
 def _each_state(request: Request) -> FloatArray:
-    straight = _along_line(request)
+    rows = np.arange(len(request.state_of_row))
+
+    def solve(structure: Structure) -> tuple[FloatArray, FloatArray]:
+        loads = request.loads(structure, rows)
+        return coefficients(loads), respond(structure, loads, structure.outputs)
+
+    straight = along_line(request, solve)
     if straight is not None:
         return straight
     parts = []
@@ -210,7 +214,7 @@ def _each_state(request: Request) -> FloatArray:
         if structure.nonlinear:
             parts.append(respond_deformed(structure, loads, chosen))
         elif structure.laws:
-            parts.append(_with_laws(request, structure, loads))
+            parts.append(with_laws(request, structure, loads))
         elif structure.bearings and changes >= APART:
             # Friction starts anew with each structure, and would never come to hold.
             raise InputError(
@@ -228,33 +232,8 @@ def _each_state(request: Request) -> FloatArray:
     return out
 
 
-def _along_line(request: Request) -> FloatArray | None:
-    """Rows whose structures lie on a line, without memory, play or large displacements."""
-    place = positions(request.states)
-    if place is None or not request.fixed_patterns:
-        return None
-    structure = request.change(request.states[0])
-    if structure.nonlinear or structure.laws or structure.bearings:
-        return None
-
-    def solve(state: FloatArray) -> FloatArray:
-        changed = request.change(state)
-        return respond(changed, request.loads(changed, NOTHING), changed.outputs)
-
-    first, last = request.states[[np.argmin(place), np.argmax(place)]]
-    response = between(first, last, solve)
-    if response is None:
-        return None
-    q = coefficients(request.loads(structure, np.arange(len(request.state_of_row))))
-    of_rows = place[request.state_of_row]
-    parts = [
-        np.einsum("tp,tpo->to", q[few : few + TOGETHER], response(of_rows[few : few + TOGETHER]))
-        for few in range(0, len(q), TOGETHER)
-    ]
-    return np.concatenate(parts)
-
-
-def _with_laws(request: Request, structure: Structure, loads: list[Load]) -> FloatArray:
+def with_laws(request: Request, structure: Structure, loads: list[Load]) -> FloatArray:
+    """A structure with play or slack under loads, float[rows, sensors] in SI units."""
     if structure.bearings:
         raise InputError(
             "friction and slack are not simulated together", "effects", "leave out one of them"

@@ -58,6 +58,25 @@ class Simulator:
         """A simulator of the same structure with more effects."""
         return Simulator(self.model.extended(dict(effects)), self._structure)
 
+    def calm(self, values: dict[str, Values]) -> "Simulator":
+        """The same without what gives every row a structure of its own, or corners or memory.
+
+        Args:
+            values: of all parameters, as `resolve` gives them.
+        """
+        kept = {}
+        for name, effect in self.model.effects.items():
+            if effect.structural:
+                structure = self._structure.copy()
+                effect.change_structure(structure, {k: c[-1] for k, c in values[name].items()})
+                varies = any(np.ptp(column) > 0 for column in values[name].values())
+                if varies or not structure.linear:
+                    continue
+            kept[name] = effect
+        if len(kept) == len(self.model.effects):
+            return self
+        return Simulator(self.model.model_copy(update={"effects": kept}), self._structure)
+
     @property
     def needed(self) -> set[str]:
         """Context variables that drive effects of the model."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +11,9 @@ from numpy.typing import ArrayLike
 from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Load, Structure
+from rga.simulation.along_line import along_line
 from rga.simulation.laws import respond_with_laws, terms_of
-from rga.simulation.plan import APART, coefficients
+from rga.simulation.plan import APART, Request, coefficients, with_laws
 from rga.simulation.reanalysis import Difference, Loaded, Reanalysis
 from rga.simulation.response import patterns, respond
 
@@ -78,7 +80,7 @@ class Vicinity:
         if len(request.states) > APART:
             return
         structures = [request.change(state) for state in request.states]
-        if any(one.bearings or one.laws or one.nonlinear for one in structures):
+        if not all(structure.linear for structure in structures):
             return
         self._of_row = request.state_of_row
         effects = self.simulator.model.effects
@@ -113,11 +115,53 @@ class Vicinity:
             InputError, UnstableStructureError: as `Simulator.respond`.
         """
         trial = self.simulator.extended(effects)
-        return trial, self._respond(trial, effects)
+        near = self._near(trial, effects)
+        return trial, trial.respond(self.contexts) if near is None else near
 
-    def _respond(self, trial: "Simulator", effects: Mapping[str, Effect]) -> "Response":
+    def nearly(self, effects: Mapping[str, Effect]) -> tuple[FloatArray, bool]:
+        """What the sensors show with more effects, at little cost.
+
+        Where a trial would solve structures anew, the effects are put on the simulation without
+        what makes it dear, each by itself and as if it always acted. What they change there is
+        added: all but the interplay of effects.
+
+        Args:
+            effects: as for `trial`, with the same errors.
+
+        Returns:
+            float[rows, sensors], and whether they are those of the trial.
+        """
+        if not effects:
+            return self.read, True
+        trial = self.simulator.extended(effects)
+        near = self._near(trial, effects)
+        if near is None and not self._calm._centres:
+            near = trial.respond(self.contexts)
+        if near is not None:
+            return trial.read(near), True
+        read = self.read.copy()
+        time = self.response.contexts["time"]
+        for name, effect in effects.items():
+            if effect.on_sensors:
+                read += self.read_with(effect) - self.read
+                continue
+            always = effect.model_copy(update={"onset": None, "profile": "step", "end": None})
+            tried, response = self._calm.trial({name: always})
+            read += effect.weight(time)[:, None] * (tried.read(response) - self._calm.read)
+        return read, False
+
+    @cached_property
+    def _calm(self) -> "Vicinity":
+        """The simulation without what gives every row a structure of its own, or corners."""
+        if self._centres:
+            return self
+        calm = self.simulator.calm(self.response.values)
+        return self if calm is self.simulator else Vicinity(calm, self.contexts)
+
+    def _near(self, trial: "Simulator", effects: Mapping[str, Effect]) -> "Response | None":
+        """The response of a trial out of what is known; None where it takes other solves."""
         if not self._centres:
-            return trial.respond(self.contexts)
+            return None
         if all(effect.on_sensors for effect in effects.values()):
             return self.response
         apart = self._settled and not any(map(_meddles, effects.values()))
@@ -128,15 +172,15 @@ class Vicinity:
             values = trial.resolve(self.response.contexts)
         request = trial.request(values, self._rows)
         if len(request.states) > APART:
-            return trial.respond(self.contexts)
+            quantities = self._along_line(trial, request, values, apart)
+            if quantities is None:
+                return None
+            return replace(self.response, values=values, quantities=quantities)
         parts = []
         for state in request.states:
-            structure = request.change(state)
-            if structure.bearings or structure.nonlinear:
-                return trial.respond(self.contexts)
-            part = self._quantities(trial, structure, values, apart)
+            part = self._quantities(trial, request, state, values, apart)
             if part is None:
-                return trial.respond(self.contexts)
+                return None
             parts.append(part)
         quantities = self._joined(parts, request.state_of_row)
         return replace(self.response, values=values, quantities=quantities)
@@ -144,19 +188,20 @@ class Vicinity:
     def stiffness_rates(self) -> dict[int, FloatArray]:
         """Derivatives by the logarithm of EA of members, by their numbers.
 
-        Those of truss members, and of frame members with springs at their ends.
+        Those of truss members, and of frame members with springs at their ends; about the
+        simulation without what is not linear, or varies from row to row.
 
         Returns:
-            float[rows, sensors] of each member, in the sensors' units; none where the structure
-            varies in too many ways.
+            float[rows, sensors] of each member, in the sensors' units.
         """
         parts = []
-        for centre in self._centres:
+        calm = self._calm
+        for centre in calm._centres:
             q = centre.coefficients
             parts.append({m: q @ rate for m, rate in centre.near.rates(centre.loaded).items()})
         members = set(parts[0]).intersection(*parts[1:]) if parts else set()
         return {
-            member: self._joined([part[member] for part in parts], self._of_row)
+            member: calm._joined([part[member] for part in parts], calm._of_row)
             for member in sorted(members)
         }
 
@@ -168,32 +213,72 @@ class Vicinity:
         return np.asarray(np.stack(parts)[of_row, np.arange(len(of_row))] * per_si)
 
     def _quantities(
-        self, trial: "Simulator", structure: Structure, values: dict[str, Values], apart: bool
+        self,
+        trial: "Simulator",
+        request: Request,
+        state: FloatArray,
+        values: dict[str, Values],
+        apart: bool,
     ) -> FloatArray | None:
         """What the sensors are to read of a structure under all rows, in SI units.
 
-        None where the structure has play or slack and is not near another.
+        None where the structure has bearings or large displacements.
         """
-        effects = trial.model.effects
-        where, centre = None, self._centres[0]
-        for one in self._centres:
-            where = one.near.differing(structure)
-            if where is not None:
-                centre = one
-                break
-        known = _known(centre, effects, structure, where is not None) if apart else {}
-        own = {
-            name: known[name] if name in known else effect.loads(structure, values[name], values)
-            for name, effect in effects.items()
-        }
-        loads = _changed(effects, own, structure, values)
+        structure = request.change(state)
+        if structure.bearings or structure.nonlinear:
+            return None
+        centre, where = self._nearest(structure)
+        known = _known(centre, trial.model.effects, structure, where is not None) if apart else {}
+        loads = _loads(trial, structure, values, known)
         if structure.laws:
-            return None if where is None else _with_laws(centre, structure, loads, where)
+            near = None if where is None else _with_laws(centre, structure, loads, where)
+            return with_laws(request, structure, loads) if near is None else near
         if where is None:
             few = _together(loads)
             return coefficients(few) @ respond(structure, few, structure.outputs)
         q, loaded = _under(centre, loads)
         return q @ centre.near.changed(loaded, structure, where)
+
+    def _along_line(
+        self, trial: "Simulator", request: Request, values: dict[str, Values], apart: bool
+    ) -> FloatArray | None:
+        """The same of rows whose structures lie on a line, in the sensors' units."""
+
+        def solve(structure: Structure) -> tuple[FloatArray, FloatArray]:
+            centre, where = self._nearest(structure)
+            near = where is not None
+            known = _known(centre, trial.model.effects, structure, near) if apart else {}
+            loads = _loads(trial, structure, values, known)
+            if where is None:
+                return coefficients(loads), respond(structure, loads, structure.outputs)
+            q, loaded = _under(centre, loads)
+            return q, centre.near.changed(loaded, structure, where)
+
+        quantities = along_line(request, solve)
+        return None if quantities is None else quantities * self._centres[0].near.structure.per_si
+
+    def _nearest(self, structure: Structure) -> tuple[Centre, Difference | None]:
+        """The centre that a structure is near, or any; and where they differ."""
+        for centre in self._centres:
+            where = centre.near.differing(structure)
+            if where is not None:
+                return centre, where
+        return self._centres[0], None
+
+
+def _loads(
+    trial: "Simulator",
+    structure: Structure,
+    values: dict[str, Values],
+    known: Mapping[str, list[Load]],
+) -> list[Load]:
+    """Loads of all effects of a trial on a structure, some of them known."""
+    effects = trial.model.effects
+    own = {
+        name: known[name] if name in known else effect.loads(structure, values[name], values)
+        for name, effect in effects.items()
+    }
+    return _changed(effects, own, structure, values)
 
 
 def _with_laws(
