@@ -52,6 +52,18 @@ class Belief:
             centre={name: column[chosen] for name, column in self.centre.items()},
         )
 
+    def distance(self, other: "Belief") -> float:
+        """How far best values of inferred contexts lie apart: root mean square over prior spread.
+
+        The largest of all contexts [-].
+        """
+        spread = {**self.spread, **{name: level for name, (level, _) in self.lines.items()}}
+        apart = [
+            float(np.sqrt(np.mean((self.table[name] - other.table[name]) ** 2))) / spread[name]
+            for name in {*self.lines, *self.latent}
+        ]
+        return max(apart, default=0.0)
+
     @property
     def inferred(self) -> bool:
         """True where a context was not measured: then a model's change moves it far."""

@@ -83,10 +83,6 @@ def compare(
             ([*causes.hypotheses, p.hypothesis], [*causes.z, *p.z]) for p in partners[:PARTNERS]
         ]
         chosen += _off_axis(problem, base, best)
-    groups = sensor_groups(base.model, problem.data.sensors)
-    hidden = (
-        {word: hiding(problem, names) for word, names in groups.items()} if len(groups) > 1 else {}
-    )
     tried = []
     for number, (together, start) in enumerate(_each_once(chosen)):
         first = together[: len(causes.hypotheses)]
@@ -100,7 +96,7 @@ def compare(
             Tried(
                 one,
                 _gap(problem, one.simulated),
-                unseen_gap(problem, hidden, groups, base, one),
+                unseen_gap(problem, base, one),
             )
         )
         progress((number + 1) / len(chosen))
@@ -109,7 +105,14 @@ def compare(
 
 
 def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
-    """The same problem with some channels unseen."""
+    """The same problem with some channels unseen; it is kept."""
+    key = tuple(sensors)
+    if key not in problem.hiding:
+        problem.hiding[key] = _hiding(problem, key)
+    return problem.hiding[key]
+
+
+def _hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
     data = problem.data.without(set(sensors))
     old = problem.covariance
     jacobian = np.where(data.observed[:, :, None], old.rows.context_jacobian, 0.0)
@@ -152,28 +155,24 @@ def _gap(problem: Problem, simulated: FloatArray) -> float:
     return float(square[problem.data.observed].mean())
 
 
-def unseen_gap(
-    problem: Problem,
-    hidden: dict[str, Problem],
-    groups: dict[str, list[str]],
-    base: Simulator,
-    one: Fit,
-) -> float:
+def unseen_gap(problem: Problem, base: Simulator, one: Fit) -> float:
     """Gap on groups of channels, each left out of the fit in turn; nan where there is one group.
 
     Args:
         problem: with all channels.
-        hidden: the same with each group unseen.
-        groups: channels of each group.
         base: the simulator without causes.
         one: the explanation, as fitted to all channels.
     """
+    groups = sensor_groups(base.model, problem.data.sensors)
+    if len(groups) < 2:
+        return float("nan")
     squares = []
-    for word, part in hidden.items():
-        columns = [problem.data.sensors.index(name) for name in groups[word]]
-        square = problem.residual(refit(part, base, one).simulated) ** 2 / variance(problem)
+    for names in groups.values():
+        columns = [problem.data.sensors.index(name) for name in names]
+        part = refit(hiding(problem, names), base, one)
+        square = problem.residual(part.simulated) ** 2 / variance(problem)
         squares.append(square[:, columns][problem.data.observed[:, columns]])
-    return float(np.concatenate(squares).mean()) if squares else float("nan")
+    return float(np.concatenate(squares).mean())
 
 
 def _free_gains(problem: Problem, nothing: Tried) -> FloatArray:

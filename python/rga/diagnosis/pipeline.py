@@ -26,6 +26,7 @@ from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.screening import Screening
 from rga.diagnosis.search import (
     ROUNDS,
+    UNMOVED,
     Found,
     search,
     settled,
@@ -158,8 +159,9 @@ def _account(
     """
     full = prepared.data
     start, found = ends
-    before = _everywhere(full, start).predict(Simulator(model))
-    believed = _everywhere(full, found.problem)
+    at_first = _everywhere(full, start)
+    before = at_first.predict(Simulator(model))
+    believed = at_first if found.problem is start else _everywhere(full, found.problem)
     after = believed.predict(Simulator(extended))
     record = prepared.record
     columns = [record.sensors.index(name) for name in full.sensors]
@@ -209,7 +211,9 @@ def _everywhere(full: Data, part: Problem) -> Data:
     for _ in range(ROUNDS if belief.latent else 0):
         inferred = relaxed(pose(part.simulator, whole, factors=part.factors)).belief.table
         latent = {name: column for name, column in inferred.items() if name in belief.latent}
-        whole = replace(whole, belief=whole.belief.with_values(latent))
+        before, whole = whole, replace(whole, belief=whole.belief.with_values(latent))
+        if whole.belief.distance(before.belief) < UNMOVED:
+            break
     return whole
 
 

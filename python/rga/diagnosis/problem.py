@@ -42,6 +42,7 @@ class Problem:
         factors: patterns over the sensors that vary from row to row for reasons unknown,
             float[sensors, factors].
         at_nothing: r' C^-1 r without any cause, by the simulator without causes, once known.
+        hiding: the same problem with some channels unseen, by their names, once known.
     """
 
     data: Data
@@ -55,6 +56,9 @@ class Problem:
     levels: FloatArray
     factors: FloatArray
     at_nothing: dict[Simulator, float] = field(default_factory=dict, init=False, compare=False)
+    hiding: dict[tuple[str, ...], "Problem"] = field(
+        default_factory=dict, init=False, compare=False, repr=False
+    )
 
     def residual(self, simulated: FloatArray) -> FloatArray:
         """Readings less a simulation, zero where missing, float[rows, sensors]."""

@@ -33,17 +33,16 @@ def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
     Causes on a sensor of its own say nothing of other channels, and are kept.
     """
     groups = sensor_groups(base.model, problem.data.sensors)
-    if len(groups) < 2 or len(current.hypotheses) < 2:
+    if len(groups) < 2:
         return current
-    hidden = {word: hiding(problem, names) for word, names in groups.items()}
     while len(current.hypotheses) > 1:
-        whole = unseen_gap(problem, hidden, groups, base, current)
+        whole = unseen_gap(problem, base, current)
         fewer = [
             without_cause(problem, base, current, number)
             for number, one in enumerate(current.hypotheses)
             if not one.kind.on_sensors
         ]
-        gaps = [unseen_gap(problem, hidden, groups, base, one) for one in fewer]
+        gaps = [unseen_gap(problem, base, one) for one in fewer]
         if not gaps or min(gaps) >= whole:
             break
         current = fewer[int(np.argmin(gaps))]
@@ -90,18 +89,20 @@ def with_better_prediction(found: Found) -> Found:
     channels to which it was not fitted much better then goes before what fits better.
     """
     problem, base = found.problem, found.base
-    groups = sensor_groups(base.model, problem.data.sensors)
-    if len(groups) < 2:
-        return found
-    hidden = {word: hiding(problem, names) for word, names in groups.items()}
-    whole = unseen_gap(problem, hidden, groups, base, found.fit)
-    better = [
-        (gap, number, one)
+    rivals = [
+        (number, one)
         for number, ranked in enumerate(found.alternatives)
         if not found.fit.hypotheses[number].kind.on_sensors
         for one in ranked
         if one.behind < RIVAL and not one.hypothesis.kind.on_sensors
-        if (gap := unseen_gap(problem, hidden, groups, base, one.fit)) < PREDICTS * whole
+    ]
+    if not rivals or len(sensor_groups(base.model, problem.data.sensors)) < 2:
+        return found
+    whole = unseen_gap(problem, base, found.fit)
+    better = [
+        (gap, number, one)
+        for number, one in rivals
+        if (gap := unseen_gap(problem, base, one.fit)) < PREDICTS * whole
     ]
     if not better:
         return found

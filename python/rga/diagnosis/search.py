@@ -31,6 +31,8 @@ EXCHANGES = 3
 WORTH_EXCHANGE = 1.0
 ROUNDS = 4
 MOST_CAUSES = 5
+#: how far contexts at rest may move [their prior spread]
+UNMOVED = 2e-4
 #: rounds of posing and fitting, and the change of z below which the second is left out
 SETTLED, STILL = 2, 0.05
 Progress = Callable[[str, float], None]
@@ -147,7 +149,11 @@ def settled(simulator: Simulator, data: Data) -> Problem:
     """The problem of a simulation, its contexts moved to where the record puts them."""
     problem = pose(simulator, data)
     for _ in range(ROUNDS if data.belief.inferred else 1):
-        problem = pose(simulator, relaxed(problem), problem)
+        moved = relaxed(problem)
+        still = moved.belief.distance(problem.data.belief) < UNMOVED
+        problem = pose(simulator, moved, problem)
+        if still:
+            break
     return problem
 
 

@@ -5,6 +5,7 @@ The judge knows what is hidden, so the covariance is that of the record without 
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,10 @@ class Yardstick:
         self._truths = Truth.of(case)
         healthy = self._data.readings - self._seen(self._beyond.together)
         self._healthy = settled(self._base, replace(self._data, readings=healthy))
+
+    @cached_property
+    def _screening(self) -> Screening:
+        return Screening(self._healthy, self._base, self._candidates)
 
     def sizes(self) -> list[Size]:
         """d' and d_perp of every hidden effect."""
@@ -128,15 +133,14 @@ class Yardstick:
         size = max(float(covariance.squares(own)[0]), 0.0)
         exact: Data = replace(problem.data, readings=problem.simulated + problem.shift + change)
         alone = replace(problem, data=exact)
-        others = [
+        least, nearest = size, None
+        true = [
             one
             for one in self._candidates
-            if not any(known.is_at({"kind": one.name, **one.place}) for known in self._truths)
+            if any(known.is_at({"kind": one.name, **one.place}) for known in self._truths)
         ]
-        least, nearest = size, None
-        screening = Screening(alone, self._base, others)
-        alike = others[0].beginning(truth.onset, truth.profile, truth.end)
-        for prospect in screening.again(alone, self._base, (), alike)[:RIVALS]:
+        alike = self._candidates[0].beginning(truth.onset, truth.profile, truth.end)
+        for prospect in self._screening.again(alone, self._base, true, alike)[:RIVALS]:
             one = fit(alone, self._base, [prospect.hypothesis], prospect.z)
             other = covariance.reduce((one.simulated - problem.simulated).T[None])
             across = float(covariance.product(own, other)[0, 0])
