@@ -12,6 +12,8 @@ from rga.model.schema import Model
 
 #: onsets that are told apart when the prior is spread over time
 ONSETS = 20
+#: log prior of an onset and a profile, against acting always: both count alike together
+LATE = -float(np.log(2 * ONSETS))
 Profile = Literal["step", "ramp"]
 
 
@@ -57,8 +59,8 @@ class Hypothesis:
     @property
     def log_prior(self) -> float:
         """Log prior: kinds, places of a kind, moments of an onset and profiles count alike."""
-        onset = np.log(2) + (0.0 if self.onset is None else np.log(2 * ONSETS))
-        return float(-np.log(self.places) - np.log(self.kinds) - onset)
+        late = 0.0 if self.onset is None else LATE
+        return float(late - np.log(2) - np.log(self.places) - np.log(self.kinds))
 
     def beginning(
         self, onset: float | None, profile: Profile = "step", end: float | None = None

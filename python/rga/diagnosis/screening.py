@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.diagnosis.hypothesis import Hypothesis, Profile
+from rga.diagnosis.hypothesis import LATE, Hypothesis, Profile
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.signatures import Block, chunks, signature, signatures
 from rga.model.parameter import FloatArray
@@ -84,13 +84,16 @@ class Screening:
     ) -> None:
         data, covariance = problem.data, problem.covariance
         self._judged: list[Judged] = []
-        for block in chunks(signatures(data, data.about(simulator), candidates, progress)):
+        done = 0
+        for block in chunks(signatures(data, data.about(simulator), candidates)):
             reduced = covariance.reduce(block.values, block.channels)
             size = np.maximum(covariance.squares(reduced), 0.0)
             by_row = (reduced.white**2).sum(1).astype(np.float32)
             light = replace(block, values=block.values.astype(np.float32))
             self._judged.append(Judged(light, size, by_row))
-        self.first = self._prospects(problem, simulator, set(), None)
+            done = max(done, *(number + 1 for number, _, _ in block.members))
+            progress(done / len(candidates))
+        self.first = self.again(problem, simulator, ())
         hopeless = {one.number for one in self.first if one.largest < HOPELESS}
         self._judged = [_without(one, hopeless) for one in self._judged]
 
@@ -101,24 +104,15 @@ class Screening:
         taken: Collection[Hypothesis],
         beginning: Hypothesis | None = None,
     ) -> list[Prospect]:
-        """Prospects about another simulation of the same record.
+        """Prospects about another simulation of the same record, the best first.
 
         Args:
             problem: gives residual and covariance.
             simulator: the simulation to which the candidates are added.
             taken: hypotheses that are left out.
-            beginning: one whose onset candidates may have beside acting always, or which has none,
-                as they have then; None: onsets are searched for.
+            beginning: a candidate acts always, or begins as this one does; None: candidates may
+                begin at any time.
         """
-        return self._prospects(problem, simulator, taken, beginning)
-
-    def _prospects(
-        self,
-        problem: Problem,
-        simulator: Simulator,
-        taken: Collection[Hypothesis],
-        beginning: Hypothesis | None,
-    ) -> list[Prospect]:
         data = problem.data
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
@@ -191,8 +185,7 @@ def _promises(
     straight = block.straight & block.free
     largest[straight] *= 2 / np.abs(block.z[straight, 0])
     before = np.array([hypothesis.log_prior for _, hypothesis, _ in members])
-    later = np.array([hypothesis.beginning(0.0).log_prior for _, hypothesis, _ in members[:1]])
-    later = before + (later - before[:1])
+    later = before + LATE
     options: list[tuple[FloatArray, FloatArray]] = []
     moments: list[tuple[FloatArray | None, Profile]] = []
     white = judged.by_row.astype(float)

@@ -94,9 +94,13 @@ def search(
         if number:
             progress(f"looking for cause {number + 1}", 0.0)
             prospects = screening.again(problem, current.simulator(base), current.hypotheses)
-        best = _best(problem, base, current, prospects)
-        best = best or _hidden_by_scatter(problem, base, current, prospects, screening)
-        if best is None:
+        promising = [one for one in worth_fitting(prospects) if one.score > 0]
+        fits = sorted(fitted_beside(problem, base, current, promising), key=evidence, reverse=True)
+        if fits and fits[0].log_evidence - current.log_evidence >= NAMED:
+            best = fits[0]
+        elif (hidden := _hidden_by_scatter(problem, base, current, fits, screening)) is not None:
+            best = hidden
+        else:
             break
         best = with_moment(problem, base, best, len(best.hypotheses) - 1)
         scattered = bool((problem.levels > MEDIANS).any())
@@ -169,30 +173,22 @@ def with_moment(problem: Problem, base: Simulator, current: Fit, number: int) ->
     return max(current, fit(problem, base, hypotheses, current.z), key=evidence)
 
 
-def _best(
-    problem: Problem, base: Simulator, current: Fit, prospects: Sequence[Prospect]
-) -> Fit | None:
-    """The likeliest of the prospects beside the causes so far, if it is to be named."""
-    promising = [one for one in worth_fitting(prospects) if one.score > 0]
-    fits = fitted_beside(problem, base, current, promising)
-    best = max(fits, key=evidence, default=current)
-    return best if best.log_evidence - current.log_evidence >= NAMED else None
-
-
 def _hidden_by_scatter(
     problem: Problem,
     base: Simulator,
     current: Fit,
-    prospects: Sequence[Prospect],
+    fits: Sequence[Fit],
     screening: Screening,
 ) -> Fit | None:
     """A cause that is to be named if the scatter may be as low as it makes it.
 
     What changes the response of many members a little passes for scatter, and is looked for where
     scatter is low.
+
+    Args:
+        fits: of prospects under the scatter as it is, the likeliest first.
     """
-    promising = [one for one in prospects[:JUDGED] if one.score > 0]
-    fits = fitted_beside(problem, base, current, promising)
+    fits = list(fits[:JUDGED])
     if (problem.levels > MEDIANS).any():
         usual = np.minimum(problem.levels, MEDIANS)
         covariance = problem.covariance.with_spread(problem.scatter.spread(usual))

@@ -1,6 +1,6 @@
 """Signatures: what hypotheses change in a simulation, and how much of it moments in time take."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -63,10 +63,7 @@ def signature(
 
 
 def signatures(
-    data: Data,
-    about: Vicinity,
-    candidates: Sequence[Hypothesis],
-    progress: Callable[[float], None],
+    data: Data, about: Vicinity, candidates: Sequence[Hypothesis]
 ) -> Iterator[Signature]:
     """Signatures of all candidates at all trial values of their parameters."""
     for number, candidate in enumerate(candidates):
@@ -74,7 +71,6 @@ def signatures(
             found = signature(data, about, number, candidate, z)
             if found is not None:
                 yield found
-        progress((number + 1) / len(candidates))
 
 
 def chunks(several: Iterator[Signature]) -> Iterator["Block"]:
