@@ -108,3 +108,47 @@ def test_stiffness_rates_are_the_derivatives(about: Vicinity) -> None:
             sides.append(Simulator(thicker).respond(contexts(model)).quantities)
         expected = (sides[0] - sides[1]) / (2 * step)
         assert (np.abs(rate - expected).max(0) < 1e-7 * scale).all()
+
+
+@pytest.fixture(params=["slips", "rubs", "wears"])
+def dear(request: pytest.FixtureRequest, small_bridge: dict[str, Any]) -> Vicinity:
+    """A simulation about which every trial takes other solves: corners, memory, or many states."""
+    found = {
+        "slips": {"kind": "joint_slip", "member": "L1-L2", "slip": 1e-6},
+        "rubs": {"kind": "bearing_friction", "support": "east", "dof": "ux", "mu": 0.02},
+        "wears": {
+            "kind": "member_stiffness",
+            "member": "L1-L2",
+            "factor": 0.6,
+            "onset": TIME[2],
+            "profile": "ramp",
+        },
+    }[request.param]
+    model = read_model(small_bridge, "small bridge")
+    model = model.extended({"dear": read_effect(found, "dear")})
+    return Vicinity(Simulator(model), contexts(model))
+
+
+def test_a_dear_simulation_is_tried_nearly(dear: Vicinity) -> None:
+    # Friction begins anew where a structure changes, so that a late loss has another history there.
+    rubs = "bearing_friction" in [one.kind for one in dear.simulator.model.effects.values()]
+    gain = read_effect({"kind": "sensor_gain", "sensor": "D2", "factor": 1.1}, "gain")
+    for onset in (None,) if rubs else (None, TIME[20]):
+        loss = {"kind": "member_stiffness", "member": "L1-U1", "factor": 0.9, "onset": onset}
+        effects = {"gain": gain, "loss": read_effect(loss, "loss")}
+        nearly, exact = dear.nearly(effects)
+        trial, response = dear.trial(effects)
+        change = trial.read(response) - dear.read
+        assert not exact
+        assert (np.abs(nearly - dear.read - change) <= 0.1 * np.abs(change).max(0)).all()
+        assert np.abs(change).max(0)[[0, 1]].min() > 0
+
+
+def test_what_is_not_dear_is_tried_exactly(about: Vicinity) -> None:
+    for effect in list(trials(about.simulator.model))[::7]:
+        nearly, exact = about.nearly({"trial": effect})
+        trial, response = about.trial({"trial": effect})
+        if exact:
+            assert np.array_equal(nearly, trial.read(response))
+        else:
+            assert effect.kind in ("bearing_friction", "stiffness_temperature")

@@ -16,7 +16,7 @@ from rga.diagnosis.findings import Findings
 from rga.diagnosis.heldout import gain, held_out_rows
 from rga.diagnosis.hypothesis import hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
-from rga.diagnosis.problem import Problem, pose, relaxed
+from rga.diagnosis.problem import Problem, pose, relaxed, resimulated
 from rga.diagnosis.robustness import (
     with_better_prediction,
     with_hanging_leads,
@@ -208,12 +208,16 @@ def _everywhere(full: Data, part: Problem) -> Data:
         line = np.polyfit(clock, belief.table[name], 1)
         changes[name] = np.polyval(line, full.time - part.data.time[0])
     whole = replace(full, belief=full.belief.with_values(changes))
-    for _ in range(ROUNDS if belief.latent else 0):
-        inferred = relaxed(pose(part.simulator, whole, factors=part.factors)).belief.table
+    if not belief.latent:
+        return whole
+    problem = pose(part.simulator, whole, factors=part.factors)
+    for _ in range(ROUNDS):
+        inferred = relaxed(problem).belief.table
         latent = {name: column for name, column in inferred.items() if name in belief.latent}
         before, whole = whole, replace(whole, belief=whole.belief.with_values(latent))
         if whole.belief.distance(before.belief) < UNMOVED:
             break
+        problem = resimulated(problem, part.simulator, whole)
     return whole
 
 

@@ -91,12 +91,7 @@ def pose(
     belief = data.belief
     simulated = data.read(simulator, data.about(simulator).response)
     jacobian = context_jacobian(simulator, data, simulated)
-    offsets = (
-        np.stack([belief.centre[n] - belief.table[n] for n in belief.spread], axis=-1)
-        if (belief.spread)
-        else np.zeros((len(data.time), 0))
-    )
-    shift = np.einsum("tsi,ti->ts", jacobian, offsets)
+    shift = _shift(jacobian, belief)
     if factors is None:
         factors = before.factors if before is not None else np.zeros((len(data.sensors), 0))
     unknown = np.where(data.observed[:, :, None], factors, 0.0)
@@ -143,6 +138,32 @@ def pose(
         levels=levels,
         factors=factors,
     )
+
+
+def resimulated(problem: Problem, simulator: Simulator, data: Data) -> Problem:
+    """The problem about another simulation or belief, its derivatives and covariance as they are.
+
+    Args:
+        problem: on the same readings.
+        simulator: the other simulation.
+        data: the same with another belief.
+    """
+    jacobian = problem.covariance.rows.context_jacobian[:, :, : len(data.belief.spread)]
+    return replace(
+        problem,
+        data=data,
+        simulator=simulator,
+        simulated=data.predict(simulator),
+        shift=_shift(jacobian, data.belief),
+    )
+
+
+def _shift(jacobian: FloatArray, belief: Belief) -> FloatArray:
+    """What the prior of the contexts adds to a simulation, float[rows, sensors]."""
+    if not belief.spread:
+        return np.zeros(jacobian.shape[:2])
+    offsets = np.stack([belief.centre[n] - belief.table[n] for n in belief.spread], axis=-1)
+    return np.asarray(np.einsum("tsi,ti->ts", jacobian, offsets))
 
 
 def _calibrations(

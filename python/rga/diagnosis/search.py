@@ -10,7 +10,7 @@ from rga.diagnosis.data import Data
 from rga.diagnosis.evidence import Fit, fit
 from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.onsets import beginnings
-from rga.diagnosis.problem import Problem, pose, relaxed
+from rga.diagnosis.problem import Problem, pose, relaxed, resimulated
 from rga.diagnosis.scatter import MEDIANS, level_evidence
 from rga.diagnosis.screening import Prospect, Screening
 from rga.simulation import Simulator
@@ -260,7 +260,8 @@ def settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem,
     current = best
     for _ in range(SETTLED):
         simulator = current.simulator(base)
-        problem = pose(simulator, relaxed(pose(simulator, problem.data, problem)), problem)
+        moved = relaxed(resimulated(problem, simulator, problem.data))
+        problem = pose(simulator, moved, problem)
         before, current = current, fit(problem, base, current.hypotheses, current.z)
         if np.abs(current.z - before.z).max(initial=0.0) < STILL:
             break
