@@ -140,7 +140,7 @@ def test_a_dear_simulation_is_tried_nearly(dear: Vicinity) -> None:
         trial, response = dear.trial(effects)
         change = trial.read(response) - dear.read
         assert not exact
-        assert (np.abs(nearly - dear.read - change) <= 0.1 * np.abs(change).max(0)).all()
+        assert (np.abs(nearly - dear.read - change) <= 1e-9 + 0.1 * np.abs(change).max(0)).all()
         assert np.abs(change).max(0)[[0, 1]].min() > 0
 
 
