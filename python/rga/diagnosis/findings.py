@@ -25,7 +25,14 @@ class SensorGap(Part):
 
 
 class HeldOut(Part):
-    """Gap on blocks of rows that no step of the diagnosis saw, and the gain with its interval."""
+    """Gap by the readings of blocks of rows that no step of the diagnosis saw.
+
+    Attributes:
+        before: of the model as given under the loads of the whole record: the change of the
+            simulation is known in every row, what the extended model leaves in those blocks.
+        after: of the extended model in those blocks.
+        gain: before less after, with its 90 % interval.
+    """
 
     before: float
     after: float

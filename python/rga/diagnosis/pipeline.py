@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -13,7 +12,7 @@ from rga.diagnosis.bends import bends, with_free_slopes
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
-from rga.diagnosis.heldout import gain, held_out_rows
+from rga.diagnosis.heldout import Gain, gain, held_out_rows
 from rga.diagnosis.hypothesis import hypotheses
 from rga.diagnosis.prepare import Prepared, prepare
 from rga.diagnosis.problem import Problem, pose, relaxed, resimulated
@@ -221,9 +220,8 @@ def _everywhere(full: Data, part: Problem) -> Data:
     return whole
 
 
-def gain_of(account: Account, seed: int) -> Any:
-    """Gain on the held-out rows."""
-    measured = account.record.readings
-    before = ((measured - account.before) / account.noise) ** 2
-    after = ((measured - account.after) / account.noise) ** 2
-    return gain(before, after, account.held_out, seed)
+def gain_of(account: Account, seed: int) -> Gain:
+    """Gain by the readings of the held-out rows."""
+    left = (account.record.readings - account.after) / account.noise
+    change = (account.after - account.before) / account.noise
+    return gain(left, change, account.held_out, seed)

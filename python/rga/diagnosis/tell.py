@@ -130,7 +130,7 @@ def fault_cause(fault: Fault, effect: SensorFault) -> Cause:
 
 
 def gap(account: Account, gained: Gain) -> Gap:
-    """The gap on the fitted rows and by sensor, and the gain on the held-out rows."""
+    """The gap on the fitted rows and by sensor, and the gain by the held-out rows."""
     measured = account.record.readings
     before = ((measured - account.before) / account.noise) ** 2
     after = ((measured - account.after) / account.noise) ** 2

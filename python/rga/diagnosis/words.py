@@ -78,8 +78,9 @@ def verdict_sentence(findings: "Findings") -> str:
         moves = "falls" if held.gain > 0 else "rises"
         doubt = "" if low > 0 else "; so the gain is not sure"
         told.append(
-            f"On rows that no step saw the gap {moves} from {held.before:.3g} to {held.after:.3g} "
-            f"times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to {high:.3g}{doubt})."
+            f"By readings that no step saw the gap {moves} from {held.before:.3g} to "
+            f"{held.after:.3g} times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to "
+            f"{high:.3g}{doubt})."
         )
     elif findings.verdict == "nothing_wrong":
         told.append("Nothing is wrong with the model that these data could show.")

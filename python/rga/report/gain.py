@@ -53,7 +53,7 @@ def draw_gain(findings: Findings) -> Markup | None:
             ncols=2,
         )
         held = findings.gap.held_out
-        words = f"Gap on held-out rows: {number(held.before)} before, {number(held.after)} after."
+        words = f"Gap by held-out rows: {number(held.before)} before, {number(held.after)} after."
         return inline(figure, "gain", words)
 
 

@@ -139,11 +139,11 @@ def period(findings: Findings) -> str:
 
 
 def gain(findings: Findings) -> str:
-    """The gain on held-out rows in one line."""
+    """The gain by held-out readings in one line."""
     held = findings.gap.held_out
     low, high = held.gain_ci90
     went = "fell" if held.after <= held.before else "rose"
-    said = "On rows that no step saw the gap "
+    said = "By readings that no step saw the gap "
     if not findings.causes:
         return (
             f"{said}is {number(held.before)}; noise alone gives {short(findings.gap.noise_floor)}."
