@@ -45,20 +45,20 @@ def bends(problem: Problem) -> list[Bend]:
     scatter = covariance.scatter.at(covariance.scatter_estimate(residual))
     error = covariance.rows.context_error(residual - scatter)
     reduced = covariance.reduce(residual.T[None])
-    straight = _straight(problem)
-    squares = _squares(straight)
+    straight = straight_courses(problem)
+    bent = squares(straight)
     found = []
     for number, name in enumerate(belief.spread):
         along = covariance.rows.context_jacobian[:, :, number]
         if name in belief.latent or not along.any():
             continue
-        courses = [np.ones(len(along)), *straight.values(), *squares.values()]
+        courses = [np.ones(len(along)), *straight.values(), *bent.values()]
         columns = covariance.reduce(np.stack([(along * one[:, None]).T for one in courses]))
         product = covariance.product(columns, columns)
         sums = covariance.product(columns, reduced)[:, 0]
-        size = dict.fromkeys(squares, (0.0, 0.0))
+        size = dict.fromkeys(bent, (0.0, 0.0))
         linear = range(1 + len(straight))
-        for place, by in enumerate(squares, len(linear)):
+        for place, by in enumerate(bent, len(linear)):
             chosen = [*linear, place]
             inverse = np.linalg.pinv(product[np.ix_(chosen, chosen)], hermitian=True)
             bend = float((inverse @ sums[chosen])[-1])
@@ -69,12 +69,13 @@ def bends(problem: Problem) -> list[Bend]:
     return found
 
 
-def with_free_slopes(problem: Problem, found: list[Bend]) -> Problem:
+def with_free_slopes(problem: Problem, found: list[Bend], further: list[Calibration]) -> Problem:
     """The problem where a bent response may follow any context, and no other keeps its slope.
 
     Args:
         problem: in which there are bends.
         found: those.
+        further: random effects that are free beside them.
     """
     belief = problem.data.belief
     jacobian = dict(
@@ -82,12 +83,12 @@ def with_free_slopes(problem: Problem, found: list[Bend]) -> Problem:
             belief.spread, problem.covariance.rows.context_jacobian.transpose(2, 0, 1), strict=False
         )
     )
-    straight = _straight(problem)
-    squares = _squares(straight)
-    more: list[Calibration] = []
+    straight = straight_courses(problem)
+    bent = squares(straight)
+    more = list(further)
     share = 0.0
     for bend in found:
-        courses = [np.ones(len(problem.data.time)), *straight.values(), *squares.values()]
+        courses = [np.ones(len(problem.data.time)), *straight.values(), *bent.values()]
         along, size = jacobian[bend.context], STRAIGHT * abs(bend.size)
         more += [(along * course[:, None], size) for course in courses]
         if bend.by == bend.context:
@@ -99,7 +100,7 @@ def with_free_slopes(problem: Problem, found: list[Bend]) -> Problem:
     return pose(problem.simulator, problem.data, problem, more=more)
 
 
-def _straight(problem: Problem) -> dict[str, FloatArray]:
+def straight_courses(problem: Problem) -> dict[str, FloatArray]:
     """Contexts that vary, about their means and in their standard deviations."""
     centre = problem.data.belief.centre
     return {
@@ -109,7 +110,7 @@ def _straight(problem: Problem) -> dict[str, FloatArray]:
     }
 
 
-def _squares(straight: dict[str, FloatArray]) -> dict[str, FloatArray]:
+def squares(straight: dict[str, FloatArray]) -> dict[str, FloatArray]:
     """The part of the squares that no straight line has; none of a context of two values."""
     found = {}
     for name, scaled in straight.items():

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from rga.diagnosis.bends import bends
+from rga.diagnosis.curves import curves
 from rga.diagnosis.noise import unexplainable
 from rga.diagnosis.problem import Problem, load_basis, pose
 from rga.diagnosis.row_covariance import BoolArray
@@ -176,6 +177,7 @@ def in_words(problem: Problem, contexts: Values) -> str:
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
     chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
     bent = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
+    bent += [f"the readings go with the square of {one.context}" for one in curves(problem)]
     scatter = "; ".join([*bent, chance])
     if problem.factors.shape[1] == 0:
         return f"nothing that varies in common from row to row; {scatter}"

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 from rga.diagnosis import leftover, tell
 from rga.diagnosis.account import Account
 from rga.diagnosis.bends import bends, with_free_slopes
+from rga.diagnosis.curves import curves, free_channels
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import compare, sensor_groups, variance
 from rga.diagnosis.findings import Findings
@@ -86,7 +87,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     extended = model.extended({**named, **broken})
     account = _account(model, extended, prepared, held_out, (start, found), noise)
     share = leftover.share_left(found.problem)
-    structure = share > STRUCTURE or bool(bends(found.problem))
+    structure = share > STRUCTURE or bool(bends(found.problem) or curves(found.problem))
     grouped = sensor_groups(model, data.sensors)
     misfits = tell.misfits(account, grouped)
     findings = Findings(
@@ -128,9 +129,10 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     doubtful = problem is not found.problem
     if doubtful:
         found = weighed(problem, found.base, found.fit, screening, progress)
-    if bent := bends(found.problem):
+    bent, curved = bends(found.problem), curves(found.problem)
+    if bent or curved:
         doubtful = True
-        free = with_free_slopes(found.problem, bent)
+        free = with_free_slopes(found.problem, bent, free_channels(found.problem, curved))
         standing = without_needless(free, found)
         if len(standing.hypotheses) < len(found.fit.hypotheses):
             problem, standing = settled_with(found.base, found.problem, standing)

@@ -1,0 +1,62 @@
+"""Readings that go with the square of a context, beside twins that go in proportion."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rga
+from rga.benchmark.challenge.design import Draw
+from rga.diagnosis.curves import curves
+from rga.diagnosis.prepare import prepare
+from rga.diagnosis.problem import Problem
+from rga.diagnosis.search import settled
+from rga.simulation import Simulator
+
+
+def loaded(name: str, folder: Path) -> tuple[rga.Model, rga.Record]:
+    Draw.parse(name).case().write(str(folder))
+    model = rga.load_model(folder / "model.json")
+    return model, rga.load_record(folder / "record.csv", model)
+
+
+@pytest.fixture(scope="module")
+def healthy(tmp_path_factory: pytest.TempPathFactory) -> Problem:
+    """A footbridge with nothing wrong, its contexts measured with errors."""
+    model, record = loaded("46-single-5-null", tmp_path_factory.mktemp("healthy"))
+    data = prepare(model, record, lambda done: None).data
+    return settled(Simulator(model), data)
+
+
+def pattern(healthy: Problem) -> np.ndarray:
+    """Over the channels, in deviations of their noise, float[sensors]."""
+    return np.random.default_rng(1).normal(size=len(healthy.data.sensors))
+
+
+def with_response(healthy: Problem, power: int) -> Problem:
+    """The bridge with a response of no known shape to a power of the air's temperature."""
+    air = healthy.data.belief.centre["air"]
+    course = ((air - air.mean()) / air.std()) ** power
+    added = 0.5 * np.outer(course, pattern(healthy) * healthy.noise.sigma)
+    data = replace(healthy.data, readings=healthy.data.readings + added)
+    return settled(healthy.simulator, data)
+
+
+def test_a_square_is_told_whatever_its_pattern(healthy: Problem) -> None:
+    (found,) = curves(with_response(healthy, 2))
+    assert found.context == "air"
+    assert np.corrcoef(found.sizes, pattern(healthy))[0, 1] > 0.8
+
+
+@pytest.mark.parametrize("power", [0, 1])
+def test_what_is_in_proportion_is_no_curve(healthy: Problem, power: int) -> None:
+    assert curves(with_response(healthy, power)) == []
+
+
+def test_a_cause_that_follows_the_straight_part_of_a_curve_is_not_named(tmp_path: Path) -> None:
+    strange = rga.diagnose(*loaded("8-outside-5", tmp_path), seed=8)
+    assert strange.verdict == "unknown"
+    assert "go with the square of temperature" in strange.unexplained.looks_like
+    straight = rga.diagnose(*loaded("8-outside-5-null", tmp_path), seed=8)
+    assert straight.verdict == "nothing_wrong"
