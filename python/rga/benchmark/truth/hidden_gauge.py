@@ -52,8 +52,11 @@ def _on_sensor(op: str) -> Callable[[World, Span, float], None]:
 
 def _swapped(s: Setting, rng: Rng) -> Span:
     sensors = s.bridge.model["sensors"]
-    first = _sensor(s, rng)
-    alike = [n for n in s.noise if n != first and sensors[n]["kind"] == sensors[first]["kind"]]
+    alike: list[str] = []
+    while not alike:
+        # Some sensors are the only ones of their kind that the diagnosis gets.
+        first = _sensor(s, rng)
+        alike = [n for n in s.noise if n != first and sensors[n]["kind"] == sensors[first]["kind"]]
     return Span({"sensors": [first, pick(rng, alike)]})
 
 
