@@ -9,7 +9,11 @@ import numpy as np
 import polars as pl
 import pytest
 
+from rga.benchmark.truth import Case
 from rga.cli import main
+from rga.diagnosis import Findings, diagnose
+from rga.model import load_model
+from rga.records import load_record
 
 
 class Outcome(NamedTuple):
@@ -32,6 +36,19 @@ def rga(capsys: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
         return Outcome(int(left.value.code or 0), out, err)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Findings]:
+    """Diagnoses a case from its files."""
+
+    def diagnosis(case: Case) -> Findings:
+        folder = tmp_path_factory.mktemp("case")
+        case.write(folder)
+        model = load_model(folder / "model.json")
+        return diagnose(model, load_record(folder / "record.csv", model))
+
+    return diagnosis
 
 
 @pytest.fixture

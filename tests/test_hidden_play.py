@@ -4,15 +4,13 @@ The readings come from physics of their own (rga.benchmark.truth), which goes fo
 the simulator goes by Newton steps on elongations.
 """
 
-import tempfile
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from rga.benchmark.truth import draw_case
+from rga.benchmark.truth import Case, draw_case
 from rga.benchmark.truth.bridges import BRIDGES
 from rga.benchmark.truth.contexts import courses
 from rga.benchmark.truth.effect import Setting
@@ -20,9 +18,8 @@ from rga.benchmark.truth.hidden import HIDDEN
 from rga.benchmark.truth.noise import stream
 from rga.benchmark.truth.response import respond
 from rga.benchmark.truth.world import World
-from rga.diagnosis import Findings, diagnose
-from rga.model import load_model, read_model
-from rga.records import load_record
+from rga.diagnosis import Findings
+from rga.model import read_model
 from rga.simulation import Simulator
 
 KINDS = ("joint_slip", "support_gap")
@@ -51,22 +48,18 @@ def test_forces_and_elongations_lead_to_the_same_readings(name: str, kind: str) 
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8)
 
 
-def diagnosed(kind: str, hidden: str) -> tuple[Findings, dict[str, Any]]:
-    """Findings of a case of the footbridge in which `hidden` is, or nothing (`null`)."""
+def drawn(kind: str, hidden: str) -> Case:
+    """A case of the footbridge in which `hidden` is, or nothing (`null`)."""
     seed, rows = {"joint_slip": (2015, 100), "support_gap": (2020, 60)}[kind]
-    case = draw_case(seed, bridge="footbridge", kind=hidden, reality="truss", rows=rows)
-    with tempfile.TemporaryDirectory() as folder:
-        case.write(folder)
-        model = load_model(Path(folder) / "model.json")
-        record = load_record(Path(folder) / "record.csv", model)
-        return diagnose(model, record, seed=seed), case.truth
+    return draw_case(seed, bridge="footbridge", kind=hidden, reality="truss", rows=rows)
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_hidden_one_is_named(kind: str) -> None:
-    findings, truth = diagnosed(kind, kind)
+def test_a_hidden_one_is_named(kind: str, diagnosed: Callable[[Case], Findings]) -> None:
+    case = drawn(kind, kind)
+    truth = case.truth
     assert truth["d_prime"] > 15
-    (cause,) = findings.causes
+    (cause,) = diagnosed(case).causes
     assert cause.effect["kind"] == kind
     assert {name: cause.effect[name] for name in truth["place"]} == truth["place"]
     low, high = cause.effect[truth["parameter"]]["ci90"]
@@ -74,7 +67,7 @@ def test_a_hidden_one_is_named(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_its_null_twin_names_nothing(kind: str) -> None:
-    findings, truth = diagnosed(kind, "null")
-    assert truth["d_prime"] == 0
-    assert not findings.causes
+def test_its_null_twin_names_nothing(kind: str, diagnosed: Callable[[Case], Findings]) -> None:
+    case = drawn(kind, "null")
+    assert case.truth["d_prime"] == 0
+    assert not diagnosed(case).causes

@@ -151,15 +151,31 @@ def misread(world: World) -> None:
     world.sensor_ops.append(("gain", (f"S {BAR}", 1 / 0.75)))
 
 
-@pytest.mark.parametrize(("hide", "true"), [(soft, SOFT), (heavy, HEAVY)])
-def test_a_truck_tells_soft_steel_from_heavy_loads(
-    bridge: dict[str, Any], tmp_path: Path, hide: Hidden, true: str
-) -> None:
-    """Exactly alike under the deck load; a truck of known weight is planned, and tells."""
-    both = {SOFT, HEAVY}
+@pytest.fixture
+def alike(
+    bridge: dict[str, Any], tmp_path: Path, hide: Hidden, both: set[str]
+) -> tuple[Model, Findings]:
+    """Model and diagnosis of a record in which two causes are named that are alike."""
     model, findings = written(tmp_path, bridge, hide)
     causes, rivals = named(findings)
     assert both <= causes | rivals
+    return model, findings
+
+
+@pytest.mark.parametrize(
+    ("hide", "true", "both"),
+    [(soft, SOFT, {SOFT, HEAVY}), (heavy, HEAVY, {SOFT, HEAVY})],
+)
+def test_a_truck_tells_soft_steel_from_heavy_loads(
+    bridge: dict[str, Any],
+    tmp_path: Path,
+    hide: Hidden,
+    true: str,
+    both: set[str],
+    alike: tuple[Model, Findings],
+) -> None:
+    """Exactly alike under the deck load; a truck of known weight is planned, and tells."""
+    model, findings = alike
     assert "truck" in findings.causes[0].separated_by
 
     planned = plan(model, findings, sensors=0, positions=2, seed=1)
@@ -189,15 +205,20 @@ def test_a_truck_tells_soft_steel_from_heavy_loads(
     assert not rivals & both
 
 
-@pytest.mark.parametrize(("hide", "true"), [(thin, THIN), (misread, MISREAD)])
+@pytest.mark.parametrize(
+    ("hide", "true", "both"),
+    [(thin, THIN, {THIN, MISREAD}), (misread, MISREAD, {THIN, MISREAD})],
+)
 def test_a_sensor_tells_a_thin_bar_from_a_gauge_that_misreads(
-    bridge: dict[str, Any], tmp_path: Path, hide: Hidden, true: str
+    bridge: dict[str, Any],
+    tmp_path: Path,
+    hide: Hidden,
+    true: str,
+    both: set[str],
+    alike: tuple[Model, Findings],
 ) -> None:
     """Alike on one gauge a bar of a determinate truss; the sensor that is planned tells."""
-    both = {THIN, MISREAD}
-    model, findings = written(tmp_path, bridge, hide)
-    causes, rivals = named(findings)
-    assert both <= causes | rivals
+    model, findings = alike
     planned = plan(model, findings, sensors=1, positions=0, seed=1)
     assert len(planned.sensors) == 1
     assert all(one.separated for one in planned.separations)

@@ -92,7 +92,7 @@ def shared_pattern(problem: Problem) -> Pattern | None:
         slow = np.sqrt((1 + noise.phi) / (1 - noise.phi) / width) if width > 1 else 1.0
         size = np.sqrt(values[-1]) * noise.sigma * slow
         direction = np.zeros(len(working))
-        direction[working] = vectors[:, -1] * (size * np.ones(len(working)))[working]
+        direction[working] = vectors[:, -1] * size[working]
         found = Pattern(direction, float((values[-1] - 1) / sensors))
         if best is None or found.share > best.share:
             best = found

@@ -1,8 +1,9 @@
 """Causes under doubt: where structure is left, the noise is not all that it is taken for.
 
 Evidence is exact only for the noise that it assumes. Where sensors share a pattern that no cause
-explains, two things are asked of a cause beyond its evidence: that it helps channels which were not
-fitted, and that its lead over a rival does not hang on a single channel.
+explains, three things are asked of a cause beyond its evidence: that it helps channels which were
+not fitted, that its lead over a rival does not hang on a single channel, and where it does, that
+the rival does not predict unseen channels much better.
 """
 
 from collections.abc import Callable, Iterable
@@ -114,19 +115,16 @@ def with_better_prediction(found: Found) -> Found:
 def _exchanged(found: Found, number: int, rival: Alternative) -> Found:
     """A rival in the place of a cause, and the cause among its rivals."""
     behind = rival.fit.log_evidence - found.fit.log_evidence
-    cause = found.fit.hypotheses[number]
-    where = found.fit.slices()[number]
-    order = [*(k for k in range(len(found.fit.hypotheses)) if k != number), number]
-    z = np.concatenate(
-        [*(found.fit.z[found.fit.slices()[k]] for k in order[:-1]), found.fit.z[where]]
-    )
-    former = fit(found.problem, found.base, [found.fit.hypotheses[k] for k in order], z)
+    causes, slices = found.fit.hypotheses, found.fit.slices()
+    order = [*(k for k in range(len(causes)) if k != number), number]
+    z = np.concatenate([found.fit.z[slices[k]] for k in order])
+    former = fit(found.problem, found.base, [causes[k] for k in order], z)
     others = [
         replace(one, behind=one.behind + behind)
         for one in found.alternatives[number]
         if one is not rival
     ]
-    ranked = (Alternative(cause, former, behind), *others)
+    ranked = (Alternative(causes[number], former, behind), *others)
     return replace(
         found,
         fit=rival.fit,

@@ -295,8 +295,9 @@ def _merged(
 def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, Fit]:
     """Take out causes that the others have made needless."""
     while current.hypotheses:
-        best = _without_least(problem, base, current)
-        if best is None:
+        fits = [without_cause(problem, base, current, k) for k in range(len(current.hypotheses))]
+        best = max(fits, key=evidence)
+        if current.log_evidence - best.log_evidence >= NAMED:
             break
         problem, current = settled_with(base, problem, best)
     return problem, current
@@ -318,15 +319,6 @@ def without_needless(problem: Problem, found: Found) -> Fit:
         current = fits[least]
         del kept[least]
     return current
-
-
-def _without_least(problem: Problem, base: Simulator, current: Fit) -> Fit | None:
-    """The causes without the least likely of them, if that is not to be named."""
-    fits = [without_cause(problem, base, current, k) for k in range(len(current.hypotheses))]
-    best = max(fits, key=evidence, default=None)
-    if best is None or current.log_evidence - best.log_evidence >= NAMED:
-        return None
-    return best
 
 
 def without_cause(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:
