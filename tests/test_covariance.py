@@ -12,6 +12,7 @@ NOISE = Noise(
     sigma=np.array([0.5, 1.0, 2.0, 0.8]),
     phi=np.array([0.0, 0.6, 0.9, 0.3]),
     context_sigma=np.array([0.7, 1.3]),
+    deviation=np.array([0.5, 1.0, 2.0, 0.8]),
 )
 TIME = 600.0 * np.arange(ROWS)
 JACOBIAN = DRAW.standard_normal((ROWS, SENSORS, CONTEXTS))

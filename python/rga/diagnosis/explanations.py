@@ -129,7 +129,7 @@ def variance(problem: Problem) -> FloatArray:
     measured = [k for k, name in enumerate(belief.spread) if name not in belief.latent]
     jacobian = problem.covariance.rows.context_jacobian[:, :, measured]
     contexts = (jacobian**2) @ problem.noise.context_sigma[measured] ** 2
-    return np.asarray(problem.noise.sigma**2 + contexts)
+    return np.asarray(problem.noise.deviation**2 + contexts)
 
 
 def _off_axis(
@@ -151,7 +151,7 @@ def _off_axis(
 
 
 def _gap(problem: Problem, simulated: FloatArray) -> float:
-    square = problem.residual(simulated) ** 2 / variance(problem)
+    square = problem.whole_residual(simulated) ** 2 / variance(problem)
     return float(square[problem.data.observed].mean())
 
 
@@ -170,7 +170,7 @@ def unseen_gap(problem: Problem, base: Simulator, one: Fit) -> float:
     for names in groups.values():
         columns = [problem.data.sensors.index(name) for name in names]
         part = refit(hiding(problem, names), base, one)
-        square = problem.residual(part.simulated) ** 2 / variance(problem)
+        square = problem.whole_residual(part.simulated) ** 2 / variance(problem)
         squares.append(square[:, columns][problem.data.observed[:, columns]])
     return float(np.concatenate(squares).mean())
 

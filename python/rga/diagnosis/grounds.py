@@ -88,7 +88,7 @@ def contrast(found: Found, number: int, most: int = 3) -> Contrast | None:
     apart = np.where(seen, found.fit.simulated - nearest.fit.simulated, np.nan)
     size = _root_mean_square(apart) / problem.noise.sigma
     columns = np.argsort(-size, kind="stable")[:most]
-    measured = np.where(seen, problem.residual(nearest.fit.simulated), np.nan)
+    measured = np.where(seen, problem.whole_residual(nearest.fit.simulated), np.nan)
     return Contrast(
         against=nearest.fit,
         lead=found.fit.log_evidence - nearest.fit.log_evidence,
@@ -117,7 +117,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
             continue
 
         def gap(one: Fit, columns: list[int] = columns, seen: BoolArray = seen) -> float:
-            squares = problem.residual(one.simulated) ** 2 / spread
+            squares = problem.whole_residual(one.simulated) ** 2 / spread
             return float(squares[:, columns][seen].mean())
 
         told.append(

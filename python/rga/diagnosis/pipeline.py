@@ -178,7 +178,7 @@ def _account(
     noise[~held_out] = spread
     noise[held_out] = np.sqrt((spread**2).mean(0))
     sigma = np.full(len(record.sensors), np.nan)
-    sigma[columns] = noise_of.noise.sigma
+    sigma[columns] = noise_of.noise.deviation
     readings = placed(np.where(full.observed, full.readings, np.nan))
 
     return Account(

@@ -35,6 +35,7 @@ class Problem:
         given: the simulation without them.
         simulated: float[rows, sensors].
         shift: what the contexts' prior adds to the simulation, float[rows, sensors].
+        tails: what heavy tails of the noise add to the readings, float[rows, sensors].
         covariance: of the residual.
         noise: of sensors and contexts.
         scatter: random effects.
@@ -50,6 +51,7 @@ class Problem:
     given: Simulator
     simulated: FloatArray
     shift: FloatArray
+    tails: FloatArray
     covariance: Covariance
     noise: Noise
     scatter: Scatter
@@ -61,7 +63,14 @@ class Problem:
     )
 
     def residual(self, simulated: FloatArray) -> FloatArray:
-        """Readings less a simulation, zero where missing, float[rows, sensors]."""
+        """Readings, their tails drawn in, less a simulation, float[rows, sensors].
+
+        Zero where missing.
+        """
+        return self.whole_residual(simulated) - self.tails
+
+    def whole_residual(self, simulated: FloatArray) -> FloatArray:
+        """The same with the tails."""
         return np.where(self.data.observed, self.data.readings - simulated - self.shift, 0.0)
 
     def explained_by_scatter(self, residual: FloatArray) -> FloatArray:
@@ -110,12 +119,14 @@ def pose(
         sigma=np.maximum(scale, floor),
         phi=np.full(len(data.sensors), 0.3),
         context_sigma=np.array([*belief.spread.values(), *np.ones(factors.shape[1])]),
+        deviation=np.maximum(scale, floor),
     )
     if before is not None and len(before.noise.context_sigma) == len(start.context_sigma):
         start = before.noise
     unknown_spread = [False] * factors.shape[1]
     known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
-    noise = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
+    noise, tails = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
+    residual -= tails
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
     given = simulator if before is None else before.given
     # What a cause does is no pattern that every channel may show a little of.
@@ -132,6 +143,7 @@ def pose(
         given=given,
         simulated=simulated,
         shift=shift,
+        tails=tails,
         covariance=covariance,
         noise=noise,
         scatter=scatter,

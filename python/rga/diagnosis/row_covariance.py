@@ -23,14 +23,19 @@ class Noise:
     """Sensor noise with memory, and the errors of the measured contexts.
 
     Attributes:
-        sigma: standard deviation of each sensor's noise, float[sensors] [its unit].
+        sigma: standard deviation of each sensor's noise, its tails drawn in, float[sensors]
+            [its unit].
         phi: correlation from one row to the next at the typical interval, float[sensors].
         context_sigma: standard deviation of each context's error, float[contexts].
+        deviation: root mean square of each sensor's noise with its tails, float[sensors].
+        freedom: degrees of freedom of its innovations, Student's t; infinite: Gaussian.
     """
 
     sigma: FloatArray
     phi: FloatArray
     context_sigma: FloatArray
+    deviation: FloatArray
+    freedom: float = np.inf
 
 
 class RowCovariance:
@@ -61,6 +66,7 @@ class RowCovariance:
         spread = noise.sigma[:, None] * np.sqrt(1.0 - memory**2)
         self.weight = np.where(observed.T, 1.0 / spread, 0.0)
         self._passing = self.weight * memory
+        self._memory, self._spread = memory, spread
         self._by_sensor = np.ascontiguousarray(context_jacobian.transpose(1, 0, 2))
         self._by_row = np.ascontiguousarray(context_jacobian.transpose(0, 2, 1))
         self._factor = self._context_factor()
@@ -98,6 +104,19 @@ class RowCovariance:
         back = white * self.weight[here]
         back[..., :-1] -= (white * self._passing[here])[..., 1:]
         return np.asarray(back)
+
+    def whitened_variance(self, variance: FloatArray) -> FloatArray:
+        """Variances of whitened readings of independent variances, float[sensors, rows]."""
+        white = variance * self.weight**2
+        white[:, 1:] += self._passing[:, 1:] ** 2 * variance[:, :-1]
+        return np.asarray(white)
+
+    def coloured(self, white: FloatArray) -> FloatArray:
+        """W^-1 of innovations, zero where missing, float[sensors, rows]."""
+        columns = white * self._spread
+        for row in range(1, columns.shape[1]):
+            columns[:, row] += self._memory[:, row] * columns[:, row - 1]
+        return np.where(self.observed.T, columns, 0.0)
 
     def project(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
         """Whitened columns on the contexts' errors, float[rows * contexts, k]."""

@@ -131,7 +131,9 @@ class Yardstick:
         covariance = problem.covariance
         own = covariance.reduce(change.T[None])
         size = max(float(covariance.squares(own)[0]), 0.0)
-        exact: Data = replace(problem.data, readings=problem.simulated + problem.shift + change)
+        exact: Data = replace(
+            problem.data, readings=problem.simulated + problem.shift + problem.tails + change
+        )
         alone = replace(problem, data=exact)
         least, nearest = size, None
         true = [

@@ -1,0 +1,115 @@
+"""Noise is estimated with the tails that it has, and what they add is drawn in."""
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rga.benchmark.challenge.design import Draw
+from rga.diagnosis import Findings, diagnose
+from rga.diagnosis.noise import estimate_noise
+from rga.diagnosis.row_covariance import BoolArray, Noise, RowCovariance
+from rga.model import load_model
+from rga.model.parameter import FloatArray
+from rga.records import load_record
+
+ROWS, SENSORS, MEMORY = 240, 24, 0.6
+
+
+def noise_of(values: FloatArray, observed: BoolArray | None = None) -> tuple[Noise, FloatArray]:
+    rows, sensors = values.shape
+    seen = np.ones(values.shape, dtype=bool) if observed is None else observed
+    deviation = np.where(seen, values, 0.0).std(0)
+    start = Noise(deviation, np.full(sensors, 0.3), np.zeros(0), deviation)
+    jacobian = np.zeros((rows, sensors, 0))
+    known, floor = np.zeros(0, dtype=bool), np.full(sensors, 1e-9)
+    return estimate_noise(values, 600.0 * np.arange(rows), seen, jacobian, start, known, floor)
+
+
+def with_memory(innovations: FloatArray) -> FloatArray:
+    values = innovations.copy()
+    for row in range(1, len(values)):
+        values[row] = MEMORY * values[row - 1] + np.sqrt(1 - MEMORY**2) * innovations[row]
+    return values
+
+
+def heavy(seed: int, sensors: int = SENSORS) -> FloatArray:
+    return np.random.default_rng(seed).standard_t(3.0, (ROWS, sensors))
+
+
+@pytest.mark.parametrize("memory", [False, True])
+def test_heavy_tails_are_told_from_gaussian_noise(memory: bool) -> None:
+    light = np.random.default_rng(0).standard_normal((ROWS, SENSORS))
+    for values, heavy_tailed in ((heavy(0), True), (light, False)):
+        noise, tails = noise_of(with_memory(values) if memory else values)
+        assert noise.phi.mean() == pytest.approx(MEMORY if memory else 0.0, abs=0.06)
+        if heavy_tailed:
+            assert 2.3 < noise.freedom < 4.0
+            # Student's t of scale one tells as much as Gaussian noise of variance 6 / 4.
+            assert noise.sigma.mean() == pytest.approx(np.sqrt(1.5), rel=0.06)
+            assert noise.deviation.mean() == pytest.approx(np.sqrt(3.0), rel=0.1)
+        else:
+            assert np.isinf(noise.freedom)
+            assert not tails.any()
+            assert (noise.sigma == noise.deviation).all()
+
+
+def test_means_of_readings_drawn_in_are_as_sure_as_they_say() -> None:
+    values = heavy(1, 400)
+    noise, tails = noise_of(values)
+    believed = float((noise.sigma**2 * (1 + noise.phi) / (1 - noise.phi)).mean()) / ROWS
+    drawn_in, whole = (values - tails).mean(0), values.mean(0)
+    assert 0.75 * believed < drawn_in.var() < 1.15 * believed
+    assert drawn_in.var() < 0.65 * whole.var()
+
+
+def test_a_spike_is_a_tail_and_a_shift_is_none() -> None:
+    values = heavy(2)
+    spike, shift = values.copy(), values.copy()
+    spike[100, 3] += 30.0
+    shift[-10:, 3] += 8.0
+    assert noise_of(spike)[1][100, 3] > 25.0
+    _, tails = noise_of(shift)
+    assert np.abs(tails[-10:, 3] - noise_of(values)[1][-10:, 3]).mean() < 2.0
+
+
+def test_tails_of_readings_are_those_of_their_innovations() -> None:
+    observed = np.ones((ROWS, 2), dtype=bool)
+    observed[5, 1] = observed[9, 0] = False
+    noise = Noise(np.array([0.5, 2.0]), np.array([0.0, 0.7]), np.zeros(0), np.array([0.5, 2.0]))
+    rows = RowCovariance(noise, np.arange(ROWS, dtype=float), observed, np.zeros((ROWS, 2, 0)))
+    innovations = np.where(observed.T, heavy(3, 2).T, 0.0)
+    np.testing.assert_allclose(rows.whiten(rows.coloured(innovations)), innovations, atol=1e-12)
+
+
+#: a null twin with heavy tails, a channel of it, and how late and how far it is shifted
+NULL, CHANNEL, LATE, SHIFT = "101-single-22-null", 1, 20, 4.0
+
+
+def diagnosed(shifted: bool) -> tuple[str, float, Findings]:
+    """Channel, moment, and findings of the record with or without the shift."""
+    with tempfile.TemporaryDirectory() as folder:
+        Draw.parse(NULL).case().write(folder)
+        model = load_model(Path(folder) / "model.json")
+        record = load_record(Path(folder) / "record.csv", model)
+    sensor = record.sensors[CHANNEL]
+    readings = record.readings.copy()
+    readings[-LATE:, CHANNEL] += SHIFT * (model.sensors[sensor].noise or 0.0) * shifted
+    moment = float(record.origin + record.time[-LATE])
+    return sensor, moment, diagnose(model, replace(record, readings=readings))
+
+
+def test_tails_at_the_end_of_a_record_are_no_cause() -> None:
+    assert Draw.parse(NULL).circumstance.null == "Student t3"
+    *_, findings = diagnosed(shifted=False)
+    assert findings.verdict == "nothing_wrong"
+
+
+def test_a_late_shift_is_found_in_spite_of_tails() -> None:
+    sensor, moment, findings = diagnosed(shifted=True)
+    (cause,) = findings.causes
+    assert cause.effect["kind"] == "sensor_bias"
+    assert cause.effect["sensor"] == sensor
+    assert cause.onset == pytest.approx(moment)
