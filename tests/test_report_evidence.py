@@ -298,7 +298,7 @@ def test_the_rival_is_the_nearest_alternative(restrained: Findings) -> None:
     behind = [found.fit.log_evidence - one.fit.log_evidence for one in found.alternatives[0]]
     assert shown.lead == pytest.approx(min(behind))
     columns = [found.problem.data.sensors.index(name) for name in shown.channels]
-    residual = found.problem.residual(found.fit.simulated)[:, columns]
+    residual = found.problem.whole_residual(found.fit.simulated)[:, columns]
     np.testing.assert_allclose(shown.measured - shown.predicted, residual, atol=1e-9)
     assert list(shown.size) == sorted(shown.size, reverse=True)
 
