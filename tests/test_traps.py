@@ -275,3 +275,13 @@ def test_a_thin_bar_is_named_beside_what_swings(crossed: Callable[[bool], Findin
     assert (cause.effect["kind"], cause.effect["member"]) == ("member_stiffness", "U1-L2")
     low, high = cause.effect["factor"]["ci90"]
     assert low - 0.1 < 0.2 < high + 0.1
+
+
+# --- Outliers -------------------------------------------------------------------------------------
+
+
+def test_an_outlier_in_the_last_row_is_no_onset(diagnosed: Diagnosed) -> None:
+    case = drawn(0, scatter=0.01)
+    channel = case.channels["w3"].copy()
+    channel[-1] += 14 * case.model["sensors"]["w3"]["noise"]
+    assert nothing_found(diagnosed(replace(case, channels={**case.channels, "w3": channel})))
