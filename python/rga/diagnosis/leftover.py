@@ -82,8 +82,8 @@ def shared_pattern(problem: Problem) -> Pattern | None:
         rows, sensors = columns.shape
         if rows < LEAST_PIECES:
             break
-        scale = np.sqrt((columns**2).mean(0))
-        columns = columns / np.maximum(scale, 1e-12)
+        # A channel that tells a context has little left, all of it by what the others show.
+        columns = columns / np.maximum(np.sqrt((columns**2).mean(0)), 1.0)
         values, vectors = np.linalg.eigh(columns.T @ columns / rows)
         edge = (1 + np.sqrt(sensors / rows)) ** 2
         if values[-1] <= MARGIN * edge:
