@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import rga
+from rga.benchmark.challenge.design import Draw
 from rga.errors import InputError
-from rga.model import read_model
+from rga.model import read_effect, read_model
 
 E, AREA, ALPHA = 2e11, 1e-3, 1.2e-5
 
@@ -204,3 +205,67 @@ def test_a_stop_takes_the_expansion_beyond_its_gap() -> None:
 def test_what_makes_no_sense_is_refused(effects: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
         rga.Simulator(hanger(**effects)).predict({"load": 1.0, "warm": 0.0})
+
+
+def test_a_truss_whose_diagonals_all_slip() -> None:
+    """Statics alone gives the forces; play makes each diagonal longer or shorter beside them."""
+    panels, slip = 12, 1.4e-5
+    nodes = {f"L{k}": [3.0 * k, 0, 0] for k in range(panels + 1)}
+    nodes |= {f"U{k}": [3.0 * k, 0, 3.0] for k in range(1, panels)}
+    chords = [(f"L{k}", f"L{k + 1}") for k in range(panels)]
+    chords += [(f"U{k}", f"U{k + 1}") for k in range(1, panels - 1)]
+    chords += [(f"L{k}", f"U{k}") for k in range(1, panels)]
+    half = panels // 2
+    diagonals = [("L0", "U1"), (f"U{panels - 1}", f"L{panels}")]
+    diagonals += [(f"U{k}", f"L{k + 1}") for k in range(1, half)]
+    diagonals += [(f"L{k}", f"U{k + 1}") for k in range(half, panels - 1)]
+    bars = {"-".join(ends): list(ends) for ends in [*chords, *diagonals]}
+    slopes = ["-".join(ends) for ends in diagonals]
+    bridge = model(
+        nodes,
+        bars,
+        supports={
+            "west": {"node": "L0", "fixed": ["ux", "uz"]},
+            "east": {"node": f"L{panels}", "fixed": ["uz"]},
+        },
+        effects={
+            "crowd": {
+                "kind": "nodal_load",
+                "forces": {f"L{k}": [0, 0, -1.0 - 0.3 * k] for k in range(1, panels)},
+                "factor": {"context": "load"},
+            },
+            "slips": {"kind": "joint_slip", "member": slopes, "slip": {"context": "warm"}},
+        },
+        sensors={
+            "D": {"kind": "displacement", "node": "L4", "direction": [0, 0, 1], "unit": "m"},
+            **{name: {"kind": "force", "member": name, "unit": "N"} for name in slopes},
+        },
+    )
+    load = np.array([1e5, -3e4, 10.0, 0.1, -1e-3])
+    pull = bridge.extended(
+        {"unit": read_effect({"kind": "nodal_load", "forces": {"L4": [0, 0, 1.0]}}, "unit")}
+    )
+    tight = rga.Simulator(bridge).predict({"load": load, "warm": 0.0})
+    loose = rga.Simulator(bridge).predict({"load": load, "warm": slip})
+    virtual = rga.Simulator(pull).predict({"load": np.zeros(1), "warm": 0.0})[0, 1:]
+    apart = np.sign(tight[:, 1:]) @ virtual * slip
+    assert np.allclose(loose[:, 1:], tight[:, 1:], rtol=1e-6, atol=1e-9)
+    assert np.allclose(loose[:, 0] - tight[:, 0], apart, rtol=1e-6)
+
+
+def test_play_in_all_diagonals_of_a_bridge_under_little_load() -> None:
+    """Newton's method alone goes round in circles here."""
+    case = Draw.parse("41-single-48").case()
+    given = read_model(case.model, "bridge")
+    place = {"kind": "joint_slip", "group": "diagonals", "slip": 1.35561e-5}
+    bridge = given.extended({"slips": read_effect(place, "slips")})
+    rng = np.random.default_rng(0)
+    for _ in range(4):
+        contexts = {"time": case.time}
+        for name, variable in bridge.context.items():
+            step = 1e-3 * (variable.range[1] - variable.range[0])
+            contexts[name] = case.channels[name] + step * rng.normal(size=len(case.time))
+        shown = rga.Simulator(bridge).predict(contexts)
+        # Play takes up at most so much beside the forces that the loads ask for.
+        tight = rga.Simulator(given).predict(contexts)
+        assert 0 < np.abs(shown - tight).max() < 2.0

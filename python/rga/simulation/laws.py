@@ -25,6 +25,10 @@ STEPS = 60
 CONVERGED = 1e-12
 #: share of its stiffness that an idle term keeps, and how much of the loads it may carry by that
 TRACE, CARRIED = 1e-8, 1e-3
+#: shares that lead to the trace where it cannot be reached at once
+TRACES = (0.9, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 1e-2, 3e-3, 1e-3, 1e-4, 1e-6, TRACE)
+#: shares of a step that are tried on the way
+SHORTER = 0.5 ** np.arange(16)
 #: steps that take its force off again
 REFINED = 2
 #: elongations below this are none [m]
@@ -64,31 +68,56 @@ def respond_with_laws(structure: Structure, linear: Linear, coefficients: FloatA
     rod = np.array([law.kind == "tension" for law in laws])
     apart = coefficients @ linear.stretched
 
-    def move(elongation: FloatArray, side: FloatArray, rows: IntArray, trace: float) -> FloatArray:
-        """One Newton step, the terms staying on their sides."""
+    def left(elongation: FloatArray, side: FloatArray, rows: IntArray, trace: float) -> FloatArray:
+        """By how much compatibility is missed, float[rows, terms]."""
         idle = (1 - trace) * elongation + trace * size * rod
         pseudo = -stiffness * np.where(side == 0, idle, side * size)
-        left = elongation + pseudo @ unit - apart[rows]
-        slope = np.where(side == 0, (TRACE - 1) * stiffness, 0.0)
+        return np.asarray(elongation + pseudo @ unit - apart[rows])
+
+    def move(elongation: FloatArray, side: FloatArray, rows: IntArray, trace: float) -> FloatArray:
+        """One Newton step, the terms staying on their sides."""
+        missed = left(elongation, side, rows, trace)
+        slope = np.where(side == 0, (max(trace, TRACE) - 1) * stiffness, 0.0)
         if len(laws) == 1:
-            return np.asarray(elongation - left / (1.0 + unit[0, 0] * slope))
+            return np.asarray(elongation - missed / (1.0 + unit[0, 0] * slope))
         matrix = np.eye(len(laws)) + unit * slope[:, None, :]
-        return np.asarray(elongation - np.linalg.solve(matrix, left[:, :, None])[:, :, 0])
+        return np.asarray(elongation - np.linalg.solve(matrix, missed[:, :, None])[:, :, 0])
+
+    def shortened(before: FloatArray, now: FloatArray, rows: IntArray, trace: float) -> FloatArray:
+        """The point between two that misses compatibility least."""
+        tried = np.stack([before + share * (now - before) for share in SHORTER])
+        sides = _side(tried, size, rod, trace)
+        missed = [
+            np.square(left(*one, rows, trace)).sum(1) for one in zip(tried, sides, strict=True)
+        ]
+        return np.asarray(tried[np.argmin(missed, axis=0), np.arange(len(rows))])
+
+    def settle(waiting: IntArray, trace: float, damped: bool = False) -> IntArray:
+        """Newton steps of rows, in place; those that are still on their way after many."""
+        for _ in range(STEPS):
+            if not len(waiting):
+                break
+            before, on = elongation[waiting], side[waiting]
+            now = move(before, on, waiting, trace)
+            if damped:
+                now = shortened(before, now, waiting, trace)
+            elongation[waiting], side[waiting] = now, _side(now, size, rod, trace)
+            # Between corners all is straight, and a step that meets none is exact.
+            met = (side[waiting] != on).any(axis=1)
+            far = np.abs(now - before).max(axis=1) > CONVERGED * np.abs(now).max(axis=1)
+            waiting = waiting[far & (met | damped)]
+        return waiting
 
     # All terms bear at first, each on the side that it would take without its law.
     elongation = apart + (np.sign(apart) * size * stiffness) @ unit
-    side = _side(elongation, size, rod)
-    waiting = np.arange(len(apart))
-    for _ in range(STEPS):
-        before, on = elongation[waiting], side[waiting]
-        now = move(before, on, waiting, TRACE)
-        elongation[waiting], side[waiting] = now, _side(now, size, rod)
-        # Between corners all is straight, and a step that meets none is exact.
-        met = (side[waiting] != on).any(axis=1)
-        far = np.abs(now - before).max(axis=1) > CONVERGED * np.abs(now).max(axis=1)
-        waiting = waiting[met & far]
-        if not len(waiting):
-            break
+    side = _side(elongation, size, rod, TRACE)
+    waiting = settle(np.arange(len(apart)), TRACE)
+    if len(waiting):
+        # Many idle terms and little load: Newton's method goes round in circles, and is led from
+        # terms that keep much of their stiffness to those that keep a trace.
+        going = waiting
+        for trace in TRACES:
+            waiting = settle(going, trace, damped=True)
     held = TRACE * np.abs(elongation) < CARRIED * (np.abs(apart).max() + np.abs(size).max() + NONE)
     lost = np.union1d(waiting, np.flatnonzero(~held.all(axis=1)))
     if len(lost):
@@ -132,9 +161,11 @@ def _order(law: Law) -> tuple[bool, int]:
     return law.member is None, (law.spring if law.member is None else law.member) or 0
 
 
-def _side(elongation: FloatArray, size: FloatArray, rod: NDArray[np.bool_]) -> FloatArray:
+def _side(
+    elongation: FloatArray, size: FloatArray, rod: NDArray[np.bool_], trace: float
+) -> FloatArray:
     """1 or -1 for terms that bear at an end of their play, 0 for idle ones, float[rows, terms]."""
     # With the trace a rod's force is zero at its slack, that of a play in its middle.
-    highest = np.where(rod, size, size / (1 - TRACE))
+    highest = np.where(rod, size, size / (1 - trace))
     lowest = np.where(rod, -np.inf, -highest)
     return np.where(elongation >= highest, 1.0, np.where(elongation <= lowest, -1.0, 0.0))
