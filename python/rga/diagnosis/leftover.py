@@ -82,12 +82,14 @@ def shared_pattern(problem: Problem) -> Pattern | None:
         rows, sensors = columns.shape
         if rows < LEAST_PIECES:
             break
+        scale = np.sqrt((columns**2).mean(0))
         # A channel that tells a context has little left, all of it by what the others show.
-        columns = columns / np.maximum(np.sqrt((columns**2).mean(0)), 1.0)
-        values, vectors = np.linalg.eigh(columns.T @ columns / rows)
+        largest = np.linalg.norm(columns / np.maximum(scale, 1.0), 2) ** 2 / rows
         edge = (1 + np.sqrt(sensors / rows)) ** 2
-        if values[-1] <= MARGIN * edge:
+        if largest <= MARGIN * edge:
             continue
+        columns = columns / np.maximum(scale, 1e-12)
+        values, vectors = np.linalg.eigh(columns.T @ columns / rows)
         # What moves slowly is small in the innovations of noise with a memory.
         slow = np.sqrt((1 + noise.phi) / (1 - noise.phi) / width) if width > 1 else 1.0
         size = np.sqrt(values[-1]) * noise.sigma * slow

@@ -29,7 +29,8 @@ def tables(outcomes: Sequence[Outcome]) -> str:
     """All tables of a challenge."""
     seconds = [o.seconds for o in outcomes]
     parts = [
-        f"{len(outcomes)} diagnoses, {np.median(seconds):.1f} s each in the middle\n",
+        f"{len(outcomes)} diagnoses, {np.median(seconds):.1f} s each in the middle, "
+        f"{np.quantile(seconds, 0.95):.1f} s at the 95th percentile\n",
         *_figures(figures(outcomes)),
         "\nsingle effects by kind",
         *_kinds(outcomes),
