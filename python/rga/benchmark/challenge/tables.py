@@ -27,10 +27,9 @@ FAR = 4.0
 
 def tables(outcomes: Sequence[Outcome]) -> str:
     """All tables of a challenge."""
-    seconds = [o.seconds for o in outcomes]
+    middle, slow = np.quantile([o.seconds for o in outcomes], [0.5, 0.95])
     parts = [
-        f"{len(outcomes)} diagnoses, {np.median(seconds):.1f} s each in the middle, "
-        f"{np.quantile(seconds, 0.95):.1f} s at the 95th percentile\n",
+        f"{len(outcomes)} diagnoses, {middle:.1f} s each in the middle, {slow:.1f} s at the 95 %\n",
         *_figures(figures(outcomes)),
         "\nsingle effects by kind",
         *_kinds(outcomes),
