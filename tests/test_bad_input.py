@@ -167,6 +167,10 @@ EFFECTS: dict[str, tuple[str, list[str]]] = {
     "unknown kind": ('{"kind": "ghost"}', ["'ghost'"]),
     "unknown key": ('{"kind": "elastic_modulus", "material": "steel", "fcator": 1}', ["factor"]),
     "place": ('{"kind": "elastic_modulus", "material": "wood", "factor": 0.9}', ["'wood'"]),
+    "ends before it begins": (
+        '{"kind": "elastic_modulus", "material": "steel", "factor": 0.9, "onset": 20, "end": 10}',
+        ["end: 10", "onset 20"],
+    ),
 }
 
 
@@ -191,9 +195,11 @@ def test_outputs(tmp_path: Path, model_file: Path, rga: Callable[..., Any]) -> N
     contexts = tmp_path / "contexts.csv"
     contexts.write_text("temperature,load\n1,2\n", encoding="utf-8")
     (tmp_path / "file").write_text("mine", encoding="utf-8")
+    (tmp_path / "folder.csv").mkdir()
     for arguments in (
         ("simulate", model_file, contexts, "-o", tmp_path / "out.xlsx"),
         ("simulate", model_file, contexts, "-o", tmp_path / "file" / "out.csv"),
+        ("simulate", model_file, contexts, "-o", tmp_path / "folder.csv"),
         ("dataset", model_file, "-n", "4", "-o", tmp_path / "out.csv"),
     ):
         outcome = rga(*arguments)
@@ -203,6 +209,7 @@ def test_outputs(tmp_path: Path, model_file: Path, rga: Callable[..., Any]) -> N
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "contexts.csv",
         "file",
+        "folder.csv",
         "model.json",
     ]
 

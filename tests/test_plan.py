@@ -332,6 +332,7 @@ def test_findings_are_read_back(files: Path) -> None:
     [
         (["--truck", "60,-100@3.5"], "not above zero"),
         (["--truck", "60,100@0"], "not above zero"),
+        (["--truck", "60,1e300@3.5"], "stands on no bridge"),
         (["--truck", "nan"], "not above zero"),
         (["--truck", "60,100"], "2 axles have 0 spacings"),
         (["--truck", "lorry"], "is no truck"),

@@ -20,6 +20,8 @@ def whole_file(path: Path) -> Iterator[Path]:
     Raises:
         InputError: the place cannot be written to.
     """
+    if path.is_dir():
+        raise InputError("the output is a directory", str(path), "give a file")
     with _scratch(path) as scratch:
         draft = scratch / path.name
         yield draft

@@ -26,7 +26,7 @@ TruckText = Annotated[
     typer.Option(
         "--truck",
         metavar="LOADS@SPACINGS",
-        help="Axle loads [kN] and spacings [m], such as 60,100@3.5.",
+        help="Axle loads (kN) and spacings (m), such as 60,100@3.5.",
     ),
 ]
 Paths = Annotated[

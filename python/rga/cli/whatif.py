@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Settings = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="NAME=VALUE", help="A context variable, or time [s]; repeatable."
+        "--set", metavar="NAME=VALUE", help="A context variable, or time (s); repeatable."
     ),
 ]
 Additions = Annotated[

@@ -19,6 +19,8 @@ DEAD = 0.05
 #: rows that a channel repeats itself to the last before it is silent, times what chance allows, and
 #: the share of its variation that the simulation must have meanwhile
 SILENT, UNLIKELY, MOVES = 10, 4.0, 0.2
+#: other channels that leave their fit in the same row, from which on it is no spike of a gauge
+TOGETHER = 2
 #: rows that a spike lasts at most
 LONGEST_SPIKE = 2
 
@@ -60,6 +62,7 @@ def find_faults(
         basis: float[rows, patterns], load coefficients; None as well then.
     """
     faults = []
+    jumps = np.zeros_like(observed) if basis is None else _jumps(readings, observed, basis)
     for number, sensor in enumerate(sensors):
         seen = observed[:, number]
         column = readings[seen, number]
@@ -89,9 +92,7 @@ def find_faults(
             continue
         deviation = _robust_deviation(column - np.median(column))
         spread = float(column.std())
-        rest = column - _fitted(column, basis[seen])
-        scale = max(_robust_deviation(rest), 1e-12)
-        spikes = float(_lone(np.abs(rest) > SPIKE * scale).mean())
+        spikes = float(jumps[seen, number].mean())
         if spikes > SPIKES:
             faults.append(
                 Fault(
@@ -144,6 +145,22 @@ def lone_spikes(readings: FloatArray, observed: BoolArray, basis: FloatArray) ->
             far = np.abs(rest) > 3 * SPIKE * max(_robust_deviation(rest), 1e-12)
             spikes[seen, number] = _lone(far)
     return spikes
+
+
+def _jumps(readings: FloatArray, observed: BoolArray, basis: FloatArray) -> BoolArray:
+    """Readings that jump away by themselves: where other channels leave too, it is no gauge."""
+    away = np.zeros_like(readings)
+    for number in range(readings.shape[1]):
+        seen = observed[:, number]
+        if seen.any():
+            rest = readings[seen, number] - _fitted(readings[seen, number], basis[seen])
+            away[seen, number] = np.abs(rest) / max(_robust_deviation(rest), 1e-12)
+    jumps = np.zeros_like(observed)
+    for number, far in enumerate((away > SPIKE).T):
+        seen = observed[:, number]
+        jumps[seen, number] = _lone(far[seen])
+    others = (away > SPIKE / 2).sum(1)[:, None] - (away > SPIKE / 2)
+    return np.asarray(jumps & (others < TOGETHER))
 
 
 def _lone(far: BoolArray) -> BoolArray:

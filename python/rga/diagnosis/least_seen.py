@@ -33,7 +33,9 @@ class Least:
 
 
 def least_seen(found: Found, number: int) -> Least | None:
-    """The smallest effect that would have been named; None where even what was found is not larger.
+    """The smallest effect that would have been named.
+
+    None where even what was found is not larger, and of a cause that has no size.
 
     Args:
         found: the end of a search.
@@ -47,6 +49,9 @@ def least_seen(found: Found, number: int) -> Least | None:
 
 
 def _least(record: "_Without") -> Least | None:
+    if not record.hypothesis.priors:
+        # What has no size, such as a swap, is there or not.
+        return None
     whole = record.odds(record.z)
     if whole.log_odds < NAMED:
         return None

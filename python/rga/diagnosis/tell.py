@@ -26,7 +26,7 @@ from rga.diagnosis.heldout import Gain
 from rga.diagnosis.onsets import beginnings
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.screening import Prospect
-from rga.diagnosis.search import RIVAL, Alternative, Found
+from rga.diagnosis.search import NAMED, RIVAL, Alternative, Found
 from rga.diagnosis.words import effect_words, place_words
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault, SensorGain
@@ -337,13 +337,16 @@ def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[floa
 def _onset_interval(
     found: Found, number: int, record: Record
 ) -> tuple[float | str, float | str] | None:
-    if found.fit.hypotheses[number].onset is None:
+    told = found.fit.hypotheses[number].onset
+    if told is None:
         return None
     possible = beginnings(found.problem, found.base, found.fit, number)
     moments, below = possible.moments, np.cumsum(possible.chances)
     # What shows first on a row began after the row before it, maybe a held-out block back.
     first = moments[max(0, int(np.searchsorted(below, 0.05)) - 1)]
     last = moments[min(int(np.searchsorted(below, 0.95)), len(moments) - 1)]
+    # The likeliest beginning may not be at the likeliest moment of all beginnings together.
+    first, last = min(first, told), max(last, told)
     early, late = (record.time_label(float(moment) - record.origin) for moment in (first, last))
     return early, late
 
@@ -388,7 +391,12 @@ def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
         )
         remarks.append(close if ahead > -RIVAL else rejected)
     else:
-        remarks.append("rejected: not likelier than no effect at all")
+        remarks.append(
+            "rejected: not likelier than no effect at all"
+            if ahead < NAMED
+            else f"likelier than no effect ({ahead:+.0f} log-odds), and rejected all the same: it "
+            "may be what no kind explains that speaks for it"
+        )
     if not all(held) and one.gap_unseen < BETTER * named.gap_unseen:
         remarks.append("yet it predicts channels that were left out better than what is named")
     if np.isfinite(one.gap_unseen) and one.gap_unseen > UNHELPFUL * nothing.gap_unseen:

@@ -86,6 +86,13 @@ class Effect(BaseModel):
         return self
 
     @model_validator(mode="after")
+    def _grows_forward(self) -> Self:
+        late = self.onset is not None and self.end is not None
+        if late and seconds(self.end or 0.0) < seconds(self.onset or 0.0):
+            raise ValueError(f"end: {self.end} lies before the onset {self.onset}")
+        return self
+
+    @model_validator(mode="after")
     def _large_enough(self) -> Self:
         for name, mark in self.parameters().items():
             raw = getattr(self, name)

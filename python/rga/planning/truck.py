@@ -20,6 +20,8 @@ STANDS = 24
 LONG = 0.8
 #: names of the contexts that drive the truck, and of its effects
 FACTOR, POSITION, TRUCK = "truck [-]", "truck position [m]", "truck"
+#: axle load beyond which it is a slip of the pen [kN]
+HEAVIEST = 1e5
 WRITTEN = "write axle loads [kN] @ spacings [m], such as 60,100@3.5"
 
 
@@ -51,7 +53,8 @@ def read_truck(text: str) -> Truck:
     Truck(loads=(60.0, 100.0), spacings=(3.5,))
 
     Raises:
-        InputError: no numbers, not one spacing fewer than axles, or a load that lifts.
+        InputError: no numbers, not one spacing fewer than axles, a load that lifts, or one
+            that nothing weighs.
     """
     loads, _, spacings = text.partition("@")
     try:
@@ -68,6 +71,10 @@ def read_truck(text: str) -> Truck:
     if not all(isfinite(x) and x > 0 for x in (*truck.loads, *truck.spacings)):
         raise InputError(
             f"{text!r} has an axle load or a spacing that is not above zero", "--truck", WRITTEN
+        )
+    if max(truck.loads) > HEAVIEST:
+        raise InputError(
+            f"an axle of {max(truck.loads):g} kN stands on no bridge", "--truck", WRITTEN
         )
     return truck
 

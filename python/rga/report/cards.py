@@ -116,7 +116,10 @@ def onset(cause: Cause) -> str:
     """When the cause begins, as the record writes time."""
     if cause.onset is None:
         return "throughout the record"
-    grows = ", growing to the last row" if cause.effect.get("profile") == "ramp" else ""
+    grows = ""
+    if cause.effect.get("profile") == "ramp":
+        end = cause.effect.get("end")
+        grows = ", growing to " + ("the last row" if end is None else moment(end))
     said = f"from {moment(cause.onset)}{grows}"
     if cause.onset_ci90 is not None:
         first, last = cause.onset_ci90

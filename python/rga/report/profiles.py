@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from rga.diagnosis.profiles import Onset, Profile
 from rga.model.parameter import FloatArray
 from rga.report.cards import plain
-from rga.report.quantities import duration, percent, scale
+from rga.report.quantities import duration, scale
 from rga.report.svg import AFTER, FAINT, INK, STEEL, grid, inline, label, style
 
 #: half width of the 90 % interval in standard deviations, and its depth in log probability
@@ -73,7 +73,7 @@ def _onset(axes: Axes, onset: Onset, likeliest: str) -> None:
     axes.set_ylim(0, 1.08 * float(onset.chances.max()))
     axes.set_xlabel(f"onset, from the first row [{unit}]")
     axes.set_ylabel("probability")
-    axes.set_title(f"likeliest: {likeliest} ({percent(100 * onset.chances.max(), sign=False)})")
+    axes.set_title(f"told: {likeliest}")
     axes.locator_params(axis="x", nbins=5)
     grid(axes, "y")
 

@@ -1,0 +1,65 @@
+"""Gauges that spike by themselves, and gauges that leave together as the bridge has changed."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rga import Findings, Simulator
+from rga.benchmark.challenge.design import Draw
+from rga.benchmark.truth import Case
+from rga.model import read_effect, read_model
+from rga.report import write_report
+
+Diagnosed = Callable[[Case], Findings]
+
+
+@pytest.fixture(scope="module")
+def healthy() -> Case:
+    return Draw.parse("5005-single-7-null").case()
+
+
+def changed(case: Case, effect: dict[str, object]) -> Case:
+    """The case with what an effect changes in a simulation added to its readings."""
+    model = read_model(case.model, "footbridge")
+    contexts = {"time": case.time, **{name: case.channels[name] for name in model.context}}
+    other = model.extended({"hidden": read_effect(effect, "hidden")})
+    change = Simulator(other).predict(contexts) - Simulator(model).predict(contexts)
+    added = dict(zip(model.sensors, change.T, strict=True))
+    return replace(
+        case,
+        channels={
+            name: column + added[name] if name in added else column
+            for name, column in case.channels.items()
+        },
+    )
+
+
+def kinds(findings: Findings) -> list[str]:
+    return [cause.effect["kind"] for cause in findings.causes]
+
+
+def test_a_bearing_that_sticks_convicts_no_gauge(healthy: Case, diagnosed: Diagnosed) -> None:
+    stuck = {"kind": "support_spring", "support": "rocker", "dof": "ux", "stiffness": 4e7}
+    findings = diagnosed(changed(healthy, {**stuck, "onset": 400000.0}))
+    assert kinds(findings) == ["support_spring"]
+    assert kinds(diagnosed(healthy)) == []
+
+
+def test_a_gauge_that_spikes_is_convicted(healthy: Case, diagnosed: Diagnosed) -> None:
+    column = healthy.channels["w2"].copy()
+    column[3::25] += 60 * healthy.model["sensors"]["w2"]["noise"]
+    findings = diagnosed(replace(healthy, channels={**healthy.channels, "w2": column}))
+    assert [(c.effect["kind"], c.effect["sensor"]) for c in findings.causes] == [
+        ("sensor_fault", "w2")
+    ]
+
+
+def test_a_swap_has_a_report(healthy: Case, diagnosed: Diagnosed, tmp_path: Path) -> None:
+    one, other = healthy.channels["w2"], healthy.channels["w6"]
+    channels = {**healthy.channels, "w2": other, "w6": one}
+    findings = diagnosed(replace(healthy, channels=channels))
+    assert kinds(findings) == ["sensor_swap"]
+    write_report(findings, tmp_path / "report.html")
+    assert "w2" in (tmp_path / "report.html").read_text(encoding="utf-8")
