@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from rga import Findings, Simulator
+from rga import Findings, Simulator, load_model, load_record
 from rga.benchmark.challenge.design import Draw
 from rga.benchmark.truth import Case
+from rga.diagnosis.prepare import prepare
 from rga.model import read_effect, read_model
 from rga.report import write_report
 
@@ -54,6 +55,31 @@ def test_a_gauge_that_spikes_is_convicted(healthy: Case, diagnosed: Diagnosed) -
     assert [(c.effect["kind"], c.effect["sensor"]) for c in findings.causes] == [
         ("sensor_fault", "w2")
     ]
+
+
+def warnings(case: Case, folder: Path) -> list[str]:
+    case.write(folder)
+    model = load_model(folder / "model.json")
+    record = load_record(folder / "record.csv", model)
+    return prepare(model, record, lambda done: None).warnings
+
+
+def test_another_unit_and_a_context_that_stands_still_are_doubted(
+    healthy: Case, tmp_path: Path
+) -> None:
+    sensors = healthy.model["sensors"]
+    milli = {
+        name: 1e3 * column if name in sensors else column
+        for name, column in healthy.channels.items()
+    }
+    (doubt,) = warnings(replace(healthy, channels=milli), tmp_path)
+    assert "check the units" in doubt
+    still = healthy.channels["air"].copy()
+    still[120:] = still[120]
+    (doubt,) = warnings(replace(healthy, channels={**healthy.channels, "air": still}), tmp_path)
+    assert "air reads" in doubt
+    assert "last 180 of 300 rows" in doubt
+    assert warnings(healthy, tmp_path) == []
 
 
 def test_a_swap_has_a_report(healthy: Case, diagnosed: Diagnosed, tmp_path: Path) -> None:

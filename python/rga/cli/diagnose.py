@@ -42,8 +42,11 @@ def diagnose_into(
             findings = diagnose(structure, measured, seed=seed, progress=progress)
         findings.write(draft)
         content = json.loads((draft / "findings.json").read_text(encoding="utf-8"))
+    for warning in findings.warnings:
+        if warning not in measured.warnings:
+            typer.echo(f"warning: {warning}", err=True)
     if target is not None:
         write_json(content, target)
     if target != "-":
-        typer.echo(findings.sentence())
+        typer.echo(f"Verdict: {findings.verdict}. {findings.sentence()}")
         typer.echo(f"The report is {output / 'report.html'}.")

@@ -20,6 +20,11 @@ from rga.simulation import Simulator
 MOST_ROWS = 800
 LEAST_ROWS = 12
 FEW_ROWS = 60
+#: correlation with the simulation beyond which a channel tells its unit, and how much larger or
+#: smaller readings are that look like another unit
+ALIKE, OTHER_UNIT = 0.8, 30.0
+#: share of the record that a context repeats its last value for, and is doubted
+STILL = 0.1
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
             "check the record and the mapping",
         )
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
-    warnings = list(record.warnings)
+    warnings = [*record.warnings, *_doubts(data, simulated, record)]
     if chosen.sum() < FEW_ROWS:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -82,6 +87,42 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         warnings.append(f"{int(spikes.sum())} lone spikes were taken as missing readings")
         data = replace(data, observed=data.observed & ~spikes)
     return Prepared(data, record.rows(chosen), chosen, [*stuck, *broken], warnings)
+
+
+def _doubts(data: Data, simulated: FloatArray, record: Record) -> list[str]:
+    """What looks like a slip with units, or a context that is measured no more."""
+    told = []
+    readings = np.where(data.observed, data.readings, np.nan)
+    factors = [
+        float(np.nanstd(own) / shown.std())
+        for own, shown in zip(readings.T, simulated.T, strict=False)
+        if shown.std() > 0 and abs(_correlation(own, shown)) > ALIKE
+    ]
+    if len(factors) > data.readings.shape[1] / 2:
+        factor = float(np.median(factors))
+        if not 1 / OTHER_UNIT < factor < OTHER_UNIT:
+            told.append(
+                f"the readings go with the simulation and are about {factor:.2g} times as large: "
+                "check the units of record and model before any cause"
+            )
+    for name in data.belief.spread:
+        column = record.contexts.get(name)
+        if column is None:
+            continue
+        last = int((column[::-1] == column[-1]).argmin() if (column != column[-1]).any() else 0)
+        if last > STILL * len(column):
+            told.append(
+                f"{name} reads {column[-1]:g} exactly in the last {last} of {len(column)} rows: "
+                "check its sensor before any cause"
+            )
+    return told
+
+
+def _correlation(own: FloatArray, shown: FloatArray) -> float:
+    seen = np.isfinite(own)
+    if seen.sum() < LEAST_ROWS or np.ptp(own[seen]) == 0 or np.ptp(shown[seen]) == 0:
+        return 0.0
+    return float(np.corrcoef(own[seen], shown[seen])[0, 1])
 
 
 def check_length(record: Record) -> None:
