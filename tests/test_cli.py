@@ -5,7 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import polars as pl
@@ -219,7 +219,10 @@ def test_verify_fails_with_exit_code_1(tmp_path: Path, rga: Rga) -> None:
 
 
 class Nothing:
-    """Findings of a diagnosis that finds nothing."""
+    """Findings of a diagnosis that finds nothing, and doubts a channel."""
+
+    verdict = "nothing_wrong"
+    warnings: ClassVar[list[str]] = ["D1 is odd"]
 
     def __init__(self, model: Any, record: Any, *, seed: int, progress: Any) -> None:
         progress("screening", 1.0)
@@ -240,8 +243,9 @@ def test_diagnosis_is_written_and_said(
     record.write_text("time,D1,S1,temperature\n0,1,2,50\n1,1,2,3\n", encoding="utf-8")
     said = rga("diagnose", model_file, record, "-o", target, "--seed", 7)
     assert said.code == 0
-    assert said.out.startswith("Nothing is wrong.\n")
+    assert said.out.startswith("Verdict: nothing_wrong. Nothing is wrong.\n")
     assert said.err.startswith("warning: temperature lies outside its range")
+    assert said.err.endswith("warning: D1 is odd\n")
     findings = json.loads((target / "findings.json").read_text(encoding="utf-8"))
     assert findings == {"verdict": "nothing_wrong", "seed": 7, "rows": 2}
     printed = rga("diagnose", model_file, record, "-o", target, "--seed", 8, "--json")
