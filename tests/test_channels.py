@@ -74,6 +74,10 @@ def test_another_unit_and_a_context_that_stands_still_are_doubted(
     }
     (doubt,) = warnings(replace(healthy, channels=milli), tmp_path)
     assert "check the units" in doubt
+    kelvin = healthy.channels["air"] + 273.15
+    *_, doubt = warnings(replace(healthy, channels={**healthy.channels, "air": kelvin}), tmp_path)
+    assert "air lies outside its range" in doubt
+    assert "in every row" in doubt
     still = healthy.channels["air"].copy()
     still[120:] = still[120]
     (doubt,) = warnings(replace(healthy, channels={**healthy.channels, "air": still}), tmp_path)

@@ -72,7 +72,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
             "check the record and the mapping",
         )
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
-    warnings = [*record.warnings, *_doubts(data, simulated, record)]
+    warnings = [*record.warnings, *_doubts(model, data, simulated, record)]
     if chosen.sum() < FEW_ROWS:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -89,7 +89,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     return Prepared(data, record.rows(chosen), chosen, [*stuck, *broken], warnings)
 
 
-def _doubts(data: Data, simulated: FloatArray, record: Record) -> list[str]:
+def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
     """What looks like a slip with units, or a context that is measured no more."""
     told = []
     readings = np.where(data.observed, data.readings, np.nan)
@@ -109,6 +109,12 @@ def _doubts(data: Data, simulated: FloatArray, record: Record) -> list[str]:
         column = record.contexts.get(name)
         if column is None:
             continue
+        low, high = model.context[name].range
+        if ((column < low) | (column > high)).all():
+            told.append(
+                f"{name} lies outside its range {low:g}..{high:g} in every row: check its unit and "
+                "its zero before any cause"
+            )
         last = int((column[::-1] == column[-1]).argmin() if (column != column[-1]).any() else 0)
         if last > STILL * len(column):
             told.append(
