@@ -62,6 +62,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     data = guess_rows(simulator, data.rows(chosen))
     basis = load_basis(simulator, data)
     simulated = data.predict(simulator)
+    doubts = _doubts(model, data, simulated, record)
     broken = find_faults(data.sensors, data.readings, data.observed, simulated, basis)
     data = _without(data, broken)
     if not data.sensors:
@@ -72,7 +73,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
             "check the record and the mapping",
         )
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
-    warnings = [*record.warnings, *_doubts(model, data, simulated, record)]
+    warnings = [*record.warnings, *doubts]
     if chosen.sum() < FEW_ROWS:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -95,7 +96,7 @@ def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> 
     readings = np.where(data.observed, data.readings, np.nan)
     factors = [
         float(np.nanstd(own) / shown.std())
-        for own, shown in zip(readings.T, simulated.T, strict=False)
+        for own, shown in zip(readings.T, simulated.T, strict=True)
         if shown.std() > 0 and abs(_correlation(own, shown)) > ALIKE
     ]
     if len(factors) > data.readings.shape[1] / 2:
