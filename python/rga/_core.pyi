@@ -13,6 +13,7 @@ __all__ = [
     "Refactored",
     "UnstableSample",
     "UnstableStructure",
+    "instructions",
     "respond",
     "respond_nonlinear",
     "slide",
@@ -123,6 +124,7 @@ class Refactored:
         structure: dict[str, NDArray[Any]],
         loads: dict[str, NDArray[Any]],
         outputs: dict[str, NDArray[Any]],
+        instructions: str | None = None,
     ) -> Self: ...
     def respond(
         self,
@@ -190,3 +192,6 @@ class GaussianWindow:
         """The window that `to_bytes` stored; InputError for other bytes."""
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
+
+def instructions() -> list[str]:
+    """Instruction sets that `Refactored` can solve samples with here, the best first."""

@@ -1,4 +1,12 @@
 //! Sparse forms that are linear in weights and in a vector: y = sum over k of w[k] A[k] x.
+//!
+//! Each A[k] is kept as a sum of outer products u v': there is one of a truss member or a spring,
+//! and there are six of a frame member. What is summed may be one row or many, one a lane.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+use pulp::Simd;
 
 /// `value` in row and column of the matrix of one weight.
 #[derive(Debug, Clone, Copy)]
@@ -9,74 +17,307 @@ pub struct Entry {
     pub value: f64,
 }
 
+/// A part of a sum below this is the rounding of its terms.
+const ROUNDING: f64 = 1e-14;
+
+/// Entries of one weight that are looked at together; an element has 144.
+const ELEMENT: usize = 200;
+
 #[derive(Debug)]
 pub struct Bilinear {
     /// Of each weight, one behind the other.
-    entries: Vec<Entry>,
+    products: Vec<Product>,
+    /// The first product of each weight.
     first: Vec<usize>,
-    /// Weights that have entries.
-    filled: Vec<usize>,
+    /// u and v of each product: index and value.
+    rows: Vec<(usize, f64)>,
+    columns: Vec<(usize, f64)>,
+}
+
+#[derive(Debug)]
+struct Product {
+    weight: usize,
+    rows: Range<usize>,
+    columns: Range<usize>,
 }
 
 impl Bilinear {
     /// Entries of one place are summed, in their order.
-    pub fn new(mut entries: Vec<Entry>, weights: usize) -> Self {
-        let place = |entry: &Entry| (entry.weight, entry.row, entry.column);
-        entries.sort_by_key(place);
-        entries.dedup_by(|next, sum| {
-            let same = place(next) == place(sum);
-            if same {
-                sum.value += next.value;
+    pub fn new(entries: Vec<Entry>, weights: usize) -> Self {
+        let entries = merged(entries);
+        let mut form = Self {
+            products: Vec::new(),
+            first: vec![0; weights + 1],
+            rows: Vec::new(),
+            columns: Vec::new(),
+        };
+        for own in entries.chunk_by(|one, other| one.weight == other.weight) {
+            let weight = own[0].weight;
+            for (u, v) in outer_products(own) {
+                let (row, column) = (form.rows.len(), form.columns.len());
+                form.rows.extend(u);
+                form.columns.extend(v);
+                form.products.push(Product {
+                    weight,
+                    rows: row..form.rows.len(),
+                    columns: column..form.columns.len(),
+                });
             }
-            same
-        });
-        entries.retain(|entry| entry.value != 0.0);
-        let starts = 0..=weights;
-        let first: Vec<usize> = starts
-            .map(|weight| entries.partition_point(|entry| entry.weight < weight))
-            .collect();
-        let filled = (0..weights).filter(|&at| first[at] < first[at + 1]);
-        Self {
-            filled: filled.collect(),
-            entries,
-            first,
+            form.first[weight + 1] = form.products.len();
         }
+        for weight in 0..weights {
+            form.first[weight + 1] = form.first[weight + 1].max(form.first[weight]);
+        }
+        form
     }
 
+
     /// `out` += w A x
-    pub fn add(&self, weights: &[f64], x: &[f64], out: &mut [f64]) {
-        for &at in &self.filled {
-            self.add_one(at, weights[at], x, out);
+    #[inline(always)]
+    pub fn add<S: Simd>(
+        &self,
+        simd: S,
+        weights: &[S::f64s],
+        x: &[S::f64s],
+        out: &mut [S::f64s],
+    ) {
+        for product in &self.products {
+            let along = simd.mul_f64s(weights[product.weight], self.columns(simd, product, x));
+            self.spread_rows(simd, product, along, out);
         }
     }
 
     /// The part of one weight.
-    pub fn add_one(&self, at: usize, weight: f64, x: &[f64], out: &mut [f64]) {
-        for entry in self.of(at) {
-            out[entry.row] += weight * entry.value * x[entry.column];
+    #[inline(always)]
+    pub fn add_one<S: Simd>(
+        &self,
+        simd: S,
+        (at, weight): (usize, S::f64s),
+        x: &[S::f64s],
+        out: &mut [S::f64s],
+    ) {
+        for product in self.of(at) {
+            let along = simd.mul_f64s(weight, self.columns(simd, product, x));
+            self.spread_rows(simd, product, along, out);
         }
     }
 
     /// `out` += (w A)' y
-    pub fn add_transposed(&self, weights: &[f64], y: &[f64], out: &mut [f64]) {
-        for &at in &self.filled {
-            for entry in self.of(at) {
-                out[entry.column] += weights[at] * entry.value * y[entry.row];
+    #[inline(always)]
+    pub fn add_transposed<S: Simd>(
+        &self,
+        simd: S,
+        weights: &[S::f64s],
+        y: &[S::f64s],
+        out: &mut [S::f64s],
+    ) {
+        for product in &self.products {
+            let along = simd.mul_f64s(weights[product.weight], self.rows(simd, product, y));
+            for &(column, value) in &self.columns[product.columns.clone()] {
+                out[column] = simd.mul_add_f64s(simd.splat_f64s(value), along, out[column]);
             }
         }
     }
 
     /// `out[k]` += y' A[k] x
-    pub fn add_to_weights(&self, y: &[f64], x: &[f64], out: &mut [f64]) {
-        for &at in &self.filled {
-            let products = self.of(at).iter();
-            out[at] += products
-                .map(|entry| y[entry.row] * entry.value * x[entry.column])
-                .sum::<f64>();
+    #[inline(always)]
+    pub fn add_to_weights<S: Simd>(
+        &self,
+        simd: S,
+        y: &[S::f64s],
+        x: &[S::f64s],
+        out: &mut [S::f64s],
+    ) {
+        for product in &self.products {
+            let (rows, columns) = (self.rows(simd, product, y), self.columns(simd, product, x));
+            out[product.weight] = simd.mul_add_f64s(rows, columns, out[product.weight]);
         }
     }
 
-    fn of(&self, weight: usize) -> &[Entry] {
-        &self.entries[self.first[weight]..self.first[weight + 1]]
+    fn of(&self, weight: usize) -> &[Product] {
+        &self.products[self.first[weight]..self.first[weight + 1]]
+    }
+
+    /// v' x
+    #[inline(always)]
+    fn columns<S: Simd>(&self, simd: S, product: &Product, x: &[S::f64s]) -> S::f64s {
+        dot(simd, &self.columns[product.columns.clone()], x)
+    }
+
+    /// u' y
+    #[inline(always)]
+    fn rows<S: Simd>(&self, simd: S, product: &Product, y: &[S::f64s]) -> S::f64s {
+        dot(simd, &self.rows[product.rows.clone()], y)
+    }
+
+    #[inline(always)]
+    fn spread_rows<S: Simd>(
+        &self,
+        simd: S,
+        product: &Product,
+        along: S::f64s,
+        out: &mut [S::f64s],
+    ) {
+        for &(row, value) in &self.rows[product.rows.clone()] {
+            out[row] = simd.mul_add_f64s(simd.splat_f64s(value), along, out[row]);
+        }
+    }
+}
+
+#[inline(always)]
+fn dot<S: Simd>(simd: S, terms: &[(usize, f64)], x: &[S::f64s]) -> S::f64s {
+    let mut sum = simd.splat_f64s(0.0);
+    for &(at, value) in terms {
+        sum = simd.mul_add_f64s(simd.splat_f64s(value), x[at], sum);
+    }
+    sum
+}
+
+/// Entries by weight, row and column, of one place one.
+pub fn merged(mut entries: Vec<Entry>) -> Vec<Entry> {
+    let place = |entry: &Entry| (entry.weight, entry.row, entry.column);
+    entries.sort_by_key(place);
+    entries.dedup_by(|next, sum| {
+        let same = place(next) == place(sum);
+        if same {
+            sum.value += next.value;
+        }
+        same
+    });
+    entries.retain(|entry| entry.value != 0.0);
+    entries
+}
+
+type Terms = Vec<(usize, f64)>;
+
+/// A matrix as a sum of u v', of as few numbers as are easily found.
+fn outer_products(entries: &[Entry]) -> Vec<(Terms, Terms)> {
+    let mut found = by_lines(entries);
+    if entries.len() <= ELEMENT {
+        let crossed = by_crosses(entries);
+        if numbers(&crossed) < numbers(&found) {
+            found = crossed;
+        }
+    }
+    found
+}
+
+fn numbers(products: &[(Terms, Terms)]) -> usize {
+    products.iter().map(|(u, v)| u.len() + v.len()).sum()
+}
+
+/// One product a row, or one a column.
+fn by_lines(entries: &[Entry]) -> Vec<(Terms, Terms)> {
+    let mut across = entries.to_vec();
+    across.sort_by_key(|entry| (entry.column, entry.row));
+    let rows = entries.chunk_by(|one, other| one.row == other.row);
+    let columns = across.chunk_by(|one, other| one.column == other.column);
+    if columns.clone().count() < rows.clone().count() {
+        let own = |line: &[Entry]| line.iter().map(|entry| (entry.row, entry.value)).collect();
+        columns
+            .map(|line| (own(line), vec![(line[0].column, 1.0)]))
+            .collect()
+    } else {
+        let own = |line: &[Entry]| line.iter().map(|entry| (entry.column, entry.value)).collect();
+        rows.map(|line| (vec![(line[0].row, 1.0)], own(line)))
+            .collect()
+    }
+}
+
+/// Gaussian elimination with the largest pivot: as many products as the rank.
+fn by_crosses(entries: &[Entry]) -> Vec<(Terms, Terms)> {
+    let names = |name: fn(&Entry) -> usize| {
+        let mut names: Vec<usize> = entries.iter().map(name).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    };
+    let (rows, columns) = (names(|entry| entry.row), names(|entry| entry.column));
+    let mut rest = DMatrix::<f64>::zeros(rows.len(), columns.len());
+    for entry in entries {
+        let row = rows.partition_point(|&row| row < entry.row);
+        let column = columns.partition_point(|&column| column < entry.column);
+        rest[(row, column)] = entry.value;
+    }
+    let mut products = Vec::new();
+    for _ in 0..rows.len().min(columns.len()) {
+        let (row, column) = rest.iamax_full();
+        let pivot = rest[(row, column)];
+        if pivot == 0.0 {
+            break;
+        }
+        let u = rest.column(column).clone_owned();
+        let v = rest.row(row).clone_owned() / pivot;
+        for i in 0..rows.len() {
+            for j in 0..columns.len() {
+                let (value, taken) = (rest[(i, j)], u[i] * v[j]);
+                let rounding = ROUNDING * (value.abs() + taken.abs());
+                let known = i == row || j == column || (value - taken).abs() <= rounding;
+                rest[(i, j)] = if known { 0.0 } else { value - taken };
+            }
+        }
+        let terms = |names: &[usize], values: &[f64]| -> Terms {
+            let pairs = names.iter().copied().zip(values.iter().copied());
+            pairs.filter(|(_, value)| *value != 0.0).collect()
+        };
+        products.push((terms(&rows, u.as_slice()), terms(&columns, v.as_slice())));
+    }
+    products
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pulp::Scalar;
+
+    /// `[weights, rows, columns]` = `[2, 4, 5]`: one of rank one, one of full rank.
+    fn entries() -> Vec<Entry> {
+        let (u, v) = ([1.0, -2.0, 0.5, 3.0], [0.3, 0.0, -1.0, 2.0, 1e-9]);
+        let mut entries = Vec::new();
+        for row in 0..4 {
+            for column in 0..5 {
+                let given = [
+                    u[row] * v[column],
+                    ((row * 7 + column * 3) as f64).sin() * 10f64.powi(3 * row as i32),
+                ];
+                for (weight, value) in given.into_iter().enumerate() {
+                    let entry = |value| Entry { weight, row, column, value };
+                    entries.extend([entry(0.25 * value), entry(0.75 * value)]);
+                }
+            }
+        }
+        entries
+    }
+
+    #[test]
+    fn products_give_the_matrix_again() {
+        let form = Bilinear::new(entries(), 3);
+        assert_eq!(form.of(0).len(), 1);
+        assert!(form.of(2).is_empty());
+        let weights = [2.0, -3.0, 7.0];
+        let whole = |row: usize, column: usize| -> f64 {
+            let own = entries().into_iter();
+            let own = own.filter(|entry| (entry.row, entry.column) == (row, column));
+            own.map(|entry| weights[entry.weight] * entry.value).sum()
+        };
+        for column in 0..5 {
+            let mut x = [0.0; 5];
+            x[column] = 1.0;
+            let mut out = [0.0; 4];
+            form.add(Scalar, &weights, &x, &mut out);
+            for (row, value) in out.into_iter().enumerate() {
+                let right = whole(row, column);
+                assert!((value - right).abs() <= 1e-13 * right.abs(), "{row} {column}");
+                let mut y = [0.0; 4];
+                y[row] = 1.0;
+                let mut back = [0.0; 5];
+                form.add_transposed(Scalar, &weights, &y, &mut back);
+                assert!((back[column] - right).abs() <= 1e-13 * right.abs());
+                let mut of_weights = [0.0; 3];
+                form.add_to_weights(Scalar, &y, &x, &mut of_weights);
+                let sum: f64 = of_weights.iter().zip(weights).map(|(a, w)| a * w).sum();
+                assert!((sum - right).abs() <= 1e-13 * right.abs());
+            }
+        }
     }
 }

@@ -137,7 +137,7 @@ impl Analysis {
         let constraints = Constraints::new(structure);
         let reduction = Reduction::new(&constraints, &model.diagonal()?);
         let (scatter, matrix) = Scatter::new(&model, &reduction);
-        let solver = Solver::analyse(matrix)?;
+        let solver = Solver::analyse(matrix, Vec::new())?;
         let mut analysis = Self {
             flexible: model.members.iter().map(Flexible::new).collect(),
             combination: Combination::new(loads, &constraints, model.members.len())?,

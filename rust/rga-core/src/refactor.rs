@@ -1,31 +1,47 @@
 //! Samples of a structure of which every stiffness may vary (C3).
 //!
 //! What does not depend on the stiffness is done once: checks, supports and ties, the structure as
-//! sums over the factors of its elements (`system`), the pattern of the reduced matrix and its
-//! symbolic Cholesky analysis. A sample fills in values, factorises, and solves for its one load.
-//! Its derivatives share the factorisation:
-//!
-//!   K dz = B dq + dB q - dK z,    dy = S dz + T dq + dS z + dT q.
+//! sums over the factors of its elements (`system`), in which order unknowns are eliminated
+//! (`elimination`), and where the numbers of the factor stand (`panels`). Samples are then filled
+//! in, factorised (`cholesky`) and solved for their one load together, one a lane of a SIMD vector
+//! (`batch`). A sample that may be unstable or lose digits is solved again by itself (`careful`),
+//! as is every sample of a structure that is too large for caches to hold it many times. Outputs
+//! and derivatives are read off the solved samples (`reading`).
+
+mod batch;
+mod careful;
+mod cholesky;
+mod elimination;
+mod panels;
+mod reading;
 
 use std::ops::Range;
+
+use pulp::{Arch, NullaryFnOnce, Scalar, Simd, WithSimd};
 
 use crate::check::not_negative;
 use crate::check_loads::{check_loads, check_outputs};
 use crate::check_structure::check_structure;
 use crate::constraint::Constraints;
 use crate::directions::Directions;
-use crate::equilibrium::{LOOSE_MOMENT, loose_moment};
 use crate::error::{Error, Result};
 use crate::input::{Array, Loads, Outputs, Structure};
+use crate::lanes::{instructions_named, scatter};
 use crate::model::Model;
 use crate::observe::read_outputs;
 use crate::parallel::in_chunks;
 use crate::reduction::Reduction;
 use crate::stability::Solver;
 use crate::system::System;
+use batch::{Batch, Together};
+use careful::Careful;
+use reading::{Adjoint, Forward, Reading, Rows};
+
+pub use elimination::Elimination;
+pub use panels::Panels;
 
 /// Rows that a thread takes at a time.
-const CHUNK: usize = 16;
+const CHUNK: usize = 64;
 
 pub struct Refactored {
     model: Model,
@@ -35,6 +51,7 @@ pub struct Refactored {
     solver: Solver,
     patterns: usize,
     outputs: usize,
+    arch: Arch,
 }
 
 /// Samples: factors `[rows, members + springs]` multiply the whole stiffness of a member or of a
@@ -46,37 +63,32 @@ pub struct Samples<'a> {
     pub coefficients: Array<'a, f64>,
 }
 
-/// A solved sample, and what a thread needs for it.
-struct Solved {
-    solver: Solver,
-    weights: Vec<f64>,
-    load: Vec<f64>,
-    /// z
-    unknowns: Vec<f64>,
-}
-
 impl Refactored {
-    pub fn new(structure: &Structure, loads: &Loads, outputs: &Outputs) -> Result<Self> {
+    /// `instructions` names one of `instructions()`; nothing names the best. Results do not depend
+    /// on it.
+    pub fn new(
+        structure: &Structure,
+        loads: &Loads,
+        outputs: &Outputs,
+        instructions: Option<&str>,
+    ) -> Result<Self> {
         check_structure(structure)?;
         check_loads(structure, loads)?;
         check_outputs(structure, outputs)?;
+        let arch = instructions_named(instructions)?;
         let model = Model::new(structure)?;
         let constraints = Constraints::new(structure);
         let reduction = Reduction::new(&constraints, &model.diagonal()?);
         let wanted = read_outputs(outputs);
         let (system, matrix) = System::new(&model, &constraints, &reduction, loads, &wanted)?;
-        let mut solver = Solver::analyse(matrix)?;
-        let mut weights = vec![0.0; system.weights.count()];
-        (system.weights).fill(&vec![1.0; system.weights.elements], &mut weights);
-        system.fill(&weights, solver.values_mut());
-        solver.find_turns(&reduction);
         Ok(Self {
-            solver,
+            solver: Solver::analyse(matrix, system.turns.clone())?,
             patterns: loads.pattern_count(),
             outputs: wanted.len(),
             model,
             reduction,
             system,
+            arch,
         })
     }
 
@@ -97,16 +109,8 @@ impl Refactored {
 
     /// The outputs of all samples, `[rows, outputs]` in C order.
     pub fn respond(&self, samples: Samples, threads: usize) -> Result<Vec<f64>> {
-        self.each(samples, self.outputs, threads, |solved, row, shown| {
-            let System {
-                shown: s,
-                direct: t,
-                ..
-            } = &self.system;
-            s.add(&solved.weights, &solved.unknowns, shown);
-            t.add(&solved.weights, samples.coefficients.row(row), shown);
-            Ok(())
-        })
+        let outputs = self.outputs;
+        self.each(samples, &reading::Outputs { outputs }, threads)
     }
 
     /// Derivatives of the outputs along directions, `[rows, directions, outputs]` in C order.
@@ -129,44 +133,13 @@ impl Refactored {
             rates.check_shape(name, &[rows, entries.len()])?;
             rates.check_finite(name)?;
         }
-        let width = directions.count * self.outputs;
-        self.each(samples, width, threads, |solved, row, shown| {
-            let q = samples.coefficients.row(row);
-            let rates = (rates.0.row(row), rates.1.row(row));
-            let moved = self.moved(directions, rates, samples.factors.row(row));
-            let size = solved.unknowns.len();
-            let mut motions = vec![0.0; size * moved.len()];
-            let System {
-                stiffness,
-                load,
-                shown: s,
-                direct: t,
-                ..
-            } = &self.system;
-            for (direction, right) in moved.iter().zip(motions.chunks_exact_mut(size.max(1))) {
-                load.add(&solved.weights, &direction.coefficients, right);
-                for &(weight, rate) in &direction.weights {
-                    load.add_one(weight, rate, q, right);
-                    stiffness.add_one(weight, -rate, &solved.unknowns, right);
-                }
-            }
-            if !solved
-                .solver
-                .solve_checked(&mut motions, self.resisted(&solved.weights))?
-            {
-                return Err(solved.solver.unstable(&self.model, &self.reduction));
-            }
-            for (at, direction) in moved.iter().enumerate() {
-                let shown = &mut shown[at * self.outputs..(at + 1) * self.outputs];
-                s.add(&solved.weights, &motions[at * size..(at + 1) * size], shown);
-                t.add(&solved.weights, &direction.coefficients, shown);
-                for &(weight, rate) in &direction.weights {
-                    s.add_one(weight, rate, &solved.unknowns, shown);
-                    t.add_one(weight, rate, q, shown);
-                }
-            }
-            Ok(())
-        })
+        let forward = Forward {
+            outputs: self.outputs,
+            directions,
+            coefficients: rates.0,
+            factors: rates.1,
+        };
+        self.each(samples, &forward, threads)
     }
 
     /// Derivatives of the sum of the outputs times `gradients` `[rows, outputs]`, by the
@@ -180,54 +153,16 @@ impl Refactored {
     ) -> Result<Vec<f64>> {
         gradients.check_shape("gradients", &[samples.factors.len(), self.outputs])?;
         gradients.check_finite("gradients")?;
-        let width = self.patterns + self.elements();
-        self.each(samples, width, threads, |solved, row, found| {
-            let (q, g) = (samples.coefficients.row(row), gradients.row(row));
-            let system = &self.system;
-            let weights = &solved.weights;
-            let mut adjoint = vec![0.0; solved.unknowns.len()];
-            system.shown.add_transposed(weights, g, &mut adjoint);
-            if !solved
-                .solver
-                .solve_checked(&mut adjoint, self.resisted(&solved.weights))?
-            {
-                return Err(solved.solver.unstable(&self.model, &self.reduction));
-            }
-            let (by_coefficients, by_factors) = found.split_at_mut(self.patterns);
-            system
-                .load
-                .add_transposed(weights, &adjoint, by_coefficients);
-            system.direct.add_transposed(weights, g, by_coefficients);
-            let mut by_weights = vec![0.0; weights.len()];
-            system
-                .stiffness
-                .add_to_weights(&adjoint, &solved.unknowns, &mut by_weights);
-            by_weights.iter_mut().for_each(|value| *value = -*value);
-            system.load.add_to_weights(&adjoint, q, &mut by_weights);
-            system
-                .shown
-                .add_to_weights(g, &solved.unknowns, &mut by_weights);
-            system.direct.add_to_weights(g, q, &mut by_weights);
-            by_factors.copy_from_slice(&by_weights[..self.elements()]);
-            let inverses = system.weights.inverse(0)..;
-            let inverses = by_weights[inverses.clone()].iter().zip(&weights[inverses]);
-            for (by_factor, (by_inverse, inverse)) in by_factors.iter_mut().zip(inverses) {
-                if *by_inverse != 0.0 {
-                    *by_factor -= by_inverse * inverse.powi(2);
-                }
-            }
-            Ok(())
-        })
+        let adjoint = Adjoint {
+            patterns: self.patterns,
+            elements: self.elements(),
+            gradients,
+        };
+        self.each(samples, &adjoint, threads)
     }
 
-    /// Solves every sample; `read` fills `width` numbers of its row, which are zero before.
-    fn each(
-        &self,
-        samples: Samples,
-        width: usize,
-        threads: usize,
-        read: impl Fn(&Solved, usize, &mut [f64]) -> Result<()> + Sync,
-    ) -> Result<Vec<f64>> {
+    /// Solves every sample and reads its numbers.
+    fn each(&self, samples: Samples, reading: &impl Reading, threads: usize) -> Result<Vec<f64>> {
         let Samples {
             factors,
             coefficients,
@@ -239,111 +174,26 @@ impl Refactored {
         coefficients.check_finite("coefficients")?;
         self.check_yielding(factors)?;
         // Without outputs the samples are still checked: one place a row, left empty.
-        let place = width.max(1);
-        let mut results = vec![0.0; rows * place];
-        let prepare = || self.scratch();
-        let work = |solved: &mut Solved, own: Range<usize>, part: &mut [f64]| {
-            for (row, found) in own.zip(part.chunks_exact_mut(place)) {
-                let sample = self.solve(solved, factors.row(row), coefficients.row(row));
-                sample
-                    .and_then(|()| read(solved, row, &mut found[..width]))
-                    .and_then(|()| finite(found))
-                    .map_err(|error| error.of_row(row))?;
-            }
-            Ok(())
-        };
-        in_chunks(&mut results, place, CHUNK, threads, prepare, work)?;
+        let width = reading.width();
+        let mut results = vec![0.0; rows * width.max(1)];
+        self.arch.dispatch(Sweep {
+            refactored: self,
+            samples,
+            reading,
+            results: &mut results,
+            threads,
+        })?;
         results.truncate(rows * width);
         Ok(results)
     }
 
-    fn scratch(&self) -> Result<Solved> {
-        let size = self.reduction.unknowns.len();
-        Ok(Solved {
+    fn careful(&self) -> Result<Careful<'_>> {
+        Ok(Careful {
+            model: &self.model,
+            reduction: &self.reduction,
+            system: &self.system,
             solver: self.solver.another()?,
-            weights: vec![0.0; self.system.weights.count()],
-            load: vec![0.0; size],
-            unknowns: vec![0.0; size],
         })
-    }
-
-    fn solve(&self, solved: &mut Solved, factors: &[f64], coefficients: &[f64]) -> Result<()> {
-        let Solved {
-            solver,
-            weights,
-            load,
-            unknowns,
-        } = solved;
-        let system = &self.system;
-        system.weights.fill(factors, weights);
-        load.fill(0.0);
-        system.load.add(weights, coefficients, load);
-        if !load.iter().all(|force| force.is_finite()) {
-            return Err(Error::invalid("the load overflows; lower the coefficients"));
-        }
-        system.fill(weights, solver.values_mut());
-        if !solver.values_mut().iter().all(|value| value.is_finite()) {
-            return Err(Error::invalid("the stiffness overflows; lower the factors"));
-        }
-        solver.hold_turns();
-        let mut loose = Vec::new();
-        if !solver.factorise(&self.model, &self.reduction) {
-            // Without some members, nothing may stiffen a rotation.
-            system.fill(weights, solver.values_mut());
-            solver.hold_turns();
-            loose = solver.hold_loose(&self.reduction, self.model.dofs);
-            if !solver.factorise(&self.model, &self.reduction) {
-                return Err(solver.unstable(&self.model, &self.reduction));
-            }
-        }
-        if solver.moves_freely(&self.model, &self.reduction, |element| weights[element])? {
-            return Err(solver.unstable(&self.model, &self.reduction));
-        }
-        self.check_loose(weights, coefficients, load, &loose)?;
-        solver.check_turns(load, "the load")?;
-        unknowns.copy_from_slice(load);
-        let resisted = self.resisted(weights);
-        if solver.solve_checked(unknowns, resisted)? {
-            Ok(())
-        } else {
-            Err(solver.unstable(&self.model, &self.reduction))
-        }
-    }
-
-    /// K z, element by element.
-    fn resisted(&self, weights: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> {
-        |unknowns| {
-            let mut displacements = vec![0.0; self.model.dofs];
-            self.reduction.expand(unknowns, &mut displacements);
-            let forces = self
-                .model
-                .elastic_forces(&displacements, |element| weights[element]);
-            let mut reduced = vec![0.0; unknowns.len()];
-            self.reduction.collect(&forces, &mut reduced);
-            reduced
-        }
-    }
-
-    /// A moment on a rotation that nothing stiffens must not vanish silently.
-    fn check_loose(
-        &self,
-        weights: &[f64],
-        coefficients: &[f64],
-        load: &[f64],
-        loose: &[usize],
-    ) -> Result<()> {
-        let Reduction { held, unknowns, .. } = &self.reduction;
-        let mut on_held = vec![0.0; held.len()];
-        self.system.on_held.add(weights, coefficients, &mut on_held);
-        let forces = load.iter().chain(&on_held);
-        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
-        let of_loose = loose.iter().map(|&at| (unknowns[at], load[at]));
-        let of_held = held.iter().copied().zip(on_held);
-        let mut turned = of_loose.chain(of_held);
-        match turned.find(|(_, moment)| moment.abs() > LOOSE_MOMENT * largest) {
-            None => Ok(()),
-            Some((dof, _)) => Err(loose_moment("the load", dof)),
-        }
     }
 
     fn check_yielding(&self, factors: Array<f64>) -> Result<()> {
@@ -359,39 +209,123 @@ impl Refactored {
         }
         Ok(())
     }
+}
 
-    /// What changes along each direction.
-    fn moved(
-        &self,
-        directions: &Directions,
-        rates: (&[f64], &[f64]),
-        factors: &[f64],
-    ) -> Vec<Moved> {
-        let mut moved: Vec<Moved> = (0..directions.count)
-            .map(|_| Moved {
-                coefficients: vec![0.0; self.patterns],
-                weights: Vec::new(),
+/// All samples, shared among threads.
+struct Sweep<'a, R> {
+    refactored: &'a Refactored,
+    samples: Samples<'a>,
+    reading: &'a R,
+    results: &'a mut [f64],
+    threads: usize,
+}
+
+impl<R: Reading> WithSimd for Sweep<'_, R> {
+    type Output = Result<()>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Result<()> {
+        let Self { refactored, samples, reading, results, threads } = self;
+        let Refactored { system, patterns, .. } = refactored;
+        let prepare = || {
+            Ok(Scratch {
+                batch: Batch::new(simd, system, *patterns),
+                together: (system.panels.as_ref())
+                    .map(|panels| Together::new(simd, system, panels)),
+                shown: vec![simd.splat_f64s(0.0); reading.width()],
+                alone: Alone { refactored, samples, reading, careful: None },
             })
-            .collect();
-        for (&(direction, pattern), rate) in directions.loads.iter().zip(rates.0) {
-            moved[direction].coefficients[pattern] += rate;
-        }
-        for (&(direction, element), &rate) in directions.changes.iter().zip(rates.1) {
-            let weights = &mut moved[direction].weights;
-            weights.push((element, rate));
-            if element < self.system.weights.members {
-                let of_inverse = -rate / factors[element].powi(2);
-                weights.push((self.system.weights.inverse(element), of_inverse));
-            }
-        }
-        moved
+        };
+        let work = |scratch: &mut Scratch<S, R>, rows: Range<usize>, results: &mut [f64]| {
+            simd.vectorize(Chunk { simd, scratch, rows, results })
+        };
+        in_chunks(results, reading.width().max(1), CHUNK, threads, prepare, work)
     }
 }
 
-/// Of one direction: derivatives of the coefficients, and of the weights that change.
-struct Moved {
-    coefficients: Vec<f64>,
-    weights: Vec<(usize, f64)>,
+/// What a thread needs for its samples.
+struct Scratch<'a, S: Simd, R> {
+    batch: Batch<S>,
+    /// Nothing where the structure is too large.
+    together: Option<Together<'a, S>>,
+    shown: Vec<S::f64s>,
+    alone: Alone<'a, R>,
+}
+
+/// Samples that a thread takes at a time.
+struct Chunk<'a, 'b, S: Simd, R> {
+    simd: S,
+    scratch: &'a mut Scratch<'b, S, R>,
+    rows: Range<usize>,
+    results: &'a mut [f64],
+}
+
+impl<S: Simd, R: Reading> NullaryFnOnce for Chunk<'_, '_, S, R> {
+    type Output = Result<()>;
+
+    #[inline(always)]
+    fn call(self) -> Result<()> {
+        let Self { simd, scratch, rows, results } = self;
+        let Scratch { batch, together, shown, alone } = scratch;
+        let width = alone.reading.width();
+        let place = width.max(1);
+        let Samples { factors, coefficients } = alone.samples;
+        let system = &alone.refactored.system;
+        let lanes = if together.is_some() { S::F64_LANES } else { 1 };
+        for from in rows.clone().step_by(lanes) {
+            let count = lanes.min(rows.end - from);
+            let results = &mut results[(from - rows.start) * place..][..count * place];
+            let mut sound = [false; MOST_LANES];
+            if let Some(together) = together {
+                batch.take(simd, system, (factors.values, coefficients.values), from, count);
+                together.factorise(simd, batch);
+                shown.fill(simd.splat_f64s(0.0));
+                let rows = Rows { from, count };
+                alone.reading.read(simd, system, rows, batch, together, shown)?;
+                scatter::<S>(shown, results, place, count);
+                for (lane, found) in results.chunks_exact(place).enumerate() {
+                    let finite = found.iter().all(|value| value.is_finite());
+                    sound[lane] = finite && together.sound(simd, lane);
+                }
+            }
+            for lane in (0..count).filter(|&lane| !sound[lane]) {
+                let found = &mut results[lane * place..][..width];
+                alone.read(from + lane, found).map_err(|error| error.of_row(from + lane))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Lanes of the widest vectors, and more.
+const MOST_LANES: usize = 16;
+
+/// Samples one by one.
+struct Alone<'a, R> {
+    refactored: &'a Refactored,
+    samples: Samples<'a>,
+    reading: &'a R,
+    /// Made when the first sample needs it.
+    careful: Option<(Careful<'a>, Batch<Scalar>)>,
+}
+
+impl<R: Reading> Alone<'_, R> {
+    #[inline(never)]
+    fn read(&mut self, row: usize, found: &mut [f64]) -> Result<()> {
+        let simd = Scalar::new();
+        let Samples { factors, coefficients } = self.samples;
+        let Refactored { system, patterns, .. } = self.refactored;
+        let (careful, batch) = match &mut self.careful {
+            Some(pair) => pair,
+            none => none.insert((self.refactored.careful()?, Batch::new(simd, system, *patterns))),
+        };
+        batch.take(simd, system, (factors.values, coefficients.values), row, 1);
+        careful.factorise(batch)?;
+        found.fill(0.0);
+        let rows = Rows { from: row, count: 1 };
+        self.reading.read(simd, system, rows, batch, careful, found)?;
+        finite(found)
+    }
 }
 
 fn finite(found: &[f64]) -> Result<()> {

@@ -15,7 +15,7 @@ const SMALLEST_PIVOT: f64 = 1e-11;
 const SUSPICIOUS_PIVOT: f64 = 1e-6;
 
 /// Below this, the assembled matrix may have lost digits of soft motions.
-const DELICATE_PIVOT: f64 = 1e-3;
+pub const DELICATE_PIVOT: f64 = 1e-3;
 
 /// Refinements there: each gains about as many digits as the factor still has.
 const DELICATE_STEPS: usize = 2;
@@ -26,7 +26,7 @@ const FREE_ENERGY: f64 = 1e-12;
 /// Scaling never takes a direction that is this much softer than the
 /// stiffest of its node for a stiff one. With `SMALLEST_PIVOT` it refuses
 /// what `NO_STIFFNESS` calls rounding.
-const SOFTEST: f64 = 1e-10;
+pub const SOFTEST: f64 = 1e-10;
 
 /// Makes the scaled matrix definite; far below every stiffness that counts.
 const SHIFT: f64 = 1e-10;
@@ -51,8 +51,7 @@ impl Solver {
         let mut matrix = LowerTriangle::assemble(model, reduction);
         let turns = FreeTurn::find(&matrix, reduction);
         turns.iter().for_each(|turn| turn.hold(&mut matrix));
-        let mut solver = Self::analyse(matrix)?;
-        solver.turns = turns;
+        let mut solver = Self::analyse(matrix, turns)?;
         let stands = solver.factorise(model, reduction);
         if stands && !solver.moves_freely(model, reduction, |_| 1.0)? {
             Ok(solver)
@@ -61,12 +60,13 @@ impl Solver {
         }
     }
 
-    /// The symbolic analysis alone; `factorise` must follow.
-    pub fn analyse(matrix: LowerTriangle) -> Result<Self> {
+    /// The symbolic analysis alone; `factorise` must follow. `turns` are held in new values of K
+    /// by `hold_turns`.
+    pub fn analyse(matrix: LowerTriangle, turns: Vec<FreeTurn>) -> Result<Self> {
         Ok(Self {
             scale: vec![1.0; matrix.size()],
             factor: Factor::analyse(&matrix)?,
-            turns: Vec::new(),
+            turns,
             matrix,
         })
     }
@@ -80,12 +80,6 @@ impl Solver {
             factor: self.factor.another()?,
             turns: self.turns.clone(),
         })
-    }
-
-    /// Rotations about skew axes that nothing stiffens, from the values of K: they are held from
-    /// then on (`hold_turns`).
-    pub fn find_turns(&mut self, reduction: &Reduction) {
-        self.turns = FreeTurn::find(&self.matrix, reduction);
     }
 
     /// Holds them in new values of K.

@@ -6,7 +6,9 @@
 //! by probing them with unit motions and with each load pattern.
 
 use crate::assembly::{Entry as Place, LowerTriangle};
-use crate::bilinear::{Bilinear, Entry};
+use pulp::Simd;
+
+use crate::bilinear::{Bilinear, Entry, merged};
 use crate::constraint::Constraints;
 use crate::element::Vector12;
 use crate::error::Result;
@@ -16,6 +18,8 @@ use crate::member::Member;
 use crate::model::Model;
 use crate::observe::{Observer, Output, Reading, State};
 use crate::reduction::Reduction;
+use crate::refactor::{Elimination, Panels};
+use crate::turning::FreeTurn;
 
 /// Weights are the factors of members, then of springs; a one; and one over the factors of members.
 #[derive(Debug, Clone, Copy)]
@@ -37,11 +41,13 @@ impl Weights {
         self.elements + 1 + self.members
     }
 
-    pub fn fill(&self, factors: &[f64], weights: &mut [f64]) {
-        weights[..self.elements].copy_from_slice(factors);
-        weights[self.elements] = 1.0;
-        for (inverse, factor) in weights[self.elements + 1..].iter_mut().zip(factors) {
-            *inverse = 1.0 / factor;
+    /// Fills in what follows from the factors.
+    #[inline(always)]
+    pub fn complete<S: Simd>(&self, simd: S, weights: &mut [S::f64s]) {
+        let (factors, others) = weights.split_at_mut(self.elements);
+        others[0] = simd.splat_f64s(1.0);
+        for (inverse, factor) in others[1..].iter_mut().zip(factors) {
+            *inverse = simd.div_f64s(simd.splat_f64s(1.0), *factor);
         }
     }
 }
@@ -49,22 +55,36 @@ impl Weights {
 #[derive(Debug)]
 pub struct System {
     pub weights: Weights,
+    /// The unknown of each place in z, in the order of elimination, and back.
+    pub order: Vec<usize>,
+    pub place: Vec<usize>,
+    /// Where the factor of many samples together has its numbers, unless it is too large.
+    pub panels: Option<Panels>,
+    /// Rotations that nothing stiffens, held in K; of the unknowns in their own order.
+    pub turns: Vec<FreeTurn>,
     /// K, both triangles.
     pub stiffness: Bilinear,
     /// B
     pub load: Bilinear,
-    /// What each pattern puts on rotations that are held because nothing stiffens them.
+    /// What each pattern puts on rotations that are held because nothing stiffens them, and how
+    /// many these are.
     pub on_held: Bilinear,
+    pub held: usize,
     /// S
     pub shown: Bilinear,
     /// T
     pub direct: Bilinear,
-    /// Of the lower triangle of K: place among its values, weight, value.
-    places: Vec<(usize, usize, f64)>,
+    /// Of the lower triangle of K, unknowns in their own order: place among its values, weight,
+    /// value.
+    entries: Vec<(usize, usize, f64)>,
 }
 
+/// Numbers of a factor up to which samples are solved many at a time, one a lane. Beyond them
+/// caches hold too few of the lanes.
+const MOST: usize = 1 << 19;
+
 impl System {
-    /// Together with K, whose values are yet to be filled in.
+    /// Together with K, of factors of one.
     pub fn new(
         model: &Model,
         constraints: &Constraints,
@@ -76,19 +96,43 @@ impl System {
             members: model.members.len(),
             elements: model.members.len() + model.springs.len(),
         };
-        let stiffness = stiffness(model, reduction, &weights);
+        let stiffness = merged(stiffness(model, reduction, &weights));
         let size = reduction.unknowns.len();
         let lower = stiffness.iter().filter(|entry| entry.row >= entry.column);
         let diagonal = (0..size).map(|at| (at, at, 0.0));
-        let pattern: Vec<Place> = diagonal
-            .chain(lower.clone().map(|entry| (entry.row, entry.column, 0.0)))
+        let all: Vec<Place> = diagonal
+            .chain(lower.clone().map(|entry| (entry.row, entry.column, entry.value)))
             .collect();
-        let matrix = LowerTriangle::from_entries(&pattern, size);
-        let place = |entry: &Entry| {
+        let matrix = LowerTriangle::from_entries(&all, size);
+        let entry = |entry: &Entry| {
             let place = matrix.place(entry.row, entry.column);
             (place, entry.weight, entry.value)
         };
-        let places = lower.map(place).collect();
+        let entries = lower.map(entry).collect();
+        let turns = FreeTurn::find(&matrix, reduction);
+        let elimination = Elimination::new(&matrix, MOST);
+        let order = match &elimination {
+            Some(elimination) => elimination.order.clone(),
+            None => (0..size).collect(),
+        };
+        let mut place = vec![0; size];
+        for (at, &unknown) in order.iter().enumerate() {
+            place[unknown] = at;
+        }
+        let rows = |entries: Vec<Entry>| with_rows(entries, &place);
+        let columns = |entries: Vec<Entry>| with_columns(entries, &place);
+        let stiffness = rows(columns(stiffness));
+        let panels = elimination.map(|elimination| {
+            let held = turns.iter().flat_map(|turn| turn.stiffness_on(&matrix));
+            let held = held.map(|(row, column, value)| Entry {
+                weight: weights.one(),
+                row: place[row],
+                column: place[column],
+                value,
+            });
+            let entries: Vec<Entry> = stiffness.iter().copied().chain(held).collect();
+            Panels::new(&elimination, &entries)
+        });
         let probe = Probe::new(model, constraints, reduction, loads, weights)?;
         let (load, on_held) = probe.loads()?;
         let (shown, direct) = probe.outputs(wanted)?;
@@ -96,11 +140,16 @@ impl System {
         let system = Self {
             weights,
             stiffness: form(stiffness),
-            load: form(load),
+            load: form(rows(load)),
             on_held: form(on_held),
-            shown: form(shown),
+            held: reduction.held.len(),
+            shown: form(columns(shown)),
             direct: form(direct),
-            places,
+            entries,
+            panels,
+            turns,
+            order,
+            place,
         };
         Ok((system, matrix))
     }
@@ -108,10 +157,25 @@ impl System {
     /// Values of the lower triangle of K.
     pub fn fill(&self, weights: &[f64], values: &mut [f64]) {
         values.fill(0.0);
-        for &(place, weight, value) in &self.places {
+        for &(place, weight, value) in &self.entries {
             values[place] += weights[weight] * value;
         }
     }
+
+    /// Numbers in the order of elimination, by unknown.
+    pub fn by_unknown(&self, values: &[f64]) -> Vec<f64> {
+        self.place.iter().map(|&place| values[place]).collect()
+    }
+}
+
+fn with_rows(mut entries: Vec<Entry>, place: &[usize]) -> Vec<Entry> {
+    entries.iter_mut().for_each(|entry| entry.row = place[entry.row]);
+    entries
+}
+
+fn with_columns(mut entries: Vec<Entry>, place: &[usize]) -> Vec<Entry> {
+    entries.iter_mut().for_each(|entry| entry.column = place[entry.column]);
+    entries
 }
 
 /// End connections that yield do not scale with their member: it keeps the weight one.

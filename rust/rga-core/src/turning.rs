@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::assembly::LowerTriangle;
+use crate::assembly::{Entry as Place, LowerTriangle};
 use crate::equilibrium::{LOOSE_MOMENT, loose_moment};
 use crate::error::Result;
 use crate::reduction::Reduction;
@@ -18,7 +18,7 @@ const NO_STIFFNESS: f64 = 1e-12;
 #[derive(Debug, Clone)]
 pub struct FreeTurn {
     /// (unknown, component)
-    terms: Vec<(usize, f64)>,
+    pub terms: Vec<(usize, f64)>,
     /// That it is given.
     stiffness: f64,
     /// The dof that turns most.
@@ -66,15 +66,20 @@ impl FreeTurn {
 
     /// Stiffens it.
     pub fn hold(&self, matrix: &mut LowerTriangle) {
-        for &(row, left) in &self.terms {
-            for &(column, right) in &self.terms {
-                if row >= column
-                    && let Some(at) = matrix.find(row, column)
-                {
-                    matrix.values[at] += self.stiffness * left * right;
-                }
-            }
+        for (row, column, value) in self.stiffness_on(matrix) {
+            let at = matrix.place(row, column);
+            matrix.values[at] += value;
         }
+    }
+
+    /// The stiffness that it is given, in the lower triangle.
+    pub fn stiffness_on(&self, matrix: &LowerTriangle) -> Vec<Place> {
+        let pairs = self.terms.iter().flat_map(|&one| self.terms.iter().map(move |&other| (one, other)));
+        let below = pairs.filter(|((row, _), (column, _))| row >= column);
+        below
+            .filter(|((row, _), (column, _))| matrix.find(*row, *column).is_some())
+            .map(|((row, left), (column, right))| (row, column, self.stiffness * left * right))
+            .collect()
     }
 
     /// A moment about it must not vanish silently. `forces` are those on the unknowns.

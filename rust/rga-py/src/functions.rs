@@ -163,3 +163,13 @@ pub fn slide<'py>(
     let shape = [bearings.free_displacement.len(), bearings.mu.len()];
     PyArray1::from_vec(py, friction).reshape(shape)
 }
+
+/// Instruction sets of this processor that `Refactored` can solve samples with, the best first.
+///
+/// Returns
+/// -------
+/// list[str], of "avx512", "avx2" and "portable" on x86-64
+#[pyfunction]
+pub fn instructions() -> Vec<&'static str> {
+    rga_core::instructions()
+}

@@ -27,6 +27,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<condensed::Condensed>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
     module.add_class::<refactor::Refactored>()?;
+    module.add_function(wrap_pyfunction!(functions::instructions, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond_nonlinear, module)?)?;
     module.add_function(wrap_pyfunction!(functions::slide, module)?)

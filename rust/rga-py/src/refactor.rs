@@ -19,6 +19,8 @@ use crate::read::{read, read_problem};
 /// structure : m members, s springs, with the stiffnesses of a factor of 1
 /// loads : p patterns, of which each sample takes a sum
 /// outputs : o numbers for each sample
+/// instructions : one of `instructions()` that samples are solved with; None: the best. Results do
+///     not depend on it
 ///
 /// Raises
 /// ------
@@ -29,14 +31,16 @@ pub struct Refactored(rga_core::Refactored);
 #[pymethods]
 impl Refactored {
     #[new]
+    #[pyo3(signature = (structure, loads, outputs, instructions=None))]
     fn new(
         py: Python<'_>,
         structure: &Bound<'_, PyDict>,
         loads: &Bound<'_, PyDict>,
         outputs: &Bound<'_, PyDict>,
+        instructions: Option<&str>,
     ) -> PyResult<Self> {
         read_problem!(model, patterns, wanted from structure, loads, outputs);
-        py.detach(|| rga_core::Refactored::new(&model, &patterns, &wanted))
+        py.detach(|| rga_core::Refactored::new(&model, &patterns, &wanted, instructions))
             .map(Self)
             .map_err(|error| to_python(py, error))
     }

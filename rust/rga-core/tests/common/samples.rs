@@ -72,7 +72,7 @@ pub fn refactored(patterns: &[Case], outputs: &[Output]) -> Result<Refactored> {
         member_end: Array::new(&end, &per_load),
     };
     patterns[0].lend(outputs, |structure, _, outputs| {
-        Refactored::new(structure, &loads, outputs)
+        Refactored::new(structure, &loads, outputs, None)
     })
 }
 
