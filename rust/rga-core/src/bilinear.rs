@@ -25,10 +25,10 @@ const ELEMENT: usize = 200;
 
 #[derive(Debug)]
 pub struct Bilinear {
-    /// Of each weight, one behind the other.
+    /// Of one shape behind each other: where a loop over their terms ends is then foreseen.
     products: Vec<Product>,
-    /// The first product of each weight.
-    first: Vec<usize>,
+    /// The products of each weight.
+    own: Vec<Vec<usize>>,
     /// u and v of each product: index and value.
     rows: Vec<(usize, f64)>,
     columns: Vec<(usize, f64)>,
@@ -45,32 +45,32 @@ impl Bilinear {
     /// Entries of one place are summed, in their order.
     pub fn new(entries: Vec<Entry>, weights: usize) -> Self {
         let entries = merged(entries);
+        let groups = entries.chunk_by(|one, other| one.weight == other.weight);
+        let all = groups.flat_map(|own| {
+            let products = outer_products(own).into_iter();
+            products.map(|(u, v)| (own[0].weight, u, v))
+        });
+        let mut all: Vec<(usize, Terms, Terms)> = all.collect();
+        all.sort_by_key(|(_, u, v)| (u.len(), v.len()));
         let mut form = Self {
-            products: Vec::new(),
-            first: vec![0; weights + 1],
+            products: Vec::with_capacity(all.len()),
+            own: vec![Vec::new(); weights],
             rows: Vec::new(),
             columns: Vec::new(),
         };
-        for own in entries.chunk_by(|one, other| one.weight == other.weight) {
-            let weight = own[0].weight;
-            for (u, v) in outer_products(own) {
-                let (row, column) = (form.rows.len(), form.columns.len());
-                form.rows.extend(u);
-                form.columns.extend(v);
-                form.products.push(Product {
-                    weight,
-                    rows: row..form.rows.len(),
-                    columns: column..form.columns.len(),
-                });
-            }
-            form.first[weight + 1] = form.products.len();
-        }
-        for weight in 0..weights {
-            form.first[weight + 1] = form.first[weight + 1].max(form.first[weight]);
+        for (weight, u, v) in all {
+            let (row, column) = (form.rows.len(), form.columns.len());
+            form.rows.extend(u);
+            form.columns.extend(v);
+            form.own[weight].push(form.products.len());
+            form.products.push(Product {
+                weight,
+                rows: row..form.rows.len(),
+                columns: column..form.columns.len(),
+            });
         }
         form
     }
-
 
     /// `out` += w A x
     #[inline(always)]
@@ -134,9 +134,10 @@ impl Bilinear {
         }
     }
 
-    fn of(&self, weight: usize) -> &[Product] {
-        &self.products[self.first[weight]..self.first[weight + 1]]
+    fn of(&self, weight: usize) -> impl Iterator<Item = &Product> {
+        self.own[weight].iter().map(|&at| &self.products[at])
     }
+
 
     /// v' x
     #[inline(always)]
@@ -292,8 +293,8 @@ mod tests {
     #[test]
     fn products_give_the_matrix_again() {
         let form = Bilinear::new(entries(), 3);
-        assert_eq!(form.of(0).len(), 1);
-        assert!(form.of(2).is_empty());
+        assert_eq!(form.of(0).count(), 1);
+        assert!(form.of(2).next().is_none());
         let weights = [2.0, -3.0, 7.0];
         let whole = |row: usize, column: usize| -> f64 {
             let own = entries().into_iter();

@@ -29,6 +29,23 @@ impl Array<'_, f64> {
         }
     }
 
+    /// The same of one row of a matrix.
+    pub fn check_row(
+        &self,
+        name: &str,
+        row: usize,
+        right: &str,
+        good: impl Fn(f64) -> bool,
+    ) -> Result<()> {
+        match self.row(row).iter().position(|&value| !good(value)) {
+            None => Ok(()),
+            Some(at) => Err(Error::invalid(format!(
+                "{name}[{row}, {at}] is {}; it must be {right}",
+                self.row(row)[at]
+            ))),
+        }
+    }
+
     pub fn check_finite(&self, name: &str) -> Result<()> {
         self.check_each(name, "a finite number", f64::is_finite)
     }

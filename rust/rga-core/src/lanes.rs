@@ -50,14 +50,33 @@ pub fn gather<S: Simd>(lanes: &mut [S::f64s], rows: &[f64], from: usize, count: 
     if width == 0 {
         return;
     }
+    let mut given = [&rows[..0]; MOST_LANES];
+    for (lane, row) in given[..S::F64_LANES].iter_mut().enumerate() {
+        *row = &rows[(from + lane.min(count - 1)) * width..][..width];
+    }
     let flat: &mut [f64] = cast_slice_mut(lanes);
-    for lane in 0..S::F64_LANES {
-        let row = &rows[(from + lane.min(count - 1)) * width..][..width];
-        for (column, value) in flat.chunks_exact_mut(S::F64_LANES).zip(row) {
-            column[lane] = *value;
+    // Squares of numbers, turned one by one: compilers would scatter longer runs, which is slower.
+    for (square, places) in flat.chunks_mut(S::F64_LANES * S::F64_LANES).enumerate() {
+        let first = square * S::F64_LANES;
+        if places.len() == S::F64_LANES * S::F64_LANES {
+            for (lane, row) in given[..S::F64_LANES].iter().enumerate() {
+                let row = &row[first..first + S::F64_LANES];
+                for at in 0..S::F64_LANES {
+                    places[at * S::F64_LANES + lane] = row[at];
+                }
+            }
+        } else {
+            for (column, place) in places.chunks_exact_mut(S::F64_LANES).enumerate() {
+                for (value, row) in place.iter_mut().zip(&given) {
+                    *value = row[first + column];
+                }
+            }
         }
     }
 }
+
+/// Lanes of the widest vectors, or more.
+pub const MOST_LANES: usize = 16;
 
 /// Lanes into the beginnings of rows of `stride` numbers.
 #[inline(always)]

@@ -26,7 +26,7 @@ use crate::constraint::Constraints;
 use crate::directions::Directions;
 use crate::error::{Error, Result};
 use crate::input::{Array, Loads, Outputs, Structure};
-use crate::lanes::{instructions_named, scatter};
+use crate::lanes::{MOST_LANES, instructions_named, scatter};
 use crate::model::Model;
 use crate::observe::read_outputs;
 use crate::parallel::in_chunks;
@@ -170,8 +170,6 @@ impl Refactored {
         let rows = factors.len();
         factors.check_shape("factors", &[rows, self.elements()])?;
         coefficients.check_shape("coefficients", &[rows, self.patterns])?;
-        factors.check_each("factors", "finite and not negative", not_negative)?;
-        coefficients.check_finite("coefficients")?;
         self.check_yielding(factors)?;
         // Without outputs the samples are still checked: one place a row, left empty.
         let width = reading.width();
@@ -290,15 +288,12 @@ impl<S: Simd, R: Reading> NullaryFnOnce for Chunk<'_, '_, S, R> {
             }
             for lane in (0..count).filter(|&lane| !sound[lane]) {
                 let found = &mut results[lane * place..][..width];
-                alone.read(from + lane, found).map_err(|error| error.of_row(from + lane))?;
+                alone.read(from + lane, found)?;
             }
         }
         Ok(())
     }
 }
-
-/// Lanes of the widest vectors, and more.
-const MOST_LANES: usize = 16;
 
 /// Samples one by one.
 struct Alone<'a, R> {
@@ -315,16 +310,19 @@ impl<R: Reading> Alone<'_, R> {
         let simd = Scalar::new();
         let Samples { factors, coefficients } = self.samples;
         let Refactored { system, patterns, .. } = self.refactored;
+        factors.check_row("factors", row, "finite and not negative", not_negative)?;
+        coefficients.check_row("coefficients", row, "a finite number", f64::is_finite)?;
         let (careful, batch) = match &mut self.careful {
             Some(pair) => pair,
             none => none.insert((self.refactored.careful()?, Batch::new(simd, system, *patterns))),
         };
         batch.take(simd, system, (factors.values, coefficients.values), row, 1);
-        careful.factorise(batch)?;
         found.fill(0.0);
         let rows = Rows { from: row, count: 1 };
-        self.reading.read(simd, system, rows, batch, careful, found)?;
-        finite(found)
+        (careful.factorise(batch))
+            .and_then(|()| self.reading.read(simd, system, rows, batch, careful, found))
+            .and_then(|()| finite(found))
+            .map_err(|error| error.of_row(row))
     }
 }
 

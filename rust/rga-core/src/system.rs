@@ -26,6 +26,8 @@ use crate::turning::FreeTurn;
 pub struct Weights {
     pub members: usize,
     pub elements: usize,
+    /// Whether anything depends on one over a factor.
+    pub inverses: bool,
 }
 
 impl Weights {
@@ -46,6 +48,9 @@ impl Weights {
     pub fn complete<S: Simd>(&self, simd: S, weights: &mut [S::f64s]) {
         let (factors, others) = weights.split_at_mut(self.elements);
         others[0] = simd.splat_f64s(1.0);
+        if !self.inverses {
+            return;
+        }
         for (inverse, factor) in others[1..].iter_mut().zip(factors) {
             *inverse = simd.div_f64s(simd.splat_f64s(1.0), *factor);
         }
@@ -92,9 +97,10 @@ impl System {
         loads: &Loads,
         wanted: &[Output],
     ) -> Result<(Self, LowerTriangle)> {
-        let weights = Weights {
+        let mut weights = Weights {
             members: model.members.len(),
             elements: model.members.len() + model.springs.len(),
+            inverses: false,
         };
         let stiffness = merged(stiffness(model, reduction, &weights));
         let size = reduction.unknowns.len();
@@ -136,6 +142,7 @@ impl System {
         let probe = Probe::new(model, constraints, reduction, loads, weights)?;
         let (load, on_held) = probe.loads()?;
         let (shown, direct) = probe.outputs(wanted)?;
+        weights.inverses = shown.iter().chain(&direct).any(|entry| entry.weight > weights.one());
         let form = |entries: Vec<Entry>| Bilinear::new(entries, weights.count());
         let system = Self {
             weights,

@@ -97,8 +97,8 @@ impl<'a, S: Simd> Together<'a, S> {
         batch.unknowns.copy_from_slice(&batch.load);
         self.cholesky
             .factorise(simd, &batch.weights, DELICATE_PIVOT, &mut batch.unknowns);
-        self.cholesky.backward::<1>(simd, &mut batch.unknowns);
         self.sound = self.cholesky.sound;
+        self.check_given(simd, batch);
         let zero = simd.splat_f64s(0.0);
         let (mut least, mut most) = (simd.splat_f64s(f64::INFINITY), zero);
         for (soft, stiffness) in self.softness.iter_mut().zip(&self.cholesky.diagonal) {
@@ -110,6 +110,22 @@ impl<'a, S: Simd> Together<'a, S> {
         self.require(simd, softest, least);
         self.check(simd, &batch.weights, &batch.unknowns, &batch.load);
         self.check_turns(simd, batch);
+    }
+
+    /// Numbers that may not stand are refused by name where care is taken.
+    #[inline(always)]
+    fn check_given(&mut self, simd: S, batch: &Batch<S>) {
+        let zero = simd.splat_f64s(0.0);
+        let mut good = self.sound;
+        for factor in &batch.weights[..self.system.weights.elements] {
+            good = simd.and_m64s(good, simd.less_than_or_equal_f64s(zero, *factor));
+        }
+        let largest = simd.splat_f64s(f64::MAX);
+        for coefficient in &batch.coefficients {
+            let finite = simd.less_than_or_equal_f64s(simd.abs_f64s(*coefficient), largest);
+            good = simd.and_m64s(good, finite);
+        }
+        self.sound = good;
     }
 
     /// A moment on a rotation that nothing stiffens asks for care.

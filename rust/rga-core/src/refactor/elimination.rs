@@ -32,7 +32,11 @@ impl Elimination {
     pub fn new(matrix: &LowerTriangle, most: usize) -> Option<Self> {
         let orders = [minimum_degree(matrix)?, breadth_first(matrix)];
         let found = orders.map(|order| Self::along(matrix, order, most));
-        let found = found.into_iter().flatten();
+        let found = found.into_iter().flatten().inspect(|e| {
+            let f: f64 = e.supernodes.iter().map(|n| (0..n.columns.len()).map(|k| ((n.columns.len()-k+n.below.len()) as f64).powi(2)).sum::<f64>()).sum();
+            let sizes: Vec<(usize,usize)> = e.supernodes.iter().map(|n| (n.columns.len(), n.below.len())).collect();
+            eprintln!("cost {} numbers {} flops {} panels {} {:?}", e.cost(), e.numbers(), f, e.supernodes.len(), &sizes[..sizes.len().min(90)]);
+        });
         found.min_by(|one, other| one.cost().total_cmp(&other.cost()))
     }
 

@@ -1,7 +1,9 @@
 //! Where the numbers of the stiffness and of its factor stand, worked out once for all samples.
 //!
-//! A panel holds the columns of a supernode, row by row: those of its own unknowns, of which only
-//! the lower triangle counts, then those below.
+//! A panel holds the columns of a supernode, one behind the other: rows of its own unknowns, of
+//! which only the lower triangle counts, then those below.
+
+use std::ops::Range;
 
 use crate::bilinear::Entry;
 use super::elimination::{Elimination, Supernode};
@@ -11,10 +13,16 @@ pub struct Panels {
     pub panels: Vec<Panel>,
     /// Numbers of all panels.
     pub numbers: usize,
-    /// Sums that are not zero of the stiffness, panel by panel.
-    places: Vec<Place>,
-    /// (weight, value) of each sum, one behind the other.
-    terms: Vec<(usize, f64)>,
+    /// Of the stiffness, panel by panel; of each, places of one term come before sums of many.
+    terms: Vec<Term>,
+}
+
+/// A part of the stiffness: a value times a weight, at a place in its panel.
+#[derive(Debug, Clone, Copy)]
+pub struct Term {
+    pub place: u32,
+    pub weight: u32,
+    pub value: f64,
 }
 
 #[derive(Debug)]
@@ -30,7 +38,11 @@ pub struct Panel {
     /// Panels that are filled in before it: itself, or those to which it is the first to hand on.
     /// What is filled in is used at once, while it is in the cache.
     pub fills: Vec<usize>,
-    places: std::ops::Range<usize>,
+    /// Places of the lower triangle that no term fills.
+    pub empty: Vec<u32>,
+    /// Its terms: those that stand alone, and those of sums.
+    alone: Range<usize>,
+    sums: Range<usize>,
 }
 
 /// What a panel hands on to another.
@@ -43,13 +55,6 @@ pub struct Update {
     pub end: usize,
     /// The row there of each row from `from` on; for a column, its number there too.
     pub rows: Vec<usize>,
-}
-
-#[derive(Debug)]
-pub struct Place {
-    /// In its panel.
-    pub at: usize,
-    terms: std::ops::Range<usize>,
 }
 
 impl Panels {
@@ -71,7 +76,9 @@ impl Panels {
                 start,
                 updates: updates(node, supernodes, &owner),
                 fills: Vec::new(),
-                places: 0..0,
+                empty: Vec::new(),
+                alone: 0..0,
+                sums: 0..0,
             });
             start += width * (width + node.below.len());
         }
@@ -85,8 +92,7 @@ impl Panels {
         let mut found = Self {
             panels,
             numbers: start,
-            places: Vec::new(),
-            terms: Vec::new(),
+            terms: Vec::with_capacity(stiffness.len()),
         };
         found.place(&owner, stiffness);
         found
@@ -94,49 +100,80 @@ impl Panels {
 
     fn place(&mut self, owner: &[usize], stiffness: &[Entry]) {
         let lower = stiffness.iter().filter(|entry| entry.row >= entry.column);
-        let mut sums: Vec<(usize, usize, usize, f64)> = lower
+        let mut placed: Vec<(usize, Term)> = lower
             .map(|entry| {
                 let index = owner[entry.column];
                 let panel = &self.panels[index];
-                let at = panel.row(entry.row) * panel.width + entry.column - panel.first;
-                (index, at, entry.weight, entry.value)
+                let column = entry.column - panel.first;
+                let term = Term {
+                    place: (column * panel.rows() + panel.row(entry.row)) as u32,
+                    weight: entry.weight as u32,
+                    value: entry.value,
+                };
+                (index, term)
             })
             .collect();
-        sums.sort_by_key(|&(panel, at, weight, _)| (panel, at, weight));
-        for own in sums.chunk_by(|one, other| one.0 == other.0) {
-            let before = self.places.len();
-            for sum in own.chunk_by(|one, other| one.1 == other.1) {
-                let first = self.terms.len();
-                self.terms.extend(sum.iter().map(|&(_, _, weight, value)| (weight, value)));
-                self.places.push(Place {
-                    at: sum[0].1,
-                    terms: first..self.terms.len(),
-                });
+        placed.sort_by_key(|(panel, term)| (*panel, term.place, term.weight));
+        for own in placed.chunk_by(|one, other| one.0 == other.0) {
+            let places = own.chunk_by(|one, other| one.1.place == other.1.place);
+            let (alone, mut sums): (Vec<_>, Vec<_>) = places.partition(|terms| terms.len() == 1);
+            // Sums of one length behind each other: where a loop ends is then foreseen.
+            sums.sort_by_key(|terms| terms.len());
+            let mut take = |places: &[&[(usize, Term)]]| {
+                let before = self.terms.len();
+                let terms = places.iter().copied().flatten();
+                self.terms.extend(terms.map(|(_, term)| *term));
+                before..self.terms.len()
+            };
+            let (alone, sums) = (take(&alone), take(&sums));
+            let panel = &mut self.panels[own[0].0];
+            (panel.alone, panel.sums) = (alone, sums);
+        }
+        for panel in &mut self.panels {
+            let own = [panel.alone.clone(), panel.sums.clone()];
+            let mut filled = vec![false; panel.width * panel.rows()];
+            for term in own.into_iter().flat_map(|own| &self.terms[own]) {
+                filled[term.place as usize] = true;
             }
-            self.panels[own[0].0].places = before..self.places.len();
+            let rows = panel.rows();
+            let lower = (0..panel.width).flat_map(|column| column * (rows + 1)..(column + 1) * rows);
+            panel.empty = lower.filter(|&at| !filled[at]).map(|at| at as u32).collect();
         }
     }
 
-    /// Sums of a panel.
-    pub fn places(&self, panel: &Panel) -> &[Place] {
-        &self.places[panel.places.clone()]
+    /// Terms of a panel that stand alone at their place.
+    pub fn alone(&self, panel: &Panel) -> &[Term] {
+        &self.terms[panel.alone.clone()]
     }
 
-    /// (weight, value)
-    pub fn terms(&self, place: &Place) -> &[(usize, f64)] {
-        &self.terms[place.terms.clone()]
+    /// Terms of a panel of which many make a sum; those of a sum behind each other.
+    pub fn sums(&self, panel: &Panel) -> &[Term] {
+        &self.terms[panel.sums.clone()]
     }
 
-    /// Numbers of the largest panel.
+    /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.panels.last().map_or(0, |panel| panel.first + panel.width)
     }
 }
 
 impl Panel {
+    pub fn rows(&self) -> usize {
+        self.width + self.below.len()
+    }
+
     /// Numbers of the panel.
-    pub fn numbers(&self) -> std::ops::Range<usize> {
-        self.start..self.start + self.width * (self.width + self.below.len())
+    pub fn numbers(&self) -> Range<usize> {
+        self.start..self.start + self.width * self.rows()
+    }
+
+    /// The unknown of a row.
+    #[inline(always)]
+    pub fn unknown(&self, row: usize) -> usize {
+        match row.checked_sub(self.width) {
+            None => self.first + row,
+            Some(row) => self.below[row],
+        }
     }
 
     /// The row of an unknown that has one.

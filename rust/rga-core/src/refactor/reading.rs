@@ -152,7 +152,7 @@ impl Forward<'_> {
         for (&(direction, element), rate) in changes.iter().zip(rates) {
             let weights = &mut moved[direction].weights;
             weights.push((element, rate));
-            if element < system.weights.members {
+            if system.weights.inverses && element < system.weights.members {
                 let inverse = system.weights.inverse(element);
                 let of_one = batch.weights[inverse];
                 let change = simd.mul_f64s(rate, simd.mul_f64s(of_one, of_one));
@@ -205,6 +205,9 @@ impl Reading for Adjoint<'_> {
         system.shown.add_to_weights(simd, &gradients, unknowns, &mut by_weights);
         system.direct.add_to_weights(simd, &gradients, coefficients, &mut by_weights);
         by_factors.copy_from_slice(&by_weights[..self.elements]);
+        if !system.weights.inverses {
+            return Ok(());
+        }
         for (member, by_factor) in by_factors[..system.weights.members].iter_mut().enumerate() {
             let inverse = system.weights.inverse(member);
             let (rate, of_one) = (by_weights[inverse], weights[inverse]);
