@@ -6,7 +6,8 @@
 use std::ops::Range;
 
 use nalgebra::DMatrix;
-use pulp::Simd;
+
+use crate::lanes::Lanes;
 
 /// `value` in row and column of the matrix of one weight.
 #[derive(Debug, Clone, Copy)]
@@ -74,63 +75,63 @@ impl Bilinear {
 
     /// `out` += w A x
     #[inline(always)]
-    pub fn add<S: Simd>(
+    pub fn add<L: Lanes>(
         &self,
-        simd: S,
-        weights: &[S::f64s],
-        x: &[S::f64s],
-        out: &mut [S::f64s],
+        lanes: L,
+        weights: &[L::Numbers],
+        x: &[L::Numbers],
+        out: &mut [L::Numbers],
     ) {
         for product in &self.products {
-            let along = simd.mul_f64s(weights[product.weight], self.columns(simd, product, x));
-            self.spread_rows(simd, product, along, out);
+            let along = lanes.mul(weights[product.weight], self.columns(lanes, product, x));
+            self.spread_rows(lanes, product, along, out);
         }
     }
 
     /// The part of one weight.
     #[inline(always)]
-    pub fn add_one<S: Simd>(
+    pub fn add_one<L: Lanes>(
         &self,
-        simd: S,
-        (at, weight): (usize, S::f64s),
-        x: &[S::f64s],
-        out: &mut [S::f64s],
+        lanes: L,
+        (at, weight): (usize, L::Numbers),
+        x: &[L::Numbers],
+        out: &mut [L::Numbers],
     ) {
         for product in self.of(at) {
-            let along = simd.mul_f64s(weight, self.columns(simd, product, x));
-            self.spread_rows(simd, product, along, out);
+            let along = lanes.mul(weight, self.columns(lanes, product, x));
+            self.spread_rows(lanes, product, along, out);
         }
     }
 
     /// `out` += (w A)' y
     #[inline(always)]
-    pub fn add_transposed<S: Simd>(
+    pub fn add_transposed<L: Lanes>(
         &self,
-        simd: S,
-        weights: &[S::f64s],
-        y: &[S::f64s],
-        out: &mut [S::f64s],
+        lanes: L,
+        weights: &[L::Numbers],
+        y: &[L::Numbers],
+        out: &mut [L::Numbers],
     ) {
         for product in &self.products {
-            let along = simd.mul_f64s(weights[product.weight], self.rows(simd, product, y));
+            let along = lanes.mul(weights[product.weight], self.rows(lanes, product, y));
             for &(column, value) in &self.columns[product.columns.clone()] {
-                out[column] = simd.mul_add_f64s(simd.splat_f64s(value), along, out[column]);
+                out[column] = lanes.mul_add(lanes.splat(value), along, out[column]);
             }
         }
     }
 
     /// `out[k]` += y' A[k] x
     #[inline(always)]
-    pub fn add_to_weights<S: Simd>(
+    pub fn add_to_weights<L: Lanes>(
         &self,
-        simd: S,
-        y: &[S::f64s],
-        x: &[S::f64s],
-        out: &mut [S::f64s],
+        lanes: L,
+        y: &[L::Numbers],
+        x: &[L::Numbers],
+        out: &mut [L::Numbers],
     ) {
         for product in &self.products {
-            let (rows, columns) = (self.rows(simd, product, y), self.columns(simd, product, x));
-            out[product.weight] = simd.mul_add_f64s(rows, columns, out[product.weight]);
+            let (rows, columns) = (self.rows(lanes, product, y), self.columns(lanes, product, x));
+            out[product.weight] = lanes.mul_add(rows, columns, out[product.weight]);
         }
     }
 
@@ -141,35 +142,35 @@ impl Bilinear {
 
     /// v' x
     #[inline(always)]
-    fn columns<S: Simd>(&self, simd: S, product: &Product, x: &[S::f64s]) -> S::f64s {
-        dot(simd, &self.columns[product.columns.clone()], x)
+    fn columns<L: Lanes>(&self, lanes: L, product: &Product, x: &[L::Numbers]) -> L::Numbers {
+        dot(lanes, &self.columns[product.columns.clone()], x)
     }
 
     /// u' y
     #[inline(always)]
-    fn rows<S: Simd>(&self, simd: S, product: &Product, y: &[S::f64s]) -> S::f64s {
-        dot(simd, &self.rows[product.rows.clone()], y)
+    fn rows<L: Lanes>(&self, lanes: L, product: &Product, y: &[L::Numbers]) -> L::Numbers {
+        dot(lanes, &self.rows[product.rows.clone()], y)
     }
 
     #[inline(always)]
-    fn spread_rows<S: Simd>(
+    fn spread_rows<L: Lanes>(
         &self,
-        simd: S,
+        lanes: L,
         product: &Product,
-        along: S::f64s,
-        out: &mut [S::f64s],
+        along: L::Numbers,
+        out: &mut [L::Numbers],
     ) {
         for &(row, value) in &self.rows[product.rows.clone()] {
-            out[row] = simd.mul_add_f64s(simd.splat_f64s(value), along, out[row]);
+            out[row] = lanes.mul_add(lanes.splat(value), along, out[row]);
         }
     }
 }
 
 #[inline(always)]
-fn dot<S: Simd>(simd: S, terms: &[(usize, f64)], x: &[S::f64s]) -> S::f64s {
-    let mut sum = simd.splat_f64s(0.0);
+fn dot<L: Lanes>(lanes: L, terms: &[(usize, f64)], x: &[L::Numbers]) -> L::Numbers {
+    let mut sum = lanes.splat(0.0);
     for &(at, value) in terms {
-        sum = simd.mul_add_f64s(simd.splat_f64s(value), x[at], sum);
+        sum = lanes.mul_add(lanes.splat(value), x[at], sum);
     }
     sum
 }

@@ -1,91 +1,254 @@
-//! Rows of numbers in the lanes of SIMD vectors, and the instruction sets that a processor has.
+//! Numbers of many samples side by side, one a lane of SIMD vectors.
+
+use std::fmt::Debug;
 
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
-use pulp::{Arch, Simd};
+use pulp::{NullaryFnOnce, Scalar, Simd};
 
-use crate::error::{Error, Result};
+/// What is done with a number of each sample. Products are added without rounding in between, on
+/// every processor, so that a sample has the same bits in any lane.
+pub trait Lanes: Copy + Send + Sync {
+    type Numbers: Debug + Copy + Send + Sync;
+    type Mask: Copy + Send + Sync;
 
-/// Instruction sets of this processor that samples can be solved with, the best first.
-pub fn instructions() -> Vec<&'static str> {
-    known().into_iter().map(|(name, _)| name).collect()
-}
+    /// Samples.
+    const COUNT: usize;
 
-/// The instruction set of a name; nothing names the best.
-pub fn instructions_named(name: Option<&str>) -> Result<Arch> {
-    let Some(wanted) = name else {
-        return Ok(Arch::new());
-    };
-    let known = known();
-    match known.iter().find(|(name, _)| *name == wanted) {
-        Some((_, arch)) => Ok(*arch),
-        None => Err(Error::invalid(format!(
-            "instructions is {wanted:?}; this processor has {}",
-            instructions().join(", ")
-        ))),
-    }
-}
+    /// Sums of so many numbers times three others stay in registers.
+    const TALL: usize;
 
-#[cfg(target_arch = "x86_64")]
-fn known() -> Vec<(&'static str, Arch)> {
-    use pulp::x86::{V3, V4};
-    let avx512 = V4::try_new().map(|simd| ("avx512", Arch::V4(simd)));
-    let avx2 = V3::try_new().map(|simd| ("avx2", Arch::V3(simd)));
-    let all = [avx512, avx2, Some(("portable", Arch::Scalar))];
-    all.into_iter().flatten().collect()
-}
+    fn splat(self, value: f64) -> Self::Numbers;
+    fn add(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    fn sub(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    fn mul(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    fn div(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    /// a b + c
+    fn mul_add(self, a: Self::Numbers, b: Self::Numbers, c: Self::Numbers) -> Self::Numbers;
+    /// c - a b
+    fn take_product(self, a: Self::Numbers, b: Self::Numbers, c: Self::Numbers) -> Self::Numbers;
+    fn neg(self, a: Self::Numbers) -> Self::Numbers;
+    fn abs(self, a: Self::Numbers) -> Self::Numbers;
+    fn sqrt(self, a: Self::Numbers) -> Self::Numbers;
+    fn min(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    fn max(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    /// Whether a <= b; not where one of them is no number.
+    fn at_most(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
+    fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn select(self, mask: Self::Mask, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
 
-#[cfg(not(target_arch = "x86_64"))]
-fn known() -> Vec<(&'static str, Arch)> {
-    let mut known = vec![("portable", Arch::Scalar)];
-    if !matches!(Arch::new(), Arch::Scalar) {
-        known.insert(0, (std::env::consts::ARCH, Arch::new()));
-    }
-    known
-}
+    /// The same, lane by lane.
+    fn flat(numbers: &[Self::Numbers]) -> &[f64];
+    fn flat_mut(numbers: &mut [Self::Numbers]) -> &mut [f64];
 
-/// Columns of rows of numbers into lanes; lanes behind the last row hold the last row again.
-#[inline(always)]
-pub fn gather<S: Simd>(lanes: &mut [S::f64s], rows: &[f64], from: usize, count: usize) {
-    let width = lanes.len();
-    if width == 0 {
-        return;
-    }
-    let mut given = [&rows[..0]; MOST_LANES];
-    for (lane, row) in given[..S::F64_LANES].iter_mut().enumerate() {
-        *row = &rows[(from + lane.min(count - 1)) * width..][..width];
-    }
-    let flat: &mut [f64] = cast_slice_mut(lanes);
-    // Squares of numbers, turned one by one: compilers would scatter longer runs, which is slower.
-    for (square, places) in flat.chunks_mut(S::F64_LANES * S::F64_LANES).enumerate() {
-        let first = square * S::F64_LANES;
-        if places.len() == S::F64_LANES * S::F64_LANES {
-            for (lane, row) in given[..S::F64_LANES].iter().enumerate() {
-                let row = &row[first..first + S::F64_LANES];
-                for at in 0..S::F64_LANES {
-                    places[at * S::F64_LANES + lane] = row[at];
+    /// Runs a function compiled for the instructions of these lanes.
+    fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output;
+
+    /// Columns of rows of numbers into lanes; lanes behind the last row hold the last row again.
+    #[inline(always)]
+    fn gather(self, lanes: &mut [Self::Numbers], rows: &[f64], from: usize, count: usize) {
+        let width = lanes.len();
+        if width == 0 {
+            return;
+        }
+        let mut given = [&rows[..0]; MOST];
+        for (lane, row) in given[..Self::COUNT].iter_mut().enumerate() {
+            *row = &rows[(from + lane.min(count - 1)) * width..][..width];
+        }
+        let flat = Self::flat_mut(lanes);
+        // Squares of numbers, turned one by one: compilers would scatter longer runs, which is
+        // slower.
+        for (square, places) in flat.chunks_mut(SQUARE * Self::COUNT).enumerate() {
+            let first = square * SQUARE;
+            if places.len() == SQUARE * Self::COUNT {
+                for (lane, row) in given[..Self::COUNT].iter().enumerate() {
+                    let row = &row[first..first + SQUARE];
+                    for at in 0..SQUARE {
+                        places[at * Self::COUNT + lane] = row[at];
+                    }
+                }
+            } else {
+                for (column, place) in places.chunks_exact_mut(Self::COUNT).enumerate() {
+                    for (value, row) in place.iter_mut().zip(&given) {
+                        *value = row[first + column];
+                    }
                 }
             }
-        } else {
-            for (column, place) in places.chunks_exact_mut(S::F64_LANES).enumerate() {
-                for (value, row) in place.iter_mut().zip(&given) {
-                    *value = row[first + column];
-                }
+        }
+    }
+
+    /// Lanes into the beginnings of rows of `stride` numbers.
+    #[inline(always)]
+    fn scatter(self, lanes: &[Self::Numbers], rows: &mut [f64], stride: usize, count: usize) {
+        let flat = Self::flat(lanes);
+        for (lane, row) in rows.chunks_mut(stride).take(count).enumerate() {
+            for (column, value) in flat.chunks_exact(Self::COUNT).zip(row) {
+                *value = column[lane];
             }
         }
     }
 }
 
-/// Lanes of the widest vectors, or more.
-pub const MOST_LANES: usize = 16;
+/// Samples of the widest lanes, or more.
+pub const MOST: usize = 32;
 
-/// Lanes into the beginnings of rows of `stride` numbers.
-#[inline(always)]
-pub fn scatter<S: Simd>(lanes: &[S::f64s], rows: &mut [f64], stride: usize, count: usize) {
-    let flat: &[f64] = cast_slice(lanes);
-    for (lane, row) in rows.chunks_mut(stride).take(count).enumerate() {
-        for (column, value) in flat.chunks_exact(S::F64_LANES).zip(row) {
-            *value = column[lane];
+/// Columns that are turned together.
+const SQUARE: usize = 8;
+
+/// `P` vectors together: what is worked out for all of them, where numbers stand above all, is
+/// worked out once, and their sums do not wait for each other.
+#[derive(Debug, Clone, Copy)]
+pub struct Packs<S, const P: usize>(pub S);
+
+/// One sample.
+pub type One = Packs<Scalar, 1>;
+pub const ONE: One = Packs(Scalar);
+
+impl<S: Simd, const P: usize> Packs<S, P> {
+    #[inline(always)]
+    fn each(
+        self,
+        a: [S::f64s; P],
+        b: [S::f64s; P],
+        with: impl Fn(S, S::f64s, S::f64s) -> S::f64s,
+    ) -> [S::f64s; P] {
+        let mut found = a;
+        for at in 0..P {
+            found[at] = with(self.0, a[at], b[at]);
         }
+        found
+    }
+
+    #[inline(always)]
+    fn masked(
+        self,
+        a: [S::f64s; P],
+        b: [S::f64s; P],
+        with: impl Fn(S, S::f64s, S::f64s) -> S::m64s,
+    ) -> [S::m64s; P] {
+        let mut found = [with(self.0, a[0], b[0]); P];
+        for at in 1..P {
+            found[at] = with(self.0, a[at], b[at]);
+        }
+        found
     }
 }
 
+impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
+    type Numbers = [S::f64s; P];
+    type Mask = [S::m64s; P];
+
+    const COUNT: usize = P * S::F64_LANES;
+    const TALL: usize = if S::REGISTER_COUNT >= 32 { 4 } else { 2 };
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self::Numbers {
+        [self.0.splat_f64s(value); P]
+    }
+
+    #[inline(always)]
+    fn add(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        self.each(a, b, #[inline(always)] |simd, a, b| simd.add_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn sub(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        self.each(a, b, #[inline(always)] |simd, a, b| simd.sub_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn mul(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        self.each(a, b, #[inline(always)] |simd, a, b| simd.mul_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn div(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        self.each(a, b, #[inline(always)] |simd, a, b| simd.div_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn min(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        self.each(a, b, #[inline(always)] |simd, a, b| simd.min_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn max(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        self.each(a, b, #[inline(always)] |simd, a, b| simd.max_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: Self::Numbers, b: Self::Numbers, c: Self::Numbers) -> Self::Numbers {
+        let mut found = c;
+        for at in 0..P {
+            found[at] = self.0.mul_add_f64s(a[at], b[at], c[at]);
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn take_product(self, a: Self::Numbers, b: Self::Numbers, c: Self::Numbers) -> Self::Numbers {
+        let mut found = c;
+        for at in 0..P {
+            found[at] = self.0.negate_mul_add_f64s(a[at], b[at], c[at]);
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn neg(self, a: Self::Numbers) -> Self::Numbers {
+        self.each(a, a, #[inline(always)] |simd, a, _| simd.neg_f64s(a))
+    }
+
+    #[inline(always)]
+    fn abs(self, a: Self::Numbers) -> Self::Numbers {
+        self.each(a, a, #[inline(always)] |simd, a, _| simd.abs_f64s(a))
+    }
+
+    #[inline(always)]
+    fn sqrt(self, a: Self::Numbers) -> Self::Numbers {
+        self.each(a, a, #[inline(always)] |simd, a, _| simd.sqrt_f64s(a))
+    }
+
+    #[inline(always)]
+    fn at_most(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask {
+        self.masked(a, b, #[inline(always)] |simd, a, b| simd.less_than_or_equal_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask {
+        self.masked(a, b, #[inline(always)] |simd, a, b| simd.equal_f64s(a, b))
+    }
+
+    #[inline(always)]
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        let mut found = a;
+        for at in 0..P {
+            found[at] = self.0.and_m64s(a[at], b[at]);
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn select(self, mask: Self::Mask, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        let mut found = a;
+        for at in 0..P {
+            found[at] = self.0.select_f64s(mask[at], a[at], b[at]);
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn flat(numbers: &[Self::Numbers]) -> &[f64] {
+        cast_slice(numbers.as_flattened())
+    }
+
+    #[inline(always)]
+    fn flat_mut(numbers: &mut [Self::Numbers]) -> &mut [f64] {
+        cast_slice_mut(numbers.as_flattened_mut())
+    }
+
+    #[inline(always)]
+    fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {
+        self.0.vectorize(function)
+    }
+}

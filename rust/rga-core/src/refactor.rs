@@ -17,7 +17,7 @@ mod reading;
 
 use std::ops::Range;
 
-use pulp::{Arch, NullaryFnOnce, Scalar, Simd, WithSimd};
+use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
 
 use crate::check::not_negative;
 use crate::check_loads::{check_loads, check_outputs};
@@ -26,7 +26,8 @@ use crate::constraint::Constraints;
 use crate::directions::Directions;
 use crate::error::{Error, Result};
 use crate::input::{Array, Loads, Outputs, Structure};
-use crate::lanes::{MOST_LANES, instructions_named, scatter};
+use crate::instructions::instructions_named;
+use crate::lanes::{Lanes, MOST, ONE, One, Packs};
 use crate::model::Model;
 use crate::observe::read_outputs;
 use crate::parallel::in_chunks;
@@ -223,67 +224,74 @@ impl<R: Reading> WithSimd for Sweep<'_, R> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Result<()> {
+        self.over(Packs::<S, 1>(simd))
+    }
+}
+
+impl<R: Reading> Sweep<'_, R> {
+    #[inline(always)]
+    fn over<L: Lanes>(self, lanes: L) -> Result<()> {
         let Self { refactored, samples, reading, results, threads } = self;
         let Refactored { system, patterns, .. } = refactored;
         let prepare = || {
             Ok(Scratch {
-                batch: Batch::new(simd, system, *patterns),
+                batch: Batch::new(lanes, system, *patterns),
                 together: (system.panels.as_ref())
-                    .map(|panels| Together::new(simd, system, panels)),
-                shown: vec![simd.splat_f64s(0.0); reading.width()],
+                    .map(|panels| Together::new(lanes, system, panels)),
+                shown: vec![lanes.splat(0.0); reading.width()],
                 alone: Alone { refactored, samples, reading, careful: None },
             })
         };
-        let work = |scratch: &mut Scratch<S, R>, rows: Range<usize>, results: &mut [f64]| {
-            simd.vectorize(Chunk { simd, scratch, rows, results })
+        let work = |scratch: &mut Scratch<L, R>, rows: Range<usize>, results: &mut [f64]| {
+            lanes.vectorize(Chunk { lanes, scratch, rows, results })
         };
         in_chunks(results, reading.width().max(1), CHUNK, threads, prepare, work)
     }
 }
 
 /// What a thread needs for its samples.
-struct Scratch<'a, S: Simd, R> {
-    batch: Batch<S>,
+struct Scratch<'a, L: Lanes, R> {
+    batch: Batch<L>,
     /// Nothing where the structure is too large.
-    together: Option<Together<'a, S>>,
-    shown: Vec<S::f64s>,
+    together: Option<Together<'a, L>>,
+    shown: Vec<L::Numbers>,
     alone: Alone<'a, R>,
 }
 
 /// Samples that a thread takes at a time.
-struct Chunk<'a, 'b, S: Simd, R> {
-    simd: S,
-    scratch: &'a mut Scratch<'b, S, R>,
+struct Chunk<'a, 'b, L: Lanes, R> {
+    lanes: L,
+    scratch: &'a mut Scratch<'b, L, R>,
     rows: Range<usize>,
     results: &'a mut [f64],
 }
 
-impl<S: Simd, R: Reading> NullaryFnOnce for Chunk<'_, '_, S, R> {
+impl<L: Lanes, R: Reading> NullaryFnOnce for Chunk<'_, '_, L, R> {
     type Output = Result<()>;
 
     #[inline(always)]
     fn call(self) -> Result<()> {
-        let Self { simd, scratch, rows, results } = self;
+        let Self { lanes, scratch, rows, results } = self;
         let Scratch { batch, together, shown, alone } = scratch;
         let width = alone.reading.width();
         let place = width.max(1);
         let Samples { factors, coefficients } = alone.samples;
         let system = &alone.refactored.system;
-        let lanes = if together.is_some() { S::F64_LANES } else { 1 };
-        for from in rows.clone().step_by(lanes) {
-            let count = lanes.min(rows.end - from);
+        let at_once = if together.is_some() { L::COUNT } else { 1 };
+        for from in rows.clone().step_by(at_once) {
+            let count = at_once.min(rows.end - from);
             let results = &mut results[(from - rows.start) * place..][..count * place];
-            let mut sound = [false; MOST_LANES];
+            let mut sound = [false; MOST];
             if let Some(together) = together {
-                batch.take(simd, system, (factors.values, coefficients.values), from, count);
-                together.factorise(simd, batch);
-                shown.fill(simd.splat_f64s(0.0));
+                batch.take(lanes, system, (factors.values, coefficients.values), from, count);
+                together.factorise(lanes, batch);
+                shown.fill(lanes.splat(0.0));
                 let rows = Rows { from, count };
-                alone.reading.read(simd, system, rows, batch, together, shown)?;
-                scatter::<S>(shown, results, place, count);
+                alone.reading.read(lanes, system, rows, batch, together, shown)?;
+                lanes.scatter(shown, results, place, count);
                 for (lane, found) in results.chunks_exact(place).enumerate() {
                     let finite = found.iter().all(|value| value.is_finite());
-                    sound[lane] = finite && together.sound(simd, lane);
+                    sound[lane] = finite && together.sound(lanes, lane);
                 }
             }
             for lane in (0..count).filter(|&lane| !sound[lane]) {
@@ -301,26 +309,26 @@ struct Alone<'a, R> {
     samples: Samples<'a>,
     reading: &'a R,
     /// Made when the first sample needs it.
-    careful: Option<(Careful<'a>, Batch<Scalar>)>,
+    careful: Option<(Careful<'a>, Batch<One>)>,
 }
 
 impl<R: Reading> Alone<'_, R> {
     #[inline(never)]
     fn read(&mut self, row: usize, found: &mut [f64]) -> Result<()> {
-        let simd = Scalar::new();
         let Samples { factors, coefficients } = self.samples;
         let Refactored { system, patterns, .. } = self.refactored;
         factors.check_row("factors", row, "finite and not negative", not_negative)?;
         coefficients.check_row("coefficients", row, "a finite number", f64::is_finite)?;
         let (careful, batch) = match &mut self.careful {
             Some(pair) => pair,
-            none => none.insert((self.refactored.careful()?, Batch::new(simd, system, *patterns))),
+            none => none.insert((self.refactored.careful()?, Batch::new(ONE, system, *patterns))),
         };
-        batch.take(simd, system, (factors.values, coefficients.values), row, 1);
+        batch.take(ONE, system, (factors.values, coefficients.values), row, 1);
         found.fill(0.0);
         let rows = Rows { from: row, count: 1 };
+        let (shown, _) = found.as_chunks_mut();
         (careful.factorise(batch))
-            .and_then(|()| self.reading.read(simd, system, rows, batch, careful, found))
+            .and_then(|()| self.reading.read(ONE, system, rows, batch, careful, shown))
             .and_then(|()| finite(found))
             .map_err(|error| error.of_row(row))
     }

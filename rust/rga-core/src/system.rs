@@ -6,13 +6,13 @@
 //! by probing them with unit motions and with each load pattern.
 
 use crate::assembly::{Entry as Place, LowerTriangle};
-use pulp::Simd;
 
 use crate::bilinear::{Bilinear, Entry, merged};
 use crate::constraint::Constraints;
 use crate::element::Vector12;
 use crate::error::Result;
 use crate::input::Loads;
+use crate::lanes::Lanes;
 use crate::load::{PatternLoads, fixed_end_forces};
 use crate::member::Member;
 use crate::model::Model;
@@ -45,14 +45,14 @@ impl Weights {
 
     /// Fills in what follows from the factors.
     #[inline(always)]
-    pub fn complete<S: Simd>(&self, simd: S, weights: &mut [S::f64s]) {
+    pub fn complete<L: Lanes>(&self, lanes: L, weights: &mut [L::Numbers]) {
         let (factors, others) = weights.split_at_mut(self.elements);
-        others[0] = simd.splat_f64s(1.0);
+        others[0] = lanes.splat(1.0);
         if !self.inverses {
             return;
         }
         for (inverse, factor) in others[1..].iter_mut().zip(factors) {
-            *inverse = simd.div_f64s(simd.splat_f64s(1.0), *factor);
+            *inverse = lanes.div(lanes.splat(1.0), *factor);
         }
     }
 }

@@ -1,11 +1,10 @@
 //! One sample at a time, refined and with every refusal named: what the lanes leave over, and
 //! structures that are too large for them.
 
-use pulp::{Scalar, Simd};
-
 use super::batch::{Batch, Solve};
 use crate::equilibrium::{LOOSE_MOMENT, loose_moment};
 use crate::error::{Error, Result};
+use crate::lanes::{Lanes, ONE, One};
 use crate::model::Model;
 use crate::reduction::Reduction;
 use crate::stability::Solver;
@@ -20,12 +19,13 @@ pub struct Careful<'a> {
 
 impl Careful<'_> {
     /// Finds the unknowns under the load.
-    pub fn factorise(&mut self, batch: &mut Batch<Scalar>) -> Result<()> {
+    pub fn factorise(&mut self, batch: &mut Batch<One>) -> Result<()> {
         let (system, solver) = (self.system, &mut self.solver);
-        if !batch.load.iter().all(|force| force.is_finite()) {
+        let load = One::flat(&batch.load);
+        if !load.iter().all(|force| force.is_finite()) {
             return Err(Error::invalid("the load overflows; lower the coefficients"));
         }
-        let weights = &batch.weights;
+        let weights = One::flat(&batch.weights);
         system.fill(weights, solver.values_mut());
         if !solver.values_mut().iter().all(|value| value.is_finite()) {
             return Err(Error::invalid("the stiffness overflows; lower the factors"));
@@ -44,25 +44,26 @@ impl Careful<'_> {
         if solver.moves_freely(self.model, self.reduction, |element| weights[element])? {
             return Err(solver.unstable(self.model, self.reduction));
         }
-        let load = system.by_unknown(&batch.load);
+        let load = system.by_unknown(load);
         self.check_loose(batch, &load, &loose)?;
         self.solver.check_turns(&load, "the load")?;
         let mut unknowns = batch.load.clone();
-        self.solve(Scalar::new(), batch, &mut unknowns)?;
+        self.solve(ONE, batch, &mut unknowns)?;
         batch.unknowns = unknowns;
         Ok(())
     }
 
     /// A moment on a rotation that nothing stiffens must not vanish silently.
-    fn check_loose(&self, batch: &Batch<Scalar>, load: &[f64], loose: &[usize]) -> Result<()> {
+    fn check_loose(&self, batch: &Batch<One>, load: &[f64], loose: &[usize]) -> Result<()> {
         let Reduction { held, unknowns, .. } = self.reduction;
-        let mut on_held = vec![0.0; held.len()];
+        let mut on_held = vec![[0.0]; held.len()];
         let Batch { weights, coefficients, .. } = batch;
-        (self.system.on_held).add(Scalar::new(), weights, coefficients, &mut on_held);
-        let forces = load.iter().chain(&on_held);
+        (self.system.on_held).add(ONE, weights, coefficients, &mut on_held);
+        let on_held = One::flat(&on_held);
+        let forces = load.iter().chain(on_held);
         let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
         let of_loose = loose.iter().map(|&at| (unknowns[at], load[at]));
-        let of_held = held.iter().copied().zip(on_held);
+        let of_held = held.iter().copied().zip(on_held.iter().copied());
         let mut turned = of_loose.chain(of_held);
         match turned.find(|(_, moment)| moment.abs() > LOOSE_MOMENT * largest) {
             None => Ok(()),
@@ -82,17 +83,18 @@ impl Careful<'_> {
     }
 }
 
-impl Solve<Scalar> for Careful<'_> {
+impl Solve<One> for Careful<'_> {
     fn solve(
         &mut self,
-        _: Scalar,
-        batch: &Batch<Scalar>,
-        right: &mut [<Scalar as Simd>::f64s],
+        _: One,
+        batch: &Batch<One>,
+        right: &mut [[f64; 1]],
     ) -> Result<()> {
         let size = batch.load.len().max(1);
         for column in right.chunks_exact_mut(size) {
+            let column = column.as_flattened_mut();
             let mut values = self.system.by_unknown(column);
-            let resisted = |unknowns: &[f64]| self.resisted(&batch.weights, unknowns);
+            let resisted = |unknowns: &[f64]| self.resisted(One::flat(&batch.weights), unknowns);
             if !self.solver.solve_checked(&mut values, resisted)? {
                 return Err(self.solver.unstable(self.model, self.reduction));
             }

@@ -4,29 +4,30 @@
 //! in any lane of any instruction set. Tiles of sums stay in registers: loops over them have fixed
 //! lengths.
 
-use pulp::{NullaryFnOnce, Simd};
+use pulp::NullaryFnOnce;
 
 use super::panels::{Panel, Panels, Update};
+use crate::lanes::Lanes;
 
 /// L of K = L L', with one over its diagonal beside it.
-pub struct Cholesky<'a, S: Simd> {
+pub struct Cholesky<'a, L: Lanes> {
     panels: &'a Panels,
-    values: Vec<S::f64s>,
-    inverse: Vec<S::f64s>,
+    values: Vec<L::Numbers>,
+    inverse: Vec<L::Numbers>,
     /// The diagonal of K.
-    pub diagonal: Vec<S::f64s>,
+    pub diagonal: Vec<L::Numbers>,
     /// Lanes of which every pivot is at least a share of the diagonal.
-    pub sound: S::m64s,
+    pub sound: L::Mask,
 }
 
-impl<'a, S: Simd> Cholesky<'a, S> {
-    pub fn new(simd: S, panels: &'a Panels) -> Self {
-        let zero = simd.splat_f64s(0.0);
+impl<'a, L: Lanes> Cholesky<'a, L> {
+    pub fn new(lanes: L, panels: &'a Panels) -> Self {
+        let zero = lanes.splat(0.0);
         Self {
             values: vec![zero; panels.numbers],
             inverse: vec![zero; panels.size()],
             diagonal: vec![zero; panels.size()],
-            sound: simd.less_than_or_equal_f64s(zero, zero),
+            sound: lanes.at_most(zero, zero),
             panels,
         }
     }
@@ -35,10 +36,10 @@ impl<'a, S: Simd> Cholesky<'a, S> {
     /// panel is at hand.
     ///
     /// `share` is that of `sound`.
-    pub fn factorise(&mut self, simd: S, weights: &[S::f64s], share: f64, right: &mut [S::f64s]) {
+    pub fn factorise(&mut self, lanes: L, weights: &[L::Numbers], share: f64, right: &mut [L::Numbers]) {
         let cholesky = self;
-        simd.vectorize(Factorise {
-            simd,
+        lanes.vectorize(Factorise {
+            lanes,
             cholesky,
             weights,
             share,
@@ -47,30 +48,30 @@ impl<'a, S: Simd> Cholesky<'a, S> {
     }
 
     /// Solves K x = `right` in place, `N` right-hand sides beside each other.
-    pub fn solve<const N: usize>(&self, simd: S, right: &mut [S::f64s]) {
+    pub fn solve<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
         let cholesky = self;
-        simd.vectorize(Substitute::<S, N> {
-            simd,
+        lanes.vectorize(Substitute::<L, N> {
+            lanes,
             cholesky,
             right,
         });
     }
 
     #[inline(always)]
-    fn fill(&mut self, simd: S, panel: &Panel, weights: &[S::f64s]) {
+    fn fill(&mut self, lanes: L, panel: &Panel, weights: &[L::Numbers]) {
         let values = &mut self.values[panel.numbers()];
         for &place in &panel.empty {
-            values[place as usize] = simd.splat_f64s(0.0);
+            values[place as usize] = lanes.splat(0.0);
         }
         for term in self.panels.alone(panel) {
-            let value = simd.splat_f64s(term.value);
-            values[term.place as usize] = simd.mul_f64s(weights[term.weight as usize], value);
+            let value = lanes.splat(term.value);
+            values[term.place as usize] = lanes.mul(weights[term.weight as usize], value);
         }
         for sum in self.panels.sums(panel).chunk_by(|one, other| one.place == other.place) {
-            let mut total = simd.splat_f64s(0.0);
+            let mut total = lanes.splat(0.0);
             for term in sum {
-                let value = simd.splat_f64s(term.value);
-                total = simd.mul_add_f64s(weights[term.weight as usize], value, total);
+                let value = lanes.splat(term.value);
+                total = lanes.mul_add(weights[term.weight as usize], value, total);
             }
             values[sum[0].place as usize] = total;
         }
@@ -84,17 +85,17 @@ impl<'a, S: Simd> Cholesky<'a, S> {
     #[inline(always)]
     fn factorise_panel<const TALL: usize, const WIDE: usize>(
         &mut self,
-        simd: S,
+        lanes: L,
         panel: &Panel,
         share: f64,
     ) {
         let mut column = 0;
         while column + WIDE <= panel.width {
-            self.factorise_columns::<TALL, WIDE>(simd, panel, column, share);
+            self.factorise_columns::<TALL, WIDE>(lanes, panel, column, share);
             column += WIDE;
         }
         while column < panel.width {
-            self.factorise_columns::<TALL, 1>(simd, panel, column, share);
+            self.factorise_columns::<TALL, 1>(lanes, panel, column, share);
             column += 1;
         }
     }
@@ -103,33 +104,33 @@ impl<'a, S: Simd> Cholesky<'a, S> {
     #[inline(always)]
     fn factorise_columns<const TALL: usize, const WIDE: usize>(
         &mut self,
-        simd: S,
+        lanes: L,
         panel: &Panel,
         column: usize,
         share: f64,
     ) {
         let rows = panel.rows();
         let (before, own) = self.values[panel.numbers()].split_at_mut(column * rows);
-        let mut triangle = load::<S, WIDE, WIDE>(simd, own, rows, column);
-        take_products(simd, before, rows, (column, column), &mut triangle);
-        let mut inverse = [simd.splat_f64s(0.0); WIDE];
+        let mut triangle = load::<L, WIDE, WIDE>(lanes, own, rows, column);
+        take_products(lanes, before, rows, (column, column), &mut triangle);
+        let mut inverse = [lanes.splat(0.0); WIDE];
         for at in 0..WIDE {
             let unknown = panel.first + column + at;
             let pivot = triangle[at][at];
-            let least = simd.mul_f64s(simd.splat_f64s(share), self.diagonal[unknown]);
-            let strong = simd.less_than_or_equal_f64s(least, pivot);
-            self.sound = simd.and_m64s(self.sound, strong);
+            let least = lanes.mul(lanes.splat(share), self.diagonal[unknown]);
+            let strong = lanes.at_most(least, pivot);
+            self.sound = lanes.and(self.sound, strong);
             // The next pivot waits for this division, and not for the root as well.
-            let of_one = simd.div_f64s(simd.splat_f64s(1.0), pivot);
-            inverse[at] = simd.sqrt_f64s(of_one);
+            let of_one = lanes.div(lanes.splat(1.0), pivot);
+            inverse[at] = lanes.sqrt(of_one);
             self.inverse[unknown] = inverse[at];
             for other in 0..WIDE {
                 if other > at {
-                    let factor = simd.mul_f64s(triangle[at][other], of_one);
+                    let factor = lanes.mul(triangle[at][other], of_one);
                     for row in 0..WIDE {
                         if row >= other {
                             let (left, sum) = (triangle[at][row], triangle[other][row]);
-                            triangle[other][row] = simd.negate_mul_add_f64s(left, factor, sum);
+                            triangle[other][row] = lanes.take_product(left, factor, sum);
                         }
                     }
                 }
@@ -137,11 +138,11 @@ impl<'a, S: Simd> Cholesky<'a, S> {
         }
         for (line, inverse) in triangle.iter_mut().zip(inverse) {
             for value in line {
-                *value = simd.mul_f64s(*value, inverse);
+                *value = lanes.mul(*value, inverse);
             }
         }
         // What stands above the diagonal counts for nothing.
-        store(simd, own, rows, column, &triangle);
+        store(lanes, own, rows, column, &triangle);
         let below = Below {
             before,
             rows,
@@ -151,22 +152,22 @@ impl<'a, S: Simd> Cholesky<'a, S> {
         };
         let mut row = column + WIDE;
         while row + TALL <= rows {
-            below.factorise::<TALL>(simd, row, own);
+            below.factorise::<TALL>(lanes, row, own);
             row += TALL;
         }
         if row + 2 <= rows {
-            below.factorise::<2>(simd, row, own);
+            below.factorise::<2>(lanes, row, own);
             row += 2;
         }
         if row < rows {
-            below.factorise::<1>(simd, row, own);
+            below.factorise::<1>(lanes, row, own);
         }
     }
 
     #[inline(always)]
     fn hand_on<const TALL: usize, const WIDE: usize>(
         &mut self,
-        simd: S,
+        lanes: L,
         panel: &Panel,
         update: &Update,
     ) {
@@ -183,25 +184,25 @@ impl<'a, S: Simd> Cholesky<'a, S> {
         let columns = update.end - update.from;
         let mut column = 0;
         while column + WIDE <= columns {
-            hand.columns::<S, TALL, WIDE>(simd, column, to);
+            hand.columns::<L, TALL, WIDE>(lanes, column, to);
             column += WIDE;
         }
         while column < columns {
-            hand.columns::<S, TALL, 1>(simd, column, to);
+            hand.columns::<L, TALL, 1>(lanes, column, to);
             column += 1;
         }
     }
 
     /// Solves L x = `right` as far as one panel goes.
     #[inline(always)]
-    fn forward<const N: usize>(&self, simd: S, panel: &Panel, right: &mut [S::f64s]) {
+    fn forward<const N: usize>(&self, lanes: L, panel: &Panel, right: &mut [L::Numbers]) {
         let mut column = 0;
         while column + TOGETHER <= panel.width {
-            self.forward_columns::<N, TOGETHER>(simd, panel, column, right);
+            self.forward_columns::<N, TOGETHER>(lanes, panel, column, right);
             column += TOGETHER;
         }
         while column < panel.width {
-            self.forward_columns::<N, 1>(simd, panel, column, right);
+            self.forward_columns::<N, 1>(lanes, panel, column, right);
             column += 1;
         }
     }
@@ -209,35 +210,35 @@ impl<'a, S: Simd> Cholesky<'a, S> {
     #[inline(always)]
     fn forward_columns<const N: usize, const WIDE: usize>(
         &self,
-        simd: S,
+        lanes: L,
         panel: &Panel,
         column: usize,
-        right: &mut [S::f64s],
+        right: &mut [L::Numbers],
     ) {
         let rows = panel.rows();
-        let lines = columns::<S, WIDE>(&self.values[panel.numbers()], rows, column);
+        let lines = columns::<L, WIDE>(&self.values[panel.numbers()], rows, column);
         let first = panel.first + column;
-        let mut known = load::<S, N, WIDE>(simd, &right[first * N..], N, 0);
+        let mut known = load::<L, N, WIDE>(lanes, &right[first * N..], N, 0);
         for at in 0..WIDE {
             for value in &mut known[at] {
-                *value = simd.mul_f64s(*value, self.inverse[first + at]);
+                *value = lanes.mul(*value, self.inverse[first + at]);
             }
             for row in 0..WIDE {
                 if row > at {
                     for n in 0..N {
                         let (factor, sum) = (lines[at][column + row], known[row][n]);
-                        known[row][n] = simd.negate_mul_add_f64s(factor, known[at][n], sum);
+                        known[row][n] = lanes.take_product(factor, known[at][n], sum);
                     }
                 }
             }
         }
-        store(simd, &mut right[first * N..], N, 0, &known);
+        store(lanes, &mut right[first * N..], N, 0, &known);
         for row in column + WIDE..rows {
             let place = &mut right[panel.unknown(row) * N..][..N];
             for (n, place) in place.iter_mut().enumerate() {
                 let mut sum = *place;
                 for at in 0..WIDE {
-                    sum = simd.negate_mul_add_f64s(lines[at][row], known[at][n], sum);
+                    sum = lanes.take_product(lines[at][row], known[at][n], sum);
                 }
                 *place = sum;
             }
@@ -246,16 +247,16 @@ impl<'a, S: Simd> Cholesky<'a, S> {
 
     /// Solves L' x = `right`, `N` right-hand sides beside each other.
     #[inline(always)]
-    fn backward<const N: usize>(&self, simd: S, right: &mut [S::f64s]) {
+    fn backward<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
         for panel in self.panels.panels.iter().rev() {
             let mut column = panel.width;
             while column % TOGETHER > 0 {
                 column -= 1;
-                self.backward_columns::<N, 1>(simd, panel, column, right);
+                self.backward_columns::<N, 1>(lanes, panel, column, right);
             }
             while column > 0 {
                 column -= TOGETHER;
-                self.backward_columns::<N, TOGETHER>(simd, panel, column, right);
+                self.backward_columns::<N, TOGETHER>(lanes, panel, column, right);
             }
         }
     }
@@ -263,110 +264,112 @@ impl<'a, S: Simd> Cholesky<'a, S> {
     #[inline(always)]
     fn backward_columns<const N: usize, const WIDE: usize>(
         &self,
-        simd: S,
+        lanes: L,
         panel: &Panel,
         column: usize,
-        right: &mut [S::f64s],
+        right: &mut [L::Numbers],
     ) {
         let rows = panel.rows();
-        let lines = columns::<S, WIDE>(&self.values[panel.numbers()], rows, column);
+        let lines = columns::<L, WIDE>(&self.values[panel.numbers()], rows, column);
         let first = panel.first + column;
-        let mut sums = load::<S, N, WIDE>(simd, &right[first * N..], N, 0);
+        let mut sums = load::<L, N, WIDE>(lanes, &right[first * N..], N, 0);
         for row in column + WIDE..rows {
             let known = &right[panel.unknown(row) * N..][..N];
             for at in 0..WIDE {
                 for n in 0..N {
-                    sums[at][n] = simd.negate_mul_add_f64s(lines[at][row], known[n], sums[at][n]);
+                    sums[at][n] = lanes.take_product(lines[at][row], known[n], sums[at][n]);
                 }
             }
         }
         for back in 0..WIDE {
             let at = WIDE - 1 - back;
             for value in &mut sums[at] {
-                *value = simd.mul_f64s(*value, self.inverse[first + at]);
+                *value = lanes.mul(*value, self.inverse[first + at]);
             }
             for other in 0..WIDE {
                 if other < at {
                     for n in 0..N {
                         let (factor, sum) = (lines[other][column + at], sums[other][n]);
-                        sums[other][n] = simd.negate_mul_add_f64s(factor, sums[at][n], sum);
+                        sums[other][n] = lanes.take_product(factor, sums[at][n], sum);
                     }
                 }
             }
         }
-        store(simd, &mut right[first * N..], N, 0, &sums);
+        store(lanes, &mut right[first * N..], N, 0, &sums);
     }
 }
+
+/// Columns that are factorised together. Bits depend on it.
+const WIDE: usize = 3;
 
 /// Columns that are solved together.
 const TOGETHER: usize = 4;
 
 // Each of these is compiled once for an instruction set, not wherever it is called.
 
-struct Factorise<'a, 'b, S: Simd> {
-    simd: S,
-    cholesky: &'a mut Cholesky<'b, S>,
-    weights: &'a [S::f64s],
+struct Factorise<'a, 'b, L: Lanes> {
+    lanes: L,
+    cholesky: &'a mut Cholesky<'b, L>,
+    weights: &'a [L::Numbers],
     share: f64,
-    right: &'a mut [S::f64s],
+    right: &'a mut [L::Numbers],
 }
 
-impl<S: Simd> NullaryFnOnce for Factorise<'_, '_, S> {
+impl<L: Lanes> NullaryFnOnce for Factorise<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        // As many sums as registers hold beside what is added to them.
-        if S::REGISTER_COUNT >= 32 {
-            self.factorise::<4, 4>();
+        if L::TALL == 4 {
+            self.factorise::<4>();
         } else {
-            self.factorise::<3, 4>();
+            self.factorise::<2>();
         }
     }
 }
 
-impl<S: Simd> Factorise<'_, '_, S> {
+impl<L: Lanes> Factorise<'_, '_, L> {
     #[inline(always)]
-    fn factorise<const TALL: usize, const WIDE: usize>(self) {
+    fn factorise<const TALL: usize>(self) {
         let Self {
-            simd,
+            lanes,
             cholesky,
             weights,
             share,
             right,
         } = self;
         let panels = cholesky.panels;
-        let zero = simd.splat_f64s(0.0);
-        cholesky.sound = simd.less_than_or_equal_f64s(zero, zero);
+        let zero = lanes.splat(0.0);
+        cholesky.sound = lanes.at_most(zero, zero);
         for panel in &panels.panels {
             for &other in &panel.fills {
-                cholesky.fill(simd, &panels.panels[other], weights);
+                cholesky.fill(lanes, &panels.panels[other], weights);
             }
-            cholesky.factorise_panel::<TALL, WIDE>(simd, panel, share);
+            cholesky.factorise_panel::<TALL, WIDE>(lanes, panel, share);
             for update in &panel.updates {
-                cholesky.hand_on::<TALL, WIDE>(simd, panel, update);
+                cholesky.hand_on::<TALL, WIDE>(lanes, panel, update);
             }
-            cholesky.forward::<1>(simd, panel, right);
+            cholesky.forward::<1>(lanes, panel, right);
         }
-        cholesky.backward::<1>(simd, right);
+        cholesky.backward::<1>(lanes, right);
     }
 }
 
-struct Substitute<'a, 'b, S: Simd, const N: usize> {
-    simd: S,
-    cholesky: &'a Cholesky<'b, S>,
-    right: &'a mut [S::f64s],
+struct Substitute<'a, 'b, L: Lanes, const N: usize> {
+    lanes: L,
+    cholesky: &'a Cholesky<'b, L>,
+    right: &'a mut [L::Numbers],
 }
 
-impl<S: Simd, const N: usize> NullaryFnOnce for Substitute<'_, '_, S, N> {
+impl<L: Lanes, const N: usize> NullaryFnOnce for Substitute<'_, '_, L, N> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
         for panel in &self.cholesky.panels.panels {
-            self.cholesky.forward::<N>(self.simd, panel, self.right);
+            self.cholesky.forward::<N>(self.lanes, panel, self.right);
         }
-        self.cholesky.backward::<N>(self.simd, self.right);
+        self.cholesky.backward::<N>(self.lanes, self.right);
     }
 }
 
@@ -384,27 +387,27 @@ impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
     #[inline(always)]
     fn factorise<const TALL: usize>(
         &self,
-        simd: impl Simd<f64s = V>,
+        lanes: impl Lanes<Numbers = V>,
         row: usize,
         own: &mut [V],
     ) {
-        let mut sums = load::<_, TALL, WIDE>(simd, own, self.rows, row);
-        take_products(simd, self.before, self.rows, (row, self.column), &mut sums);
+        let mut sums = load::<_, TALL, WIDE>(lanes, own, self.rows, row);
+        take_products(lanes, self.before, self.rows, (row, self.column), &mut sums);
         for at in 0..WIDE {
             for before in 0..WIDE {
                 if before < at {
                     let factor = self.triangle[before][at];
                     for i in 0..TALL {
                         sums[at][i] =
-                            simd.negate_mul_add_f64s(sums[before][i], factor, sums[at][i]);
+                            lanes.take_product(sums[before][i], factor, sums[at][i]);
                     }
                 }
             }
             for value in &mut sums[at] {
-                *value = simd.mul_f64s(*value, self.inverse[at]);
+                *value = lanes.mul(*value, self.inverse[at]);
             }
         }
-        store(simd, own, self.rows, row, &sums);
+        store(lanes, own, self.rows, row, &sums);
     }
 }
 
@@ -425,35 +428,35 @@ impl<V: Copy> Hand<'_, V> {
     /// `WIDE` columns, and all rows from the first of them on. What falls above the diagonal of
     /// the other panel counts for nothing.
     #[inline(always)]
-    fn columns<S: Simd<f64s = V>, const TALL: usize, const WIDE: usize>(
+    fn columns<L: Lanes<Numbers = V>, const TALL: usize, const WIDE: usize>(
         &self,
-        simd: S,
+        lanes: L,
         column: usize,
         to: &mut [V],
     ) {
         let mut row = column;
         while row + TALL <= self.rows.len() {
-            self.tile::<S, TALL, WIDE>(simd, row, column, to);
+            self.tile::<L, TALL, WIDE>(lanes, row, column, to);
             row += TALL;
         }
         if row + 2 <= self.rows.len() {
-            self.tile::<S, 2, WIDE>(simd, row, column, to);
+            self.tile::<L, 2, WIDE>(lanes, row, column, to);
             row += 2;
         }
         if row < self.rows.len() {
-            self.tile::<S, 1, WIDE>(simd, row, column, to);
+            self.tile::<L, 1, WIDE>(lanes, row, column, to);
         }
     }
 
     #[inline(always)]
-    fn tile<S: Simd<f64s = V>, const TALL: usize, const WIDE: usize>(
+    fn tile<L: Lanes<Numbers = V>, const TALL: usize, const WIDE: usize>(
         &self,
-        simd: S,
+        lanes: L,
         row: usize,
         column: usize,
         to: &mut [V],
     ) {
-        let mut sums = [[simd.splat_f64s(0.0); TALL]; WIDE];
+        let mut sums = [[lanes.splat(0.0); TALL]; WIDE];
         let rows = &self.rows[row..row + TALL];
         let together = rows[TALL - 1] - rows[0] == TALL - 1;
         for (sums, column) in sums.iter_mut().zip(&self.rows[column..column + WIDE]) {
@@ -469,7 +472,7 @@ impl<V: Copy> Hand<'_, V> {
             }
         }
         let places = (self.skipped + row, self.skipped + column);
-        take_products(simd, self.given, self.height, places, &mut sums);
+        take_products(lanes, self.given, self.height, places, &mut sums);
         for (sums, column) in sums.iter().zip(&self.rows[column..column + WIDE]) {
             let line = &mut to[column * self.offset..][..self.offset];
             if together {
@@ -487,12 +490,12 @@ impl<V: Copy> Hand<'_, V> {
 
 /// `sums` -= the products of rows from each of two places on, over all columns.
 #[inline(always)]
-fn take_products<S: Simd, const TALL: usize, const WIDE: usize>(
-    simd: S,
-    columns: &[S::f64s],
+fn take_products<L: Lanes, const TALL: usize, const WIDE: usize>(
+    lanes: L,
+    columns: &[L::Numbers],
     height: usize,
     (row, other): (usize, usize),
-    sums: &mut [[S::f64s; TALL]; WIDE],
+    sums: &mut [[L::Numbers; TALL]; WIDE],
 ) {
     let mut held = *sums;
     let mut rest = columns;
@@ -501,7 +504,7 @@ fn take_products<S: Simd, const TALL: usize, const WIDE: usize>(
         let (own, factors) = (&line[row..row + TALL], &line[other..other + WIDE]);
         for (sums, factor) in held.iter_mut().zip(factors) {
             for (sum, value) in sums.iter_mut().zip(own) {
-                *sum = simd.negate_mul_add_f64s(*value, *factor, *sum);
+                *sum = lanes.take_product(*value, *factor, *sum);
             }
         }
         rest = further;
@@ -511,13 +514,13 @@ fn take_products<S: Simd, const TALL: usize, const WIDE: usize>(
 
 /// A tile from `row` on of the first columns.
 #[inline(always)]
-fn load<S: Simd, const TALL: usize, const WIDE: usize>(
-    simd: S,
-    columns: &[S::f64s],
+fn load<L: Lanes, const TALL: usize, const WIDE: usize>(
+    lanes: L,
+    columns: &[L::Numbers],
     height: usize,
     row: usize,
-) -> [[S::f64s; TALL]; WIDE] {
-    let mut tile = [[simd.splat_f64s(0.0); TALL]; WIDE];
+) -> [[L::Numbers; TALL]; WIDE] {
+    let mut tile = [[lanes.splat(0.0); TALL]; WIDE];
     for (at, line) in tile.iter_mut().enumerate() {
         let given = &columns[at * height + row..][..TALL];
         for (place, value) in line.iter_mut().zip(given) {
@@ -528,12 +531,12 @@ fn load<S: Simd, const TALL: usize, const WIDE: usize>(
 }
 
 #[inline(always)]
-fn store<S: Simd, const TALL: usize, const WIDE: usize>(
-    _: S,
-    columns: &mut [S::f64s],
+fn store<L: Lanes, const TALL: usize, const WIDE: usize>(
+    _: L,
+    columns: &mut [L::Numbers],
     height: usize,
     row: usize,
-    tile: &[[S::f64s; TALL]; WIDE],
+    tile: &[[L::Numbers; TALL]; WIDE],
 ) {
     for (at, line) in tile.iter().enumerate() {
         let places = &mut columns[at * height + row..][..TALL];
@@ -545,11 +548,11 @@ fn store<S: Simd, const TALL: usize, const WIDE: usize>(
 
 /// Whole columns, from one on.
 #[inline(always)]
-fn columns<S: Simd, const WIDE: usize>(
-    values: &[S::f64s],
+fn columns<L: Lanes, const WIDE: usize>(
+    values: &[L::Numbers],
     height: usize,
     column: usize,
-) -> [&[S::f64s]; WIDE] {
+) -> [&[L::Numbers]; WIDE] {
     let mut lines = [&values[..0]; WIDE];
     for (at, line) in lines.iter_mut().enumerate() {
         *line = &values[(column + at) * height..][..height];

@@ -2,13 +2,12 @@
 //!
 //!   K dz = B dq + dB q - dK z,    dy = S dz + T dq + dS z + dT q.
 
-use pulp::Simd;
 
 use super::batch::{Batch, Solve};
 use crate::directions::Directions;
 use crate::error::Result;
 use crate::input::Array;
-use crate::lanes::gather;
+use crate::lanes::Lanes;
 use crate::system::System;
 
 /// Rows of the samples in the lanes.
@@ -23,14 +22,14 @@ pub trait Reading: Sync {
     fn width(&self) -> usize;
 
     /// Adds them to `shown`.
-    fn read<S: Simd>(
+    fn read<L: Lanes>(
         &self,
-        simd: S,
+        lanes: L,
         system: &System,
         rows: Rows,
-        batch: &Batch<S>,
-        solver: &mut impl Solve<S>,
-        shown: &mut [S::f64s],
+        batch: &Batch<L>,
+        solver: &mut impl Solve<L>,
+        shown: &mut [L::Numbers],
     ) -> Result<()>;
 }
 
@@ -45,21 +44,21 @@ impl Reading for Outputs {
     }
 
     #[inline(always)]
-    fn read<S: Simd>(
+    fn read<L: Lanes>(
         &self,
-        simd: S,
+        lanes: L,
         system: &System,
         _: Rows,
-        batch: &Batch<S>,
-        _: &mut impl Solve<S>,
-        shown: &mut [S::f64s],
+        batch: &Batch<L>,
+        _: &mut impl Solve<L>,
+        shown: &mut [L::Numbers],
     ) -> Result<()> {
         system
             .shown
-            .add(simd, &batch.weights, &batch.unknowns, shown);
+            .add(lanes, &batch.weights, &batch.unknowns, shown);
         system
             .direct
-            .add(simd, &batch.weights, &batch.coefficients, shown);
+            .add(lanes, &batch.weights, &batch.coefficients, shown);
         Ok(())
     }
 }
@@ -80,37 +79,37 @@ impl Reading for Forward<'_> {
     }
 
     #[inline(always)]
-    fn read<S: Simd>(
+    fn read<L: Lanes>(
         &self,
-        simd: S,
+        lanes: L,
         system: &System,
         rows: Rows,
-        batch: &Batch<S>,
-        solver: &mut impl Solve<S>,
-        shown: &mut [S::f64s],
+        batch: &Batch<L>,
+        solver: &mut impl Solve<L>,
+        shown: &mut [L::Numbers],
     ) -> Result<()> {
         let Batch { weights, coefficients, unknowns, .. } = batch;
         let size = unknowns.len();
-        let moved = self.moved(simd, system, rows, batch);
-        let mut motions = vec![simd.splat_f64s(0.0); size * moved.len()];
+        let moved = self.moved(lanes, system, rows, batch);
+        let mut motions = vec![lanes.splat(0.0); size * moved.len()];
         for (at, direction) in moved.iter().enumerate() {
             let right = &mut motions[at * size..(at + 1) * size];
-            system.load.add(simd, weights, &direction.coefficients, right);
+            system.load.add(lanes, weights, &direction.coefficients, right);
             for &(weight, rate) in &direction.weights {
-                let taken = (weight, simd.neg_f64s(rate));
-                system.load.add_one(simd, (weight, rate), coefficients, right);
-                system.stiffness.add_one(simd, taken, unknowns, right);
+                let taken = (weight, lanes.neg(rate));
+                system.load.add_one(lanes, (weight, rate), coefficients, right);
+                system.stiffness.add_one(lanes, taken, unknowns, right);
             }
         }
-        solver.solve(simd, batch, &mut motions)?;
+        solver.solve(lanes, batch, &mut motions)?;
         for (at, direction) in moved.iter().enumerate() {
             let shown = &mut shown[at * self.outputs..(at + 1) * self.outputs];
             let motion = &motions[at * size..(at + 1) * size];
-            system.shown.add(simd, weights, motion, shown);
-            system.direct.add(simd, weights, &direction.coefficients, shown);
+            system.shown.add(lanes, weights, motion, shown);
+            system.direct.add(lanes, weights, &direction.coefficients, shown);
             for &rate in &direction.weights {
-                system.shown.add_one(simd, rate, unknowns, shown);
-                system.direct.add_one(simd, rate, coefficients, shown);
+                system.shown.add_one(lanes, rate, unknowns, shown);
+                system.direct.add_one(lanes, rate, coefficients, shown);
             }
         }
         Ok(())
@@ -118,23 +117,23 @@ impl Reading for Forward<'_> {
 }
 
 /// Of one direction: derivatives of the coefficients, and of the weights that change.
-struct Moved<S: Simd> {
-    coefficients: Vec<S::f64s>,
-    weights: Vec<(usize, S::f64s)>,
+struct Moved<L: Lanes> {
+    coefficients: Vec<L::Numbers>,
+    weights: Vec<(usize, L::Numbers)>,
 }
 
 impl Forward<'_> {
     #[inline(always)]
-    fn moved<S: Simd>(
+    fn moved<L: Lanes>(
         &self,
-        simd: S,
+        lanes: L,
         system: &System,
         rows: Rows,
-        batch: &Batch<S>,
-    ) -> Vec<Moved<S>> {
+        batch: &Batch<L>,
+    ) -> Vec<Moved<L>> {
         let Directions { count, loads, changes } = self.directions;
-        let zero = simd.splat_f64s(0.0);
-        let mut moved: Vec<Moved<S>> = Vec::with_capacity(*count);
+        let zero = lanes.splat(0.0);
+        let mut moved: Vec<Moved<L>> = Vec::with_capacity(*count);
         for _ in 0..*count {
             moved.push(Moved {
                 coefficients: vec![zero; batch.coefficients.len()],
@@ -142,21 +141,21 @@ impl Forward<'_> {
             });
         }
         let mut rates = vec![zero; loads.len()];
-        gather::<S>(&mut rates, self.coefficients.values, rows.from, rows.count);
+        lanes.gather(&mut rates, self.coefficients.values, rows.from, rows.count);
         for (&(direction, pattern), rate) in loads.iter().zip(rates) {
             let place = &mut moved[direction].coefficients[pattern];
-            *place = simd.add_f64s(*place, rate);
+            *place = lanes.add(*place, rate);
         }
         let mut rates = vec![zero; changes.len()];
-        gather::<S>(&mut rates, self.factors.values, rows.from, rows.count);
+        lanes.gather(&mut rates, self.factors.values, rows.from, rows.count);
         for (&(direction, element), rate) in changes.iter().zip(rates) {
             let weights = &mut moved[direction].weights;
             weights.push((element, rate));
             if system.weights.inverses && element < system.weights.members {
                 let inverse = system.weights.inverse(element);
                 let of_one = batch.weights[inverse];
-                let change = simd.mul_f64s(rate, simd.mul_f64s(of_one, of_one));
-                weights.push((inverse, simd.neg_f64s(change)));
+                let change = lanes.mul(rate, lanes.mul(of_one, of_one));
+                weights.push((inverse, lanes.neg(change)));
             }
         }
         moved
@@ -177,33 +176,33 @@ impl Reading for Adjoint<'_> {
     }
 
     #[inline(always)]
-    fn read<S: Simd>(
+    fn read<L: Lanes>(
         &self,
-        simd: S,
+        lanes: L,
         system: &System,
         rows: Rows,
-        batch: &Batch<S>,
-        solver: &mut impl Solve<S>,
-        shown: &mut [S::f64s],
+        batch: &Batch<L>,
+        solver: &mut impl Solve<L>,
+        shown: &mut [L::Numbers],
     ) -> Result<()> {
         let Batch { weights, coefficients, unknowns, .. } = batch;
-        let zero = simd.splat_f64s(0.0);
+        let zero = lanes.splat(0.0);
         let mut gradients = vec![zero; self.gradients.shape[1]];
-        gather::<S>(&mut gradients, self.gradients.values, rows.from, rows.count);
+        lanes.gather(&mut gradients, self.gradients.values, rows.from, rows.count);
         let mut adjoint = vec![zero; unknowns.len()];
-        system.shown.add_transposed(simd, weights, &gradients, &mut adjoint);
-        solver.solve(simd, batch, &mut adjoint)?;
+        system.shown.add_transposed(lanes, weights, &gradients, &mut adjoint);
+        solver.solve(lanes, batch, &mut adjoint)?;
         let (by_coefficients, by_factors) = shown.split_at_mut(self.patterns);
-        system.load.add_transposed(simd, weights, &adjoint, by_coefficients);
-        system.direct.add_transposed(simd, weights, &gradients, by_coefficients);
+        system.load.add_transposed(lanes, weights, &adjoint, by_coefficients);
+        system.direct.add_transposed(lanes, weights, &gradients, by_coefficients);
         let mut by_weights = vec![zero; weights.len()];
-        system.stiffness.add_to_weights(simd, &adjoint, unknowns, &mut by_weights);
+        system.stiffness.add_to_weights(lanes, &adjoint, unknowns, &mut by_weights);
         for value in &mut by_weights {
-            *value = simd.neg_f64s(*value);
+            *value = lanes.neg(*value);
         }
-        system.load.add_to_weights(simd, &adjoint, coefficients, &mut by_weights);
-        system.shown.add_to_weights(simd, &gradients, unknowns, &mut by_weights);
-        system.direct.add_to_weights(simd, &gradients, coefficients, &mut by_weights);
+        system.load.add_to_weights(lanes, &adjoint, coefficients, &mut by_weights);
+        system.shown.add_to_weights(lanes, &gradients, unknowns, &mut by_weights);
+        system.direct.add_to_weights(lanes, &gradients, coefficients, &mut by_weights);
         by_factors.copy_from_slice(&by_weights[..self.elements]);
         if !system.weights.inverses {
             return Ok(());
@@ -212,9 +211,9 @@ impl Reading for Adjoint<'_> {
             let inverse = system.weights.inverse(member);
             let (rate, of_one) = (by_weights[inverse], weights[inverse]);
             // A factor of zero has no inverse; where nothing depends on it, that is no matter.
-            let change = simd.mul_f64s(rate, simd.mul_f64s(of_one, of_one));
-            let change = simd.select_f64s(simd.equal_f64s(rate, zero), zero, change);
-            *by_factor = simd.sub_f64s(*by_factor, change);
+            let change = lanes.mul(rate, lanes.mul(of_one, of_one));
+            let change = lanes.select(lanes.equal(rate, zero), zero, change);
+            *by_factor = lanes.sub(*by_factor, change);
         }
         Ok(())
     }
