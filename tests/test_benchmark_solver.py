@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga import _core
 from rga.benchmark.box_bridge import box_bridge, samples
 from rga.benchmark.double_layer_grid import double_layer_grid
 from rga.benchmark.solver import cores, large, refactored, run, table
 from rga.benchmark.solver.anew import Anew
 from rga.benchmark.solver.figure import Figure
-from rga.benchmark.solver.lanes import instruction_sets
 from rga.benchmark.solver.peers.cholmod import Cholmod, least_operations
 from rga.benchmark.solver.peers.linear_system import LinearSystem
 from rga.benchmark.solver.peers.pynite import PyNite
@@ -101,7 +101,7 @@ def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     there = {one.peer for one in figures if one.ratio is not None}
     assert there == {"SciPy splu", "rga, the structure anew"}
     page = table.markdown(result(figures), "rga benchmark solver")
-    assert page.count("| not installed |") == len(instruction_sets()) + 1 + 3
+    assert page.count("| not installed |") == len(_core.instructions()) + 1 + 3
 
 
 def test_every_figure_has_its_peer() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from threadpoolctl import threadpool_info
 
-from rga.benchmark.solver.lanes import instruction_sets
+from rga import _core
 
 PACKAGES = ("rga", "numpy", "scipy", "scikit-sparse", "PyNiteFEA")
 
@@ -19,7 +19,7 @@ def machine() -> dict[str, Any]:
     """Processor, instruction sets that rga uses, cores, memory [GiB], system."""
     return {
         "processor": _processor(),
-        "instructions": instruction_sets(),
+        "instructions": _core.instructions(),
         "cores": os.cpu_count(),
         "memory_GiB": _memory(),
         "system": platform.platform(),

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from functools import partial
 
+from rga import _core
 from rga.benchmark.box_bridge import Bridge, box_bridge, samples
 from rga.benchmark.solver.agreement import agree
 from rga.benchmark.solver.anew import Anew
 from rga.benchmark.solver.figure import Figure
-from rga.benchmark.solver.lanes import Lanes, instruction_sets
+from rga.benchmark.solver.lanes import Lanes
 from rga.benchmark.solver.peers import Peer, present
 from rga.benchmark.solver.peers.cholmod import Cholmod, fastest_cholmod, least_operations
 from rga.benchmark.solver.peers.linear_system import LinearSystem
@@ -28,7 +29,7 @@ def one_span(setting: Setting, roofs: Roofs) -> list[Figure]:
     """The bridge of 84 nodes, by instruction set; the best beside all peers and the roof."""
     bridge = box_bridge(setting.seed)
     system = LinearSystem(bridge)
-    lanes = {name: Lanes(bridge, name) for name in instruction_sets()}
+    lanes = {name: Lanes(bridge, name) for name in _core.instructions()}
     best = next(iter(lanes))
     cholmod, known_as = _cholmod(system, setting)
     fast = rates(bridge, {**lanes, known_as: cholmod, "SciPy splu": SuperLU(system)}, setting)
@@ -67,7 +68,7 @@ def ten_spans(setting: Setting, roofs: Roofs) -> list[Figure]:
     """Ten such spans one behind the other, as a continuous bridge."""
     bridge = box_bridge(setting.seed, spans=10)
     system = LinearSystem(bridge)
-    best = instruction_sets()[0]
+    best = _core.instructions()[0]
     cholmod, known_as = _cholmod(system, setting)
     solvers = {best: Lanes(bridge, best, 256), known_as: cholmod, "SciPy splu": SuperLU(system)}
     found = rates(bridge, solvers, setting)
