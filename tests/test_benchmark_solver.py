@@ -13,6 +13,7 @@ import pytest
 
 from rga import _core
 from rga.benchmark.box_bridge import box_bridge, samples
+from rga.benchmark.data_set import data_set_cost
 from rga.benchmark.double_layer_grid import double_layer_grid
 from rga.benchmark.solver import cores, large, refactored, run, table
 from rga.benchmark.solver.anew import Anew
@@ -142,6 +143,14 @@ def test_a_linear_system_holds_no_entry_that_is_always_zero() -> None:
 def test_two_cores_are_measured_beside_a_product() -> None:
     figures = cores.two_cores(LITTLE, ROOFS)
     assert [one.peer for one in figures] == ["NumPy GEMM"] * ((os.cpu_count() or 1) > 1)
+
+
+def test_memory_of_a_data_set_is_not_that_of_this_process() -> None:
+    held = np.ones(2**26)
+    del held
+    memory, seconds = data_set_cost(100)
+    assert 50.0 < memory < 512.0
+    assert seconds > 0.0
 
 
 def result(figures: list[Figure]) -> Result:
