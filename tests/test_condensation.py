@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 import rga
 from rga import _core
-from rga.benchmark.box_bridge import Arrays, Bridge, box_bridge
+from rga.benchmark.box_bridge import Bridge, box_bridge
+from rga.benchmark.space_truss import Arrays
 from rga.errors import InputError, UnstableStructureError
 from rga.model import read_model
 from rga.model.schema import EndSprings

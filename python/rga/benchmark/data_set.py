@@ -1,7 +1,6 @@
 """What a large data set costs: memory and time of a process that writes one."""
 
 import json
-import os
 import subprocess
 import sys
 import time
@@ -13,6 +12,13 @@ from rga.errors import InputError
 
 #: sensors of the data set
 SENSORS = 16
+#: runs a command and tells its peak memory; a process that we started ourselves would count ours
+WATCH = """\
+import resource, subprocess, sys
+status = subprocess.call(sys.argv[1:])
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+sys.exit(status)
+"""
 
 
 def data_set_cost(rows: int) -> tuple[float, float]:
@@ -28,19 +34,14 @@ def data_set_cost(rows: int) -> tuple[float, float]:
         path = Path(folder) / "model.json"
         path.write_text(json.dumps(model), encoding="utf-8")
         target = str(Path(folder) / "samples.parquet")
-        command = [sys.executable, "-m", "rga", "dataset", str(path), "-n", str(rows), "-o", target]
+        command = ["-m", "rga", "dataset", str(path), "-n", str(rows), "-o", target]
+        watched = [sys.executable, "-c", WATCH, sys.executable, *command]
         begin = time.perf_counter()
-        complaints = Path(folder) / "complaints"
-        with complaints.open("wb") as file:
-            writer = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=file)
-            # The peak of this process alone, whatever else has run before.
-            _, status, used = os.wait4(writer.pid, 0)
+        writer = subprocess.run(watched, capture_output=True, text=True, check=False)
         seconds = time.perf_counter() - begin
-        if status:
+        if writer.returncode:
             raise InputError(
-                "the data set of the benchmark could not be written",
-                folder,
-                complaints.read_text(encoding="utf-8", errors="replace").strip(),
+                "the data set of the benchmark could not be written", folder, writer.stderr.strip()
             )
     per_mebibyte = 1024**2 if sys.platform == "darwin" else 1024
-    return used.ru_maxrss / per_mebibyte, seconds
+    return int(writer.stdout.splitlines()[-1]) / per_mebibyte, seconds

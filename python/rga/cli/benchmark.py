@@ -25,6 +25,10 @@ KeptIn = Annotated[
         help="Keeps outcomes, tables and plots; what it holds is not done again.",
     ),
 ]
+WrittenTo = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", metavar="DIR", help="Takes the table and a figure."),
+]
 CaseName = Annotated[
     str | None,
     typer.Option(
@@ -33,6 +37,9 @@ CaseName = Annotated[
 ]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
+
+#: of a table, in a terminal that is narrower and in a file
+WIDTH = 140
 
 
 @benchmark.callback()
@@ -104,22 +111,36 @@ def diagnosis(
 
 
 @benchmark.command()
-def solver(quick: Shorter = False, json: JsonTarget = None) -> None:
-    """What a simulated sample costs on one core, beside NumPy in the same run."""
-    from rga.benchmark.solver import measure
-    from rga.cli.output import write_json
+def solver(
+    quick: Shorter = False, seed: Seed = 0, output: WrittenTo = None, json: JsonTarget = None
+) -> None:
+    """What a simulated sample costs, beside other solvers on the same structures."""
+    from contextlib import nullcontext
+    from dataclasses import asdict
+
+    from rich.console import Console
+
+    from rga.benchmark.solver import table
+    from rga.benchmark.solver.run import measure
+    from rga.benchmark.solver.setting import Setting, shorter
+    from rga.cli.output import whole_directory, write_json
     from rga.cli.progress import shown_progress
 
-    with shown_progress() as progress:
-        result = measure(quick, lambda done: progress("solver", done))
+    setting = shorter(seed) if quick else Setting(seed=seed)
+    command = f"rga benchmark solver{' --quick' if quick else ''} --seed {seed}"
+    with nullcontext() if output is None else whole_directory(output) as draft:
+        with shown_progress() as progress:
+            result = measure(setting, lambda done: progress("solver", done))
+        if draft is not None:
+            from rga.benchmark.solver.plot import plot
+
+            (draft / "solver.md").write_text(table.markdown(result, command), encoding="utf-8")
+            plot(result, draft / "solver.png")
     if json is not None:
-        write_json(result, json)
-    if json == "-":
-        return
-    typer.echo(f"{result['machine']['processor']}, one core, batches of {result['rows']} rows;")
-    typer.echo(f"memory bandwidth {result['bandwidth_GB_s']:.3g} GB/s (copy); all paths agree.")
-    for figure in result["figures"]:
-        line = f"  {figure['name']:48} {figure['value']:10.4g} {figure['unit']:18}"
-        if figure["peer"] is not None:
-            line += f" {figure['ratio']:8.3g} x {figure['peer']} ({figure['peer_value']:.4g})"
-        typer.echo(line)
+        write_json({"command": command, **asdict(result)}, json)
+    if json != "-":
+        console = Console()
+        console.width = max(console.width, WIDTH)
+        for line in table.about(result):
+            console.print(line, markup=False, highlight=False)
+        console.print(table.terminal(result))

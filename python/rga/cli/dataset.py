@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from rga.cli.options import ModelFile, OutputFile, Seed, Workers
+from rga.cli.options import DaskAddress, ModelFile, OutputFile, Seed, Workers
 
 Rows = Annotated[int, typer.Option("-n", min=1, help="Number of rows.")]
 Noise = Annotated[bool, typer.Option("--noise", help="Add the sensors' noise.")]
@@ -17,6 +17,7 @@ def dataset(
     seed: Seed = 0,
     noise: Noise = False,
     workers: Workers = 1,
+    dask: DaskAddress = None,
 ) -> None:
     """Draw contexts over their ranges and simulate the sensors (Parquet).
 
@@ -32,6 +33,13 @@ def dataset(
     structure = load_model(model)
     with shown_progress() as progress:
         write_dataset(
-            structure, rows, output, seed=seed, noise=noise, workers=workers, progress=progress
+            structure,
+            rows,
+            output,
+            seed=seed,
+            noise=noise,
+            workers=workers,
+            dask=dask,
+            progress=progress,
         )
     typer.echo(f"{rows} rows of {len(structure.sensors)} sensors are in {output}.")

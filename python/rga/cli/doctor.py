@@ -8,7 +8,7 @@ NEEDED = (
     "numpy", "scipy", "pydantic", "polars", "PyYAML", "typer", "rich", "jinja2", "matplotlib",
     "torch", "safetensors", "sqlalchemy", "alembic",
 )  # fmt: skip
-OPTIONAL = ("psycopg", "distributed")
+OPTIONAL = ("psycopg", "distributed", "scikit-sparse", "PyNiteFEA")
 CPU_FEATURES = ("sse4_2", "avx", "avx2", "fma", "avx512f", "neon", "asimd", "sve")
 
 

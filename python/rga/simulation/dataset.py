@@ -2,10 +2,12 @@
 
 import json
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.metadata import version
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +32,7 @@ def write_dataset(
     seed: int = 0,
     noise: bool = False,
     workers: int = 1,
+    dask: str | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> None:
     """Write a Parquet file of contexts and the sensor values that they give.
@@ -46,11 +49,14 @@ def write_dataset(
         path: the Parquet file.
         seed: of the sequence and of the noise.
         noise: adds to every reading the noise that the model states for its sensor.
-        workers: processes at work; the file does not depend on it.
+        workers: processes at work on this machine; the file does not depend on it.
+        dask: address of the scheduler of a Dask cluster, whose workers do the work instead; they
+            need rga, and no file of ours.
         progress: is called with the stage and the share done.
 
     Raises:
-        InputError: the model has no context variable or sensor, or rows is not positive.
+        InputError: the model has no context variable or sensor, rows is not positive, the place
+            cannot be written to, or there is no cluster.
     """
     if rows < 1:
         raise InputError(f"{rows} rows are no dataset", "rows", "ask for at least one")
@@ -77,19 +83,19 @@ def write_dataset(
     content = [repr(model), metadata, rows, CHUNK]
     _begin(parts, sha256(json.dumps(content).encode()).hexdigest())
     tasks = [
-        _Part(model, seed, noise, begin, min(CHUNK, rows - begin), parts / f"{begin:012}.parquet")
+        _Part(model, seed, noise, begin, min(CHUNK, rows - begin))
         for begin in range(0, rows, CHUNK)
     ]
-    waiting = [task for task in tasks if not task.is_whole()]
+    waiting = [task for task in tasks if not task.is_in(parts)]
     done = len(tasks) - len(waiting)
     workers = min(workers, max(len(waiting), 1))
-    written = finished(_Part.write, waiting, workers=workers)
-    for number, (_, part) in enumerate(written, start=done + 1):
-        part.result()
+    simulated = finished(_Part.simulate, waiting, workers=workers, dask=dask)
+    for number, (task, part) in enumerate(simulated, start=done + 1):
+        _keep(part.result(), task.file(parts))
         if progress is not None:
             progress("simulating", number / len(tasks))
     draft = parts / "whole.parquet"
-    frames = pl.scan_parquet([task.file for task in tasks], low_memory=True)
+    frames = pl.scan_parquet([task.file(parts) for task in tasks], low_memory=True)
     frames.sink_parquet(draft, metadata=metadata, maintain_order=True)
     draft.replace(path)
     shutil.rmtree(parts)
@@ -97,29 +103,32 @@ def write_dataset(
 
 @dataclass(frozen=True)
 class _Part:
-    """Rows of a dataset that are written together."""
+    """Rows of a dataset that are simulated together; a worker may share no disk with us."""
 
     model: Model
     seed: int
     noise: bool
     begin: int
     rows: int
-    file: Path
 
-    def is_whole(self) -> bool:
+    def file(self, parts: Path) -> Path:
+        """Its place in the directory of parts."""
+        return parts / f"{self.begin:012}.parquet"
+
+    def is_in(self, parts: Path) -> bool:
         """Whether the file is there and has its rows."""
         try:
-            rows = pl.scan_parquet(self.file).select(pl.len()).collect().item()
+            rows = pl.scan_parquet(self.file(parts)).select(pl.len()).collect().item()
         except (OSError, pl.exceptions.PolarsError):
             return False
         return bool(rows == self.rows)
 
-    def write(self) -> None:
-        """Whole or not at all."""
-        draft = self.file.with_suffix(".draft")
+    def simulate(self) -> bytes:
+        """A Parquet file."""
+        file = BytesIO()
         with threadpool_limits(1):
-            self._frame().write_parquet(draft)
-        draft.replace(self.file)
+            self._frame().write_parquet(file)
+        return file.getvalue()
 
     def _frame(self) -> pl.DataFrame:
         model = self.model
@@ -144,11 +153,25 @@ def _begin(parts: Path, key: str) -> None:
     if told.exists() and told.read_text(encoding="utf-8") == key:
         return
     shutil.rmtree(parts, ignore_errors=True)
-    try:
+    with _written(parts):
         parts.mkdir(parents=True)
         told.write_text(key, encoding="utf-8")
+
+
+def _keep(content: bytes, file: Path) -> None:
+    """Write a part, whole or not at all."""
+    draft = file.with_suffix(".draft")
+    with _written(file):
+        draft.write_bytes(content)
+        draft.replace(file)
+
+
+@contextmanager
+def _written(place: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         reason = (error.strerror or "refused").lower()
         raise InputError(
-            f"the dataset cannot be written, {reason}", str(parts), "give another place"
+            f"the dataset cannot be written, {reason}", str(place), "give another place"
         ) from None

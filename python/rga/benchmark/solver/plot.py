@@ -1,0 +1,42 @@
+"""The ratios to the peers, drawn."""
+
+from pathlib import Path
+
+from matplotlib.figure import Figure as Canvas
+
+from rga.benchmark.solver.run import Result
+from rga.benchmark.solver.table import digits
+
+
+def plot(result: Result, path: Path) -> None:
+    """Write bars of the ratios, and what is asked of them, to a PNG file."""
+    shown = [(one, one.ratio) for one in result.figures if one.ratio is not None]
+    cases = list(dict.fromkeys(one.case for one, _ in shown))
+    canvas = Canvas(figsize=(11, 1.4 + 0.34 * len(shown)), layout="constrained")
+    axes = canvas.subplots()
+    axes.axvline(1.0, color="0.6", lw=1)
+    for place, (one, ratio) in enumerate(shown):
+        # From as good as the peer to what it is: a bar begins at 1.
+        axes.barh(place, ratio - 1.0, left=1.0, color=f"C{cases.index(one.case)}")
+        axes.annotate(
+            digits(ratio),
+            (max(ratio, 1.0), place),
+            (4, 0),
+            textcoords="offset points",
+            va="center",
+            size=8,
+        )
+        if one.least is not None:
+            axes.plot([one.least] * 2, [place - 0.45, place + 0.45], color="black", lw=2)
+    axes.plot([], [], color="black", lw=2, label="at least")
+    axes.set(
+        xscale="log",
+        xlabel="times as good as the peer",
+        yticks=range(len(shown)),
+        yticklabels=[", ".join((one.case, one.name, one.peer or "")) for one, _ in shown],
+        title=f"{result.machine['processor']}, {result.day}",
+    )
+    axes.invert_yaxis()
+    axes.margins(x=0.15)
+    axes.legend(loc="lower right")
+    canvas.savefig(path, format="png", dpi=110)
