@@ -42,6 +42,38 @@ struct Product {
     columns: Range<usize>,
 }
 
+impl Product {
+    fn shape(&self) -> (usize, usize) {
+        (self.rows.len(), self.columns.len())
+    }
+}
+
+/// Products of one shape, one behind the other.
+struct Run<'a> {
+    form: &'a Bilinear,
+    run: &'a [Product],
+}
+
+impl Run<'_> {
+    #[inline(always)]
+    fn add<L: Lanes, const ROWS: usize, const COLUMNS: usize>(
+        &self,
+        lanes: L,
+        weights: &[L::Numbers],
+        x: &[L::Numbers],
+        out: &mut [L::Numbers],
+    ) {
+        let (rows, _) = self.form.rows[self.run[0].rows.start..].as_chunks::<ROWS>();
+        let (columns, _) = self.form.columns[self.run[0].columns.start..].as_chunks::<COLUMNS>();
+        for ((product, rows), columns) in self.run.iter().zip(rows).zip(columns) {
+            let along = lanes.mul(weights[product.weight], dot(lanes, columns, x));
+            for &(row, value) in rows {
+                out[row] = lanes.mul_add(lanes.splat(value), along, out[row]);
+            }
+        }
+    }
+}
+
 impl Bilinear {
     /// Entries of one place are summed, in their order.
     pub fn new(entries: Vec<Entry>, weights: usize) -> Self {
@@ -82,9 +114,30 @@ impl Bilinear {
         x: &[L::Numbers],
         out: &mut [L::Numbers],
     ) {
-        for product in &self.products {
-            let along = lanes.mul(weights[product.weight], self.columns(lanes, product, x));
-            self.spread_rows(lanes, product, along, out);
+        for run in self
+            .products
+            .chunk_by(|one, other| one.shape() == other.shape())
+        {
+            let sweep = Run { form: self, run };
+            // Loops of a fixed length cost far less than their few terms.
+            match run[0].shape() {
+                (1, 1) => sweep.add::<L, 1, 1>(lanes, weights, x, out),
+                (2, 1) => sweep.add::<L, 2, 1>(lanes, weights, x, out),
+                (2, 2) => sweep.add::<L, 2, 2>(lanes, weights, x, out),
+                (4, 1) => sweep.add::<L, 4, 1>(lanes, weights, x, out),
+                (4, 2) => sweep.add::<L, 4, 2>(lanes, weights, x, out),
+                (4, 4) => sweep.add::<L, 4, 4>(lanes, weights, x, out),
+                (6, 1) => sweep.add::<L, 6, 1>(lanes, weights, x, out),
+                (6, 2) => sweep.add::<L, 6, 2>(lanes, weights, x, out),
+                (6, 6) => sweep.add::<L, 6, 6>(lanes, weights, x, out),
+                _ => {
+                    for product in run {
+                        let along =
+                            lanes.mul(weights[product.weight], self.columns(lanes, product, x));
+                        self.spread_rows(lanes, product, along, out);
+                    }
+                }
+            }
         }
     }
 
@@ -130,7 +183,10 @@ impl Bilinear {
         out: &mut [L::Numbers],
     ) {
         for product in &self.products {
-            let (rows, columns) = (self.rows(lanes, product, y), self.columns(lanes, product, x));
+            let (rows, columns) = (
+                self.rows(lanes, product, y),
+                self.columns(lanes, product, x),
+            );
             out[product.weight] = lanes.mul_add(rows, columns, out[product.weight]);
         }
     }
@@ -138,7 +194,6 @@ impl Bilinear {
     fn of(&self, weight: usize) -> impl Iterator<Item = &Product> {
         self.own[weight].iter().map(|&at| &self.products[at])
     }
-
 
     /// v' x
     #[inline(always)]
@@ -220,7 +275,11 @@ fn by_lines(entries: &[Entry]) -> Vec<(Terms, Terms)> {
             .map(|line| (own(line), vec![(line[0].column, 1.0)]))
             .collect()
     } else {
-        let own = |line: &[Entry]| line.iter().map(|entry| (entry.column, entry.value)).collect();
+        let own = |line: &[Entry]| {
+            line.iter()
+                .map(|entry| (entry.column, entry.value))
+                .collect()
+        };
         rows.map(|line| (vec![(line[0].row, 1.0)], own(line)))
             .collect()
     }
@@ -283,7 +342,12 @@ mod tests {
                     ((row * 7 + column * 3) as f64).sin() * 10f64.powi(3 * row as i32),
                 ];
                 for (weight, value) in given.into_iter().enumerate() {
-                    let entry = |value| Entry { weight, row, column, value };
+                    let entry = |value| Entry {
+                        weight,
+                        row,
+                        column,
+                        value,
+                    };
                     entries.extend([entry(0.25 * value), entry(0.75 * value)]);
                 }
             }
@@ -309,7 +373,10 @@ mod tests {
             form.add(Scalar, &weights, &x, &mut out);
             for (row, value) in out.into_iter().enumerate() {
                 let right = whole(row, column);
-                assert!((value - right).abs() <= 1e-13 * right.abs(), "{row} {column}");
+                assert!(
+                    (value - right).abs() <= 1e-13 * right.abs(),
+                    "{row} {column}"
+                );
                 let mut y = [0.0; 4];
                 y[row] = 1.0;
                 let mut back = [0.0; 5];

@@ -139,7 +139,7 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
     type Mask = [S::m64s; P];
 
     const COUNT: usize = P * S::F64_LANES;
-    const TALL: usize = if S::REGISTER_COUNT >= 32 { 4 } else { 2 };
+    const TALL: usize = if S::REGISTER_COUNT >= 32 { 4 } else { 3 };
 
     #[inline(always)]
     fn splat(self, value: f64) -> Self::Numbers {
@@ -148,32 +148,62 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
 
     #[inline(always)]
     fn add(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        self.each(a, b, #[inline(always)] |simd, a, b| simd.add_f64s(a, b))
+        self.each(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.add_f64s(a, b),
+        )
     }
 
     #[inline(always)]
     fn sub(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        self.each(a, b, #[inline(always)] |simd, a, b| simd.sub_f64s(a, b))
+        self.each(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.sub_f64s(a, b),
+        )
     }
 
     #[inline(always)]
     fn mul(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        self.each(a, b, #[inline(always)] |simd, a, b| simd.mul_f64s(a, b))
+        self.each(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.mul_f64s(a, b),
+        )
     }
 
     #[inline(always)]
     fn div(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        self.each(a, b, #[inline(always)] |simd, a, b| simd.div_f64s(a, b))
+        self.each(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.div_f64s(a, b),
+        )
     }
 
     #[inline(always)]
     fn min(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        self.each(a, b, #[inline(always)] |simd, a, b| simd.min_f64s(a, b))
+        self.each(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.min_f64s(a, b),
+        )
     }
 
     #[inline(always)]
     fn max(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        self.each(a, b, #[inline(always)] |simd, a, b| simd.max_f64s(a, b))
+        self.each(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.max_f64s(a, b),
+        )
     }
 
     #[inline(always)]
@@ -196,27 +226,52 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
 
     #[inline(always)]
     fn neg(self, a: Self::Numbers) -> Self::Numbers {
-        self.each(a, a, #[inline(always)] |simd, a, _| simd.neg_f64s(a))
+        self.each(
+            a,
+            a,
+            #[inline(always)]
+            |simd, a, _| simd.neg_f64s(a),
+        )
     }
 
     #[inline(always)]
     fn abs(self, a: Self::Numbers) -> Self::Numbers {
-        self.each(a, a, #[inline(always)] |simd, a, _| simd.abs_f64s(a))
+        self.each(
+            a,
+            a,
+            #[inline(always)]
+            |simd, a, _| simd.abs_f64s(a),
+        )
     }
 
     #[inline(always)]
     fn sqrt(self, a: Self::Numbers) -> Self::Numbers {
-        self.each(a, a, #[inline(always)] |simd, a, _| simd.sqrt_f64s(a))
+        self.each(
+            a,
+            a,
+            #[inline(always)]
+            |simd, a, _| simd.sqrt_f64s(a),
+        )
     }
 
     #[inline(always)]
     fn at_most(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask {
-        self.masked(a, b, #[inline(always)] |simd, a, b| simd.less_than_or_equal_f64s(a, b))
+        self.masked(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.less_than_or_equal_f64s(a, b),
+        )
     }
 
     #[inline(always)]
     fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask {
-        self.masked(a, b, #[inline(always)] |simd, a, b| simd.equal_f64s(a, b))
+        self.masked(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.equal_f64s(a, b),
+        )
     }
 
     #[inline(always)]

@@ -231,21 +231,46 @@ impl<R: Reading> WithSimd for Sweep<'_, R> {
 impl<R: Reading> Sweep<'_, R> {
     #[inline(always)]
     fn over<L: Lanes>(self, lanes: L) -> Result<()> {
-        let Self { refactored, samples, reading, results, threads } = self;
-        let Refactored { system, patterns, .. } = refactored;
+        let Self {
+            refactored,
+            samples,
+            reading,
+            results,
+            threads,
+        } = self;
+        let Refactored {
+            system, patterns, ..
+        } = refactored;
         let prepare = || {
             Ok(Scratch {
                 batch: Batch::new(lanes, system, *patterns),
                 together: (system.panels.as_ref())
                     .map(|panels| Together::new(lanes, system, panels)),
                 shown: vec![lanes.splat(0.0); reading.width()],
-                alone: Alone { refactored, samples, reading, careful: None },
+                alone: Alone {
+                    refactored,
+                    samples,
+                    reading,
+                    careful: None,
+                },
             })
         };
         let work = |scratch: &mut Scratch<L, R>, rows: Range<usize>, results: &mut [f64]| {
-            lanes.vectorize(Chunk { lanes, scratch, rows, results })
+            lanes.vectorize(Chunk {
+                lanes,
+                scratch,
+                rows,
+                results,
+            })
         };
-        in_chunks(results, reading.width().max(1), CHUNK, threads, prepare, work)
+        in_chunks(
+            results,
+            reading.width().max(1),
+            CHUNK,
+            threads,
+            prepare,
+            work,
+        )
     }
 }
 
@@ -271,11 +296,24 @@ impl<L: Lanes, R: Reading> NullaryFnOnce for Chunk<'_, '_, L, R> {
 
     #[inline(always)]
     fn call(self) -> Result<()> {
-        let Self { lanes, scratch, rows, results } = self;
-        let Scratch { batch, together, shown, alone } = scratch;
+        let Self {
+            lanes,
+            scratch,
+            rows,
+            results,
+        } = self;
+        let Scratch {
+            batch,
+            together,
+            shown,
+            alone,
+        } = scratch;
         let width = alone.reading.width();
         let place = width.max(1);
-        let Samples { factors, coefficients } = alone.samples;
+        let Samples {
+            factors,
+            coefficients,
+        } = alone.samples;
         let system = &alone.refactored.system;
         let at_once = if together.is_some() { L::COUNT } else { 1 };
         for from in rows.clone().step_by(at_once) {
@@ -283,11 +321,19 @@ impl<L: Lanes, R: Reading> NullaryFnOnce for Chunk<'_, '_, L, R> {
             let results = &mut results[(from - rows.start) * place..][..count * place];
             let mut sound = [false; MOST];
             if let Some(together) = together {
-                batch.take(lanes, system, (factors.values, coefficients.values), from, count);
+                batch.take(
+                    lanes,
+                    system,
+                    (factors.values, coefficients.values),
+                    from,
+                    count,
+                );
                 together.factorise(lanes, batch);
                 shown.fill(lanes.splat(0.0));
                 let rows = Rows { from, count };
-                alone.reading.read(lanes, system, rows, batch, together, shown)?;
+                alone
+                    .reading
+                    .read(lanes, system, rows, batch, together, shown)?;
                 lanes.scatter(shown, results, place, count);
                 for (lane, found) in results.chunks_exact(place).enumerate() {
                     let finite = found.iter().all(|value| value.is_finite());
@@ -315,17 +361,28 @@ struct Alone<'a, R> {
 impl<R: Reading> Alone<'_, R> {
     #[inline(never)]
     fn read(&mut self, row: usize, found: &mut [f64]) -> Result<()> {
-        let Samples { factors, coefficients } = self.samples;
-        let Refactored { system, patterns, .. } = self.refactored;
+        let Samples {
+            factors,
+            coefficients,
+        } = self.samples;
+        let Refactored {
+            system, patterns, ..
+        } = self.refactored;
         factors.check_row("factors", row, "finite and not negative", not_negative)?;
         coefficients.check_row("coefficients", row, "a finite number", f64::is_finite)?;
         let (careful, batch) = match &mut self.careful {
             Some(pair) => pair,
-            none => none.insert((self.refactored.careful()?, Batch::new(ONE, system, *patterns))),
+            none => none.insert((
+                self.refactored.careful()?,
+                Batch::new(ONE, system, *patterns),
+            )),
         };
         batch.take(ONE, system, (factors.values, coefficients.values), row, 1);
         found.fill(0.0);
-        let rows = Rows { from: row, count: 1 };
+        let rows = Rows {
+            from: row,
+            count: 1,
+        };
         let (shown, _) = found.as_chunks_mut();
         (careful.factorise(batch))
             .and_then(|()| self.reading.read(ONE, system, rows, batch, careful, shown))

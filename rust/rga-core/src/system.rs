@@ -86,7 +86,7 @@ pub struct System {
 
 /// Numbers of a factor up to which samples are solved many at a time, one a lane. Beyond them
 /// caches hold too few of the lanes.
-const MOST: usize = 1 << 19;
+const MOST: usize = 1 << 17;
 
 impl System {
     /// Together with K, of factors of one.
@@ -107,7 +107,11 @@ impl System {
         let lower = stiffness.iter().filter(|entry| entry.row >= entry.column);
         let diagonal = (0..size).map(|at| (at, at, 0.0));
         let all: Vec<Place> = diagonal
-            .chain(lower.clone().map(|entry| (entry.row, entry.column, entry.value)))
+            .chain(
+                lower
+                    .clone()
+                    .map(|entry| (entry.row, entry.column, entry.value)),
+            )
             .collect();
         let matrix = LowerTriangle::from_entries(&all, size);
         let entry = |entry: &Entry| {
@@ -142,7 +146,10 @@ impl System {
         let probe = Probe::new(model, constraints, reduction, loads, weights)?;
         let (load, on_held) = probe.loads()?;
         let (shown, direct) = probe.outputs(wanted)?;
-        weights.inverses = shown.iter().chain(&direct).any(|entry| entry.weight > weights.one());
+        weights.inverses = shown
+            .iter()
+            .chain(&direct)
+            .any(|entry| entry.weight > weights.one());
         let form = |entries: Vec<Entry>| Bilinear::new(entries, weights.count());
         let system = Self {
             weights,
@@ -176,12 +183,16 @@ impl System {
 }
 
 fn with_rows(mut entries: Vec<Entry>, place: &[usize]) -> Vec<Entry> {
-    entries.iter_mut().for_each(|entry| entry.row = place[entry.row]);
+    entries
+        .iter_mut()
+        .for_each(|entry| entry.row = place[entry.row]);
     entries
 }
 
 fn with_columns(mut entries: Vec<Entry>, place: &[usize]) -> Vec<Entry> {
-    entries.iter_mut().for_each(|entry| entry.column = place[entry.column]);
+    entries
+        .iter_mut()
+        .for_each(|entry| entry.column = place[entry.column]);
     entries
 }
 

@@ -74,7 +74,10 @@ impl FreeTurn {
 
     /// The stiffness that it is given, in the lower triangle.
     pub fn stiffness_on(&self, matrix: &LowerTriangle) -> Vec<Place> {
-        let pairs = self.terms.iter().flat_map(|&one| self.terms.iter().map(move |&other| (one, other)));
+        let pairs = self
+            .terms
+            .iter()
+            .flat_map(|&one| self.terms.iter().map(move |&other| (one, other)));
         let below = pairs.filter(|((row, _), (column, _))| row >= column);
         below
             .filter(|((row, _), (column, _))| matrix.find(*row, *column).is_some())

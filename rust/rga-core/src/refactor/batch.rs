@@ -1,6 +1,5 @@
 //! Samples that are solved together, one a lane.
 
-
 use super::cholesky::Cholesky;
 use super::panels::Panels;
 use crate::equilibrium::{LOOSE_MOMENT, REFINE};
@@ -139,7 +138,12 @@ impl<'a, L: Lanes> Together<'a, L> {
         }
         let most = lanes.mul(lanes.splat(LOOSE_MOMENT), largest);
         self.on_held.fill(zero);
-        (self.system.on_held).add(lanes, &batch.weights, &batch.coefficients, &mut self.on_held);
+        (self.system.on_held).add(
+            lanes,
+            &batch.weights,
+            &batch.coefficients,
+            &mut self.on_held,
+        );
         for at in 0..self.on_held.len() {
             let moment = lanes.abs(self.on_held[at]);
             self.require(lanes, moment, most);
@@ -156,7 +160,13 @@ impl<'a, L: Lanes> Together<'a, L> {
 
     /// The residual of a solution, element by element, beside its load.
     #[inline(always)]
-    fn check(&mut self, lanes: L, weights: &[L::Numbers], unknowns: &[L::Numbers], load: &[L::Numbers]) {
+    fn check(
+        &mut self,
+        lanes: L,
+        weights: &[L::Numbers],
+        unknowns: &[L::Numbers],
+        load: &[L::Numbers],
+    ) {
         self.residual.fill(lanes.splat(0.0));
         self.system
             .stiffness
@@ -203,7 +213,10 @@ impl<L: Lanes> Solve<L> for Together<'_, L> {
                 }
                 self.cholesky.solve::<BESIDE>(lanes, &mut self.beside);
                 for (at, column) in columns.chunks_exact_mut(size).enumerate() {
-                    for (value, place) in column.iter_mut().zip(self.beside[at..].iter().step_by(BESIDE)) {
+                    for (value, place) in column
+                        .iter_mut()
+                        .zip(self.beside[at..].iter().step_by(BESIDE))
+                    {
                         *value = *place;
                     }
                 }

@@ -57,7 +57,11 @@ impl Careful<'_> {
     fn check_loose(&self, batch: &Batch<One>, load: &[f64], loose: &[usize]) -> Result<()> {
         let Reduction { held, unknowns, .. } = self.reduction;
         let mut on_held = vec![[0.0]; held.len()];
-        let Batch { weights, coefficients, .. } = batch;
+        let Batch {
+            weights,
+            coefficients,
+            ..
+        } = batch;
         (self.system.on_held).add(ONE, weights, coefficients, &mut on_held);
         let on_held = One::flat(&on_held);
         let forces = load.iter().chain(on_held);
@@ -84,12 +88,7 @@ impl Careful<'_> {
 }
 
 impl Solve<One> for Careful<'_> {
-    fn solve(
-        &mut self,
-        _: One,
-        batch: &Batch<One>,
-        right: &mut [[f64; 1]],
-    ) -> Result<()> {
+    fn solve(&mut self, _: One, batch: &Batch<One>, right: &mut [[f64; 1]]) -> Result<()> {
         let size = batch.load.len().max(1);
         for column in right.chunks_exact_mut(size) {
             let column = column.as_flattened_mut();

@@ -36,7 +36,13 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     /// panel is at hand.
     ///
     /// `share` is that of `sound`.
-    pub fn factorise(&mut self, lanes: L, weights: &[L::Numbers], share: f64, right: &mut [L::Numbers]) {
+    pub fn factorise(
+        &mut self,
+        lanes: L,
+        weights: &[L::Numbers],
+        share: f64,
+        right: &mut [L::Numbers],
+    ) {
         let cholesky = self;
         lanes.vectorize(Factorise {
             lanes,
@@ -67,7 +73,11 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             let value = lanes.splat(term.value);
             values[term.place as usize] = lanes.mul(weights[term.weight as usize], value);
         }
-        for sum in self.panels.sums(panel).chunk_by(|one, other| one.place == other.place) {
+        for sum in self
+            .panels
+            .sums(panel)
+            .chunk_by(|one, other| one.place == other.place)
+        {
             let mut total = lanes.splat(0.0);
             for term in sum {
                 let value = lanes.splat(term.value);
@@ -94,9 +104,11 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             self.factorise_columns::<TALL, WIDE>(lanes, panel, column, share);
             column += WIDE;
         }
-        while column < panel.width {
-            self.factorise_columns::<TALL, 1>(lanes, panel, column, share);
-            column += 1;
+        match panel.width - column {
+            3 => self.factorise_columns::<TALL, 3>(lanes, panel, column, share),
+            2 => self.factorise_columns::<TALL, 2>(lanes, panel, column, share),
+            1 => self.factorise_columns::<TALL, 1>(lanes, panel, column, share),
+            _ => {}
         }
     }
 
@@ -187,9 +199,11 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
             hand.columns::<L, TALL, WIDE>(lanes, column, to);
             column += WIDE;
         }
-        while column < columns {
-            hand.columns::<L, TALL, 1>(lanes, column, to);
-            column += 1;
+        match columns - column {
+            3 => hand.columns::<L, TALL, 3>(lanes, column, to),
+            2 => hand.columns::<L, TALL, 2>(lanes, column, to),
+            1 => hand.columns::<L, TALL, 1>(lanes, column, to),
+            _ => {}
         }
     }
 
@@ -200,6 +214,10 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
         while column + TOGETHER <= panel.width {
             self.forward_columns::<N, TOGETHER>(lanes, panel, column, right);
             column += TOGETHER;
+        }
+        if column + HALF <= panel.width {
+            self.forward_columns::<N, HALF>(lanes, panel, column, right);
+            column += HALF;
         }
         while column < panel.width {
             self.forward_columns::<N, 1>(lanes, panel, column, right);
@@ -250,9 +268,13 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     fn backward<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
         for panel in self.panels.panels.iter().rev() {
             let mut column = panel.width;
-            while column % TOGETHER > 0 {
+            while column % TOGETHER % HALF > 0 {
                 column -= 1;
                 self.backward_columns::<N, 1>(lanes, panel, column, right);
+            }
+            if column % TOGETHER > 0 {
+                column -= HALF;
+                self.backward_columns::<N, HALF>(lanes, panel, column, right);
             }
             while column > 0 {
                 column -= TOGETHER;
@@ -300,10 +322,11 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
 }
 
 /// Columns that are factorised together. Bits depend on it.
-const WIDE: usize = 3;
+const WIDE: usize = 4;
 
-/// Columns that are solved together.
-const TOGETHER: usize = 4;
+/// Columns that are solved together; or half of them, or one.
+const TOGETHER: usize = 6;
+const HALF: usize = 3;
 
 // Each of these is compiled once for an instruction set, not wherever it is called.
 
@@ -323,7 +346,7 @@ impl<L: Lanes> NullaryFnOnce for Factorise<'_, '_, L> {
         if L::TALL == 4 {
             self.factorise::<4>();
         } else {
-            self.factorise::<2>();
+            self.factorise::<3>();
         }
     }
 }
@@ -398,8 +421,7 @@ impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
                 if before < at {
                     let factor = self.triangle[before][at];
                     for i in 0..TALL {
-                        sums[at][i] =
-                            lanes.take_product(sums[before][i], factor, sums[at][i]);
+                        sums[at][i] = lanes.take_product(sums[before][i], factor, sums[at][i]);
                     }
                 }
             }

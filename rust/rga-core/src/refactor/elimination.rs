@@ -32,17 +32,14 @@ impl Elimination {
     pub fn new(matrix: &LowerTriangle, most: usize) -> Option<Self> {
         let orders = [minimum_degree(matrix)?, breadth_first(matrix)];
         let found = orders.map(|order| Self::along(matrix, order, most));
-        let found = found.into_iter().flatten().inspect(|e| {
-            let f: f64 = e.supernodes.iter().map(|n| (0..n.columns.len()).map(|k| ((n.columns.len()-k+n.below.len()) as f64).powi(2)).sum::<f64>()).sum();
-            let sizes: Vec<(usize,usize)> = e.supernodes.iter().map(|n| (n.columns.len(), n.below.len())).collect();
-            eprintln!("cost {} numbers {} flops {} panels {} {:?}", e.cost(), e.numbers(), f, e.supernodes.len(), &sizes[..sizes.len().min(90)]);
-        });
+        let found = found.into_iter().flatten();
         found.min_by(|one, other| one.cost().total_cmp(&other.cost()))
     }
 
     /// Numbers of the factor, zeros among them.
     pub fn numbers(&self) -> usize {
-        let of_one = |node: &Supernode| node.columns.len() * (node.columns.len() + node.below.len());
+        let of_one =
+            |node: &Supernode| node.columns.len() * (node.columns.len() + node.below.len());
         self.supernodes.iter().map(of_one).sum()
     }
 
@@ -110,10 +107,10 @@ fn cost(width: usize, below: usize) -> f64 {
 }
 
 /// Measured on bridges, in one such operation.
-const NODE: f64 = 40.0;
-const COLUMN: f64 = 30.0;
+const NODE: f64 = 20.0;
+const COLUMN: f64 = 10.0;
 const NUMBER: f64 = 5.0;
-const HANDED: f64 = 4.0;
+const HANDED: f64 = 3.0;
 
 /// A supernode in the making; columns are numbered along the order given.
 #[derive(Debug, Default)]
@@ -210,13 +207,20 @@ fn best_child(nodes: &[Node], node: usize) -> Option<usize> {
 fn minimum_degree(matrix: &LowerTriangle) -> Option<Vec<usize>> {
     let size = matrix.size();
     // AMD takes either triangle, in order or not.
-    let pattern = SymbolicSparseColMatRef::new_checked(size, size, &matrix.first, None, &matrix.rows);
+    let pattern =
+        SymbolicSparseColMatRef::new_checked(size, size, &matrix.first, None, &matrix.rows);
     let (mut order, mut place) = (vec![0; size], vec![0; size]);
     let scratch = amd::order_maybe_unsorted_scratch::<usize>(size, matrix.rows.len());
     let mut memory = MemBuffer::try_new(scratch).ok()?;
     let stack = MemStack::new(&mut memory);
-    amd::order_maybe_unsorted(&mut order, &mut place, pattern, amd::Control::default(), stack)
-        .ok()?;
+    amd::order_maybe_unsorted(
+        &mut order,
+        &mut place,
+        pattern,
+        amd::Control::default(),
+        stack,
+    )
+    .ok()?;
     Some(order)
 }
 

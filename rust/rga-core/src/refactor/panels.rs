@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
-use crate::bilinear::Entry;
 use super::elimination::{Elimination, Supernode};
+use crate::bilinear::Entry;
 
 #[derive(Debug)]
 pub struct Panels {
@@ -63,7 +63,9 @@ impl Panels {
         let supernodes = &elimination.supernodes;
         let mut owner = vec![0; elimination.order.len()];
         for (index, node) in supernodes.iter().enumerate() {
-            node.columns.iter().for_each(|&column| owner[column] = index);
+            node.columns
+                .iter()
+                .for_each(|&column| owner[column] = index);
         }
         let mut start = 0;
         let mut panels: Vec<Panel> = Vec::with_capacity(supernodes.len());
@@ -136,8 +138,12 @@ impl Panels {
                 filled[term.place as usize] = true;
             }
             let rows = panel.rows();
-            let lower = (0..panel.width).flat_map(|column| column * (rows + 1)..(column + 1) * rows);
-            panel.empty = lower.filter(|&at| !filled[at]).map(|at| at as u32).collect();
+            let lower =
+                (0..panel.width).flat_map(|column| column * (rows + 1)..(column + 1) * rows);
+            panel.empty = lower
+                .filter(|&at| !filled[at])
+                .map(|at| at as u32)
+                .collect();
         }
     }
 
@@ -153,7 +159,9 @@ impl Panels {
 
     /// Number of unknowns.
     pub fn size(&self) -> usize {
-        self.panels.last().map_or(0, |panel| panel.first + panel.width)
+        self.panels
+            .last()
+            .map_or(0, |panel| panel.first + panel.width)
     }
 }
 
@@ -188,7 +196,9 @@ impl Panel {
 
 fn updates(node: &Supernode, supernodes: &[Supernode], owner: &[usize]) -> Vec<Update> {
     let mut from = 0;
-    let runs = node.below.chunk_by(|&one, &other| owner[one] == owner[other]);
+    let runs = node
+        .below
+        .chunk_by(|&one, &other| owner[one] == owner[other]);
     runs.map(|run| {
         let to = owner[run[0]];
         let Supernode { columns, below } = &supernodes[to];

@@ -2,7 +2,6 @@
 //!
 //!   K dz = B dq + dB q - dK z,    dy = S dz + T dq + dS z + dT q.
 
-
 use super::batch::{Batch, Solve};
 use crate::directions::Directions;
 use crate::error::Result;
@@ -88,16 +87,25 @@ impl Reading for Forward<'_> {
         solver: &mut impl Solve<L>,
         shown: &mut [L::Numbers],
     ) -> Result<()> {
-        let Batch { weights, coefficients, unknowns, .. } = batch;
+        let Batch {
+            weights,
+            coefficients,
+            unknowns,
+            ..
+        } = batch;
         let size = unknowns.len();
         let moved = self.moved(lanes, system, rows, batch);
         let mut motions = vec![lanes.splat(0.0); size * moved.len()];
         for (at, direction) in moved.iter().enumerate() {
             let right = &mut motions[at * size..(at + 1) * size];
-            system.load.add(lanes, weights, &direction.coefficients, right);
+            system
+                .load
+                .add(lanes, weights, &direction.coefficients, right);
             for &(weight, rate) in &direction.weights {
                 let taken = (weight, lanes.neg(rate));
-                system.load.add_one(lanes, (weight, rate), coefficients, right);
+                system
+                    .load
+                    .add_one(lanes, (weight, rate), coefficients, right);
                 system.stiffness.add_one(lanes, taken, unknowns, right);
             }
         }
@@ -106,7 +114,9 @@ impl Reading for Forward<'_> {
             let shown = &mut shown[at * self.outputs..(at + 1) * self.outputs];
             let motion = &motions[at * size..(at + 1) * size];
             system.shown.add(lanes, weights, motion, shown);
-            system.direct.add(lanes, weights, &direction.coefficients, shown);
+            system
+                .direct
+                .add(lanes, weights, &direction.coefficients, shown);
             for &rate in &direction.weights {
                 system.shown.add_one(lanes, rate, unknowns, shown);
                 system.direct.add_one(lanes, rate, coefficients, shown);
@@ -131,7 +141,11 @@ impl Forward<'_> {
         rows: Rows,
         batch: &Batch<L>,
     ) -> Vec<Moved<L>> {
-        let Directions { count, loads, changes } = self.directions;
+        let Directions {
+            count,
+            loads,
+            changes,
+        } = self.directions;
         let zero = lanes.splat(0.0);
         let mut moved: Vec<Moved<L>> = Vec::with_capacity(*count);
         for _ in 0..*count {
@@ -185,24 +199,43 @@ impl Reading for Adjoint<'_> {
         solver: &mut impl Solve<L>,
         shown: &mut [L::Numbers],
     ) -> Result<()> {
-        let Batch { weights, coefficients, unknowns, .. } = batch;
+        let Batch {
+            weights,
+            coefficients,
+            unknowns,
+            ..
+        } = batch;
         let zero = lanes.splat(0.0);
         let mut gradients = vec![zero; self.gradients.shape[1]];
         lanes.gather(&mut gradients, self.gradients.values, rows.from, rows.count);
         let mut adjoint = vec![zero; unknowns.len()];
-        system.shown.add_transposed(lanes, weights, &gradients, &mut adjoint);
+        system
+            .shown
+            .add_transposed(lanes, weights, &gradients, &mut adjoint);
         solver.solve(lanes, batch, &mut adjoint)?;
         let (by_coefficients, by_factors) = shown.split_at_mut(self.patterns);
-        system.load.add_transposed(lanes, weights, &adjoint, by_coefficients);
-        system.direct.add_transposed(lanes, weights, &gradients, by_coefficients);
+        system
+            .load
+            .add_transposed(lanes, weights, &adjoint, by_coefficients);
+        system
+            .direct
+            .add_transposed(lanes, weights, &gradients, by_coefficients);
         let mut by_weights = vec![zero; weights.len()];
-        system.stiffness.add_to_weights(lanes, &adjoint, unknowns, &mut by_weights);
+        system
+            .stiffness
+            .add_to_weights(lanes, &adjoint, unknowns, &mut by_weights);
         for value in &mut by_weights {
             *value = lanes.neg(*value);
         }
-        system.load.add_to_weights(lanes, &adjoint, coefficients, &mut by_weights);
-        system.shown.add_to_weights(lanes, &gradients, unknowns, &mut by_weights);
-        system.direct.add_to_weights(lanes, &gradients, coefficients, &mut by_weights);
+        system
+            .load
+            .add_to_weights(lanes, &adjoint, coefficients, &mut by_weights);
+        system
+            .shown
+            .add_to_weights(lanes, &gradients, unknowns, &mut by_weights);
+        system
+            .direct
+            .add_to_weights(lanes, &gradients, coefficients, &mut by_weights);
         by_factors.copy_from_slice(&by_weights[..self.elements]);
         if !system.weights.inverses {
             return Ok(());
