@@ -329,19 +329,17 @@ fn by_crosses(entries: &[Entry]) -> Vec<(Terms, Terms)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pulp::Scalar;
+    use crate::lanes::ONE;
 
     /// `[weights, rows, columns]` = `[2, 4, 5]`: one of rank one, one of full rank.
     fn entries() -> Vec<Entry> {
         let (u, v) = ([1.0, -2.0, 0.5, 3.0], [0.3, 0.0, -1.0, 2.0, 1e-9]);
         let mut entries = Vec::new();
-        for row in 0..4 {
-            for column in 0..5 {
-                let given = [
-                    u[row] * v[column],
-                    ((row * 7 + column * 3) as f64).sin() * 10f64.powi(3 * row as i32),
-                ];
-                for (weight, value) in given.into_iter().enumerate() {
+        for (row, u) in u.into_iter().enumerate() {
+            for (column, v) in v.into_iter().enumerate() {
+                let scale = 10f64.powi(3 * row as i32);
+                let full = ((row * 7 + column * 3) as f64).sin() * scale;
+                for (weight, value) in [u * v, full].into_iter().enumerate() {
                     let entry = |value| Entry {
                         weight,
                         row,
@@ -366,26 +364,30 @@ mod tests {
             let own = own.filter(|entry| (entry.row, entry.column) == (row, column));
             own.map(|entry| weights[entry.weight] * entry.value).sum()
         };
+        let weighted = weights.map(|weight| [weight]);
         for column in 0..5 {
-            let mut x = [0.0; 5];
-            x[column] = 1.0;
-            let mut out = [0.0; 4];
-            form.add(Scalar, &weights, &x, &mut out);
-            for (row, value) in out.into_iter().enumerate() {
+            let mut x = [[0.0]; 5];
+            x[column] = [1.0];
+            let mut out = [[0.0]; 4];
+            form.add(ONE, &weighted, &x, &mut out);
+            for (row, [value]) in out.into_iter().enumerate() {
                 let right = whole(row, column);
-                assert!(
-                    (value - right).abs() <= 1e-13 * right.abs(),
-                    "{row} {column}"
-                );
-                let mut y = [0.0; 4];
-                y[row] = 1.0;
-                let mut back = [0.0; 5];
-                form.add_transposed(Scalar, &weights, &y, &mut back);
-                assert!((back[column] - right).abs() <= 1e-13 * right.abs());
-                let mut of_weights = [0.0; 3];
-                form.add_to_weights(Scalar, &y, &x, &mut of_weights);
-                let sum: f64 = of_weights.iter().zip(weights).map(|(a, w)| a * w).sum();
-                assert!((sum - right).abs() <= 1e-13 * right.abs());
+                let close = |value: f64| (value - right).abs() <= 1e-13 * right.abs();
+                assert!(close(value), "{row} {column}");
+                let mut y = [[0.0]; 4];
+                y[row] = [1.0];
+                let mut back = [[0.0]; 5];
+                form.add_transposed(ONE, &weighted, &y, &mut back);
+                assert!(close(back[column][0]));
+                let mut of_weights = [[0.0]; 3];
+                form.add_to_weights(ONE, &y, &x, &mut of_weights);
+                let sums = of_weights.iter().zip(weights);
+                assert!(close(sums.map(|([rate], weight)| rate * weight).sum()));
+                let mut of_one = [[0.0]; 4];
+                for (weight, value) in weights.into_iter().enumerate() {
+                    form.add_one(ONE, (weight, [value]), &x, &mut of_one);
+                }
+                assert!(close(of_one[row][0]));
             }
         }
     }

@@ -12,6 +12,7 @@
 
 mod adjoint;
 mod kernel;
+mod samples;
 mod sensitivity;
 
 use std::ops::Range;

@@ -33,8 +33,11 @@ pub trait Lanes: Copy + Send + Sync {
     fn max(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     /// Whether a <= b; not where one of them is no number.
     fn at_most(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
+    /// Whether a > b; not where one of them is no number.
+    fn above(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn all(self, mask: Self::Mask) -> bool;
     fn select(self, mask: Self::Mask, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
 
     /// The same, lane by lane.
@@ -103,6 +106,12 @@ pub struct Packs<S, const P: usize>(pub S);
 /// One sample.
 pub type One = Packs<Scalar, 1>;
 pub const ONE: One = Packs(Scalar);
+
+impl<S: Simd, const P: usize> From<S> for Packs<S, P> {
+    fn from(simd: S) -> Self {
+        Self(simd)
+    }
+}
 
 impl<S: Simd, const P: usize> Packs<S, P> {
     #[inline(always)]
@@ -265,6 +274,16 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
     }
 
     #[inline(always)]
+    fn above(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask {
+        self.masked(
+            a,
+            b,
+            #[inline(always)]
+            |simd, a, b| simd.less_than_f64s(b, a),
+        )
+    }
+
+    #[inline(always)]
     fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask {
         self.masked(
             a,
@@ -281,6 +300,12 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
             found[at] = self.0.and_m64s(a[at], b[at]);
         }
         found
+    }
+
+    #[inline(always)]
+    fn all(self, mask: Self::Mask) -> bool {
+        let first = |mask| self.0.first_true_m64s(self.0.not_m64s(mask));
+        mask.into_iter().all(|mask| first(mask) >= S::F64_LANES)
     }
 
     #[inline(always)]

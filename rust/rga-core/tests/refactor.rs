@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::samples::{Random, expected, refactored, run};
+use common::samples::{Random, all_outputs, bridge, expected, refactored, run, with_loads};
 use common::*;
 use rga_core::{Error, Result};
 
@@ -57,82 +57,6 @@ fn same_bits(one: &[f64], other: &[f64]) -> bool {
             .collect::<Vec<_>>()
     };
     bits(one) == bits(other)
-}
-
-/// Boxes in a row, of crooked members; every kind of load on its own.
-fn bridge(bays: i64, frame: bool) -> Case {
-    let mut random = Random(5);
-    let section = [[0.0, 0.0], [0.0, 2.5], [3.0, 0.0], [3.0, 2.5]];
-    let nodes: Vec<[f64; 3]> = (0..=bays)
-        .flat_map(|bay| section.map(|[y, z]| [3.0 * bay as f64, y, z]))
-        .map(|node| node.map(|place| place + random.between(-0.2, 0.2)))
-        .collect();
-    let within = [[0, 1], [0, 2], [1, 3], [2, 3], [0, 3]];
-    let onward = [
-        [0, 4],
-        [1, 5],
-        [2, 6],
-        [3, 7],
-        [0, 5],
-        [2, 7],
-        [0, 6],
-        [1, 7],
-        [1, 4],
-        [3, 6],
-    ];
-    let mut members = Vec::new();
-    for bay in 0..=bays {
-        for pair in within.iter().chain(onward.iter().filter(|_| bay < bays)) {
-            members.push((pair.map(|corner| 4 * bay + corner), frame));
-        }
-    }
-    let last = 4 * bays as usize;
-    Case::new(&nodes, &members)
-        .fix(0, &[0, 1, 2])
-        .fix(2, &[0, 2])
-        .fix(last, &[1, 2])
-        .fix(last + 2, &[2])
-}
-
-fn with_loads(case: &Case) -> Vec<Case> {
-    let mut random = Random(7);
-    let forced = (0..case.nodes.len()).fold(case.clone(), |case, node| {
-        case.force(node, 2, random.between(-2e4, 0.0))
-            .force(node, 0, random.between(-1e3, 1e3))
-    });
-    let mut warm = case.clone();
-    for (strain, frame) in warm.strain.iter_mut().zip(&case.frame) {
-        let gradient = if *frame { 1e-4 } else { 0.0 };
-        *strain = [random.between(0.0, 3e-4), gradient, -gradient];
-    }
-    let mut settled = case.clone();
-    settled.prescribed[0][2] = -4e-3;
-    settled.prescribed[2][0] = 2e-3;
-    for support in &mut settled.inclined {
-        support.2 = 3e-3;
-    }
-    let loaded = case
-        .clone()
-        .uniform(3, 2, 1.5, -3e3)
-        .point(3, 1, 0.8, 2e3)
-        .uniform(6, 1, 2.0, 1e3);
-    vec![forced, warm, settled, loaded]
-}
-
-fn all_outputs(case: &Case) -> Vec<Output> {
-    let mut outputs = Vec::new();
-    for node in 0..case.nodes.len() as i64 {
-        outputs.extend((0..3).map(|axis| at(DISPLACEMENT, node, axis)));
-        outputs.extend((0..3).map(|axis| at(ROTATION, node, axis)));
-        outputs.extend((0..3).map(|axis| at(REACTION, node, axis)));
-        outputs.extend((0..3).map(|axis| at(MOMENT, node, axis)));
-    }
-    for member in 0..case.ends.len() as i64 {
-        outputs.push((STRAIN, member, -1, [0.3, 0.0, 0.0]));
-        outputs.push((AXIAL, member, -1, [0.6, 0.0, 0.0]));
-        outputs.extend([0, 1, 2].map(|dof| end_force(member, dof)));
-    }
-    outputs
 }
 
 #[test]

@@ -7,7 +7,8 @@
 use pulp::{Simd, WithSimd};
 
 use super::Condensed;
-use super::kernel::{PACK, Samples, add_product, gather, scatter, take_product};
+use super::samples::{Samples, Together, add_product};
+use crate::lanes::Lanes;
 
 /// Gradients `[n, p + r]` of rows; gives the first row whose structure is not stable.
 pub struct AdjointKernel<'a> {
@@ -34,37 +35,35 @@ impl WithSimd for AdjointKernel<'_> {
         let both = [&self.condensed.loaded[..], &self.condensed.influence[..]].concat();
         let both = transposed(&both, outputs);
         let driven = transposed(&self.condensed.driven, terms);
-        let zero = [simd.splat_f64s(0.0); PACK];
-        let mut samples = Samples::new(simd, self.condensed);
+        let lanes = Together::<S>::from(simd);
+        let zero = lanes.splat(0.0);
+        let mut samples = Samples::new(lanes, self.condensed);
         let mut gradients = vec![zero; outputs];
         let mut found = vec![zero; width];
         let mut adjoint = vec![zero; terms];
-        let many = PACK * S::F64_LANES;
+        let many = Together::<S>::COUNT;
         let rows = self.results.len() / width;
         for from in (0..rows).step_by(many) {
             let present = many.min(rows - from);
             samples.load(self.coefficients, self.changes, from, present);
-            if let Some(lane) = samples.solve(simd, present) {
+            if let Some(lane) = samples.solve(present) {
                 return Some(from + lane);
             }
-            gather::<S>(&mut gradients, self.gradients, from, present);
+            lanes.gather(&mut gradients, self.gradients, from, present);
             found.fill(zero);
-            add_product::<S>(simd, &gradients, &both, &mut found);
+            add_product(lanes, &gradients, &both, &mut found);
             let (by_loads, a) = found.split_at_mut(patterns);
             // Minus l, from minus the right-hand side.
             adjoint.fill(zero);
             for ((own, d), a) in adjoint.iter_mut().zip(&samples.changes).zip(&*a) {
-                take_product::<S>(simd, d, a, own);
+                *own = lanes.take_product(*d, *a, *own);
             }
-            samples.substitute(simd, &mut adjoint);
-            add_product::<S>(simd, &adjoint, &driven, by_loads);
+            samples.substitute(&mut adjoint);
+            add_product(lanes, &adjoint, &driven, by_loads);
             for ((a, own), v) in a.iter_mut().zip(&adjoint).zip(&samples.elongations) {
-                for at in 0..PACK {
-                    let sum = simd.add_f64s(own[at], a[at]);
-                    a[at] = simd.neg_f64s(simd.mul_f64s(sum, v[at]));
-                }
+                *a = lanes.neg(lanes.mul(lanes.add(*own, *a), *v));
             }
-            scatter::<S>(&found, &mut self.results[from * width..], width, present);
+            lanes.scatter(&found, &mut self.results[from * width..], width, present);
         }
         None
     }

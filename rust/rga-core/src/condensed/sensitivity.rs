@@ -5,8 +5,9 @@
 use pulp::{Simd, WithSimd};
 
 use super::Condensed;
-use super::kernel::{PACK, Pack, Samples, add_product, gather, scatter, take_product};
+use super::samples::{Samples, Together, add_product};
 use crate::directions::Directions;
+use crate::lanes::Lanes;
 
 /// Derivatives `[n, c, o]` of rows; gives the first row whose structure is not stable.
 pub struct SensitivityKernel<'a> {
@@ -67,10 +68,11 @@ impl WithSimd for SensitivityKernel<'_> {
             .map(|number| Direction::new(number, self.directions, self.condensed))
             .collect();
         let width = outputs * directions.len();
-        let many = PACK * S::F64_LANES;
+        let many = Together::<S>::COUNT;
         let rows = self.results.len() / width;
-        let zero = [simd.splat_f64s(0.0); PACK];
-        let mut samples = Samples::new(simd, self.condensed);
+        let lanes = Together::<S>::from(simd);
+        let zero = lanes.splat(0.0);
+        let mut samples = Samples::new(lanes, self.condensed);
         let mut load_rates = vec![zero; self.directions.loads.len()];
         let mut change_rates = vec![zero; self.directions.changes.len()];
         let mut factors = Vec::new();
@@ -78,36 +80,35 @@ impl WithSimd for SensitivityKernel<'_> {
         for from in (0..rows).step_by(many) {
             let present = many.min(rows - from);
             samples.load(self.coefficients, self.changes, from, present);
-            if let Some(lane) = samples.solve(simd, present) {
+            if let Some(lane) = samples.solve(present) {
                 return Some(from + lane);
             }
-            gather::<S>(&mut load_rates, self.coefficient_rates, from, present);
-            gather::<S>(&mut change_rates, self.change_rates, from, present);
+            lanes.gather(&mut load_rates, self.coefficient_rates, from, present);
+            lanes.gather(&mut change_rates, self.change_rates, from, present);
             for (number, direction) in directions.iter().enumerate() {
                 factors.clear();
                 factors.extend(direction.loads.iter().map(|place| load_rates[*place]));
                 let loads = factors.len();
                 factors.resize(loads + terms, zero);
                 let (of_loads, pseudo) = factors.split_at_mut(loads);
-                add_product::<S>(simd, of_loads, &direction.driven, pseudo);
-                let of_changes = |pseudo: &mut [Pack<S>]| {
-                    for (place, term) in &direction.changes {
-                        let v = &samples.elongations[*term];
-                        take_product::<S>(simd, &change_rates[*place], v, &mut pseudo[*term]);
+                add_product(lanes, of_loads, &direction.driven, pseudo);
+                let of_changes = |pseudo: &mut [_]| {
+                    for &(place, term) in &direction.changes {
+                        let v = samples.elongations[term];
+                        pseudo[term] = lanes.take_product(change_rates[place], v, pseudo[term]);
                     }
                 };
                 of_changes(pseudo);
-                samples.substitute(simd, pseudo);
+                samples.substitute(pseudo);
                 // Minus d dv, minus dd v.
                 for (w, d) in pseudo.iter_mut().zip(&samples.changes) {
-                    let dv = std::mem::replace(w, zero);
-                    take_product::<S>(simd, d, &dv, w);
+                    *w = lanes.take_product(*d, *w, zero);
                 }
                 of_changes(pseudo);
                 shown.fill(zero);
-                add_product::<S>(simd, &factors, &direction.shown, &mut shown);
+                add_product(lanes, &factors, &direction.shown, &mut shown);
                 let results = &mut self.results[from * width + number * outputs..];
-                scatter::<S>(&shown, results, width, present);
+                lanes.scatter(&shown, results, width, present);
             }
         }
         None

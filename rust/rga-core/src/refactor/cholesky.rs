@@ -4,6 +4,9 @@
 //! in any lane of any instruction set. Tiles of sums stay in registers: loops over them have fixed
 //! lengths.
 
+// Tiles are indexed by loops of fixed lengths, which are unrolled.
+#![allow(clippy::needless_range_loop)]
+
 use pulp::NullaryFnOnce;
 
 use super::panels::{Panel, Panels, Update};
@@ -267,12 +270,13 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     #[inline(always)]
     fn backward<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
         for panel in self.panels.panels.iter().rev() {
+            let whole = panel.width / TOGETHER * TOGETHER;
             let mut column = panel.width;
-            while column % TOGETHER % HALF > 0 {
+            while column > whole + HALF || (whole < column && column < whole + HALF) {
                 column -= 1;
                 self.backward_columns::<N, 1>(lanes, panel, column, right);
             }
-            if column % TOGETHER > 0 {
+            if column > whole {
                 column -= HALF;
                 self.backward_columns::<N, HALF>(lanes, panel, column, right);
             }

@@ -85,11 +85,11 @@ impl Panels {
             start += width * (width + node.below.len());
         }
         let mut filled = vec![false; panels.len()];
-        for index in 0..panels.len() {
-            let targets = panels[index].updates.iter().map(|update| update.to);
+        for (index, panel) in panels.iter_mut().enumerate() {
+            let targets = panel.updates.iter().map(|update| update.to);
             let needed = std::iter::once(index).chain(targets);
             let fills = needed.filter(|&at| !std::mem::replace(&mut filled[at], true));
-            panels[index].fills = fills.collect();
+            panel.fills = fills.collect();
         }
         let mut found = Self {
             panels,
