@@ -11,8 +11,9 @@
 //!
 //! `refactor` repeats an analysis for samples of which every stiffness may
 //! vary: the structure is read off its elements as sums over their factors
-//! (`system`, `bilinear`), the matrix is filled in place, and rows are shared
-//! among threads (`parallel`).
+//! (`system`, `bilinear`), samples are factorised side by side in the `lanes`
+//! of SIMD vectors, of the `instructions` that the processor has, and rows are
+//! shared among threads (`parallel`).
 //!
 //! `condensed` repeats an analysis for many samples of which few
 //! stiffnesses, or none, vary.
