@@ -369,14 +369,17 @@ impl<L: Lanes> Factorise<'_, '_, L> {
         let zero = lanes.splat(0.0);
         cholesky.sound = lanes.at_most(zero, zero);
         for panel in &panels.panels {
+            if panel.is_first {
+                cholesky.fill(lanes, panel, weights);
+            }
+            cholesky.factorise_panel::<TALL, WIDE>(lanes, panel, share);
+            cholesky.forward::<1>(lanes, panel, right);
             for &other in &panel.fills {
                 cholesky.fill(lanes, &panels.panels[other], weights);
             }
-            cholesky.factorise_panel::<TALL, WIDE>(lanes, panel, share);
             for update in &panel.updates {
                 cholesky.hand_on::<TALL, WIDE>(lanes, panel, update);
             }
-            cholesky.forward::<1>(lanes, panel, right);
         }
         cholesky.backward::<1>(lanes, right);
     }

@@ -35,8 +35,10 @@ pub struct Panel {
     /// Where its numbers begin.
     pub start: usize,
     pub updates: Vec<Update>,
-    /// Panels that are filled in before it: itself, or those to which it is the first to hand on.
-    /// What is filled in is used at once, while it is in the cache.
+    /// Nothing is handed on to it.
+    pub is_first: bool,
+    /// Panels to which it is the first to hand on. They are filled in when it is factorised: each
+    /// is in the cache while it is worked on.
     pub fills: Vec<usize>,
     /// Places of the lower triangle that no term fills.
     pub empty: Vec<u32>,
@@ -77,6 +79,7 @@ impl Panels {
                 below: node.below.clone(),
                 start,
                 updates: updates(node, supernodes, &owner),
+                is_first: false,
                 fills: Vec::new(),
                 empty: Vec::new(),
                 alone: 0..0,
@@ -86,9 +89,9 @@ impl Panels {
         }
         let mut filled = vec![false; panels.len()];
         for (index, panel) in panels.iter_mut().enumerate() {
+            panel.is_first = !filled[index];
             let targets = panel.updates.iter().map(|update| update.to);
-            let needed = std::iter::once(index).chain(targets);
-            let fills = needed.filter(|&at| !std::mem::replace(&mut filled[at], true));
+            let fills = targets.filter(|&at| !std::mem::replace(&mut filled[at], true));
             panel.fills = fills.collect();
         }
         let mut found = Self {
