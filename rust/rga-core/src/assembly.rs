@@ -1,5 +1,7 @@
 //! The stiffness of the unknowns, as a sparse lower triangle.
 
+use faer::sparse::SymbolicSparseColMatRef;
+
 use crate::model::Model;
 use crate::reduction::Reduction;
 
@@ -35,29 +37,32 @@ impl LowerTriangle {
         Self::from_entries(&entries, size)
     }
 
-    /// Entries repeat; all diagonal ones are there.
+    /// Entries repeat, and are summed in their order; all diagonal ones are there.
     pub fn from_entries(entries: &[Entry], size: usize) -> Self {
-        let entries = bucket(entries, size, |entry| entry.0);
-        let entries = bucket(&entries, size, |entry| entry.1);
+        let (starts, sorted) = by_column(entries, size);
         let mut matrix = Self {
             first: Vec::with_capacity(size + 1),
-            rows: Vec::with_capacity(entries.len()),
-            values: Vec::with_capacity(entries.len()),
+            rows: Vec::new(),
+            values: Vec::new(),
         };
-        let mut last = None;
-        for (row, column, value) in entries {
-            if last == Some((row, column)) {
-                if let Some(sum) = matrix.values.last_mut() {
-                    *sum += value;
+        let mut sums: Vec<(usize, f64)> = Vec::new();
+        // Of each row, where its sum may stand.
+        let mut place = vec![0; size];
+        for column in 0..size {
+            sums.clear();
+            for &(row, value) in &sorted[starts[column]..starts[column + 1]] {
+                match sums.get_mut(place[row]) {
+                    Some((same, sum)) if *same == row => *sum += value,
+                    _ => {
+                        place[row] = sums.len();
+                        sums.push((row, value));
+                    }
                 }
-                continue;
             }
-            if row == column {
-                matrix.first.push(matrix.rows.len());
-            }
-            matrix.rows.push(row);
-            matrix.values.push(value);
-            last = Some((row, column));
+            sums.sort_unstable_by_key(|&(row, _)| row);
+            matrix.first.push(matrix.rows.len());
+            matrix.rows.extend(sums.iter().map(|&(row, _)| row));
+            matrix.values.extend(sums.iter().map(|&(_, sum)| sum));
         }
         matrix.first.push(matrix.rows.len());
         matrix
@@ -65,6 +70,11 @@ impl LowerTriangle {
 
     pub fn size(&self) -> usize {
         self.first.len() - 1
+    }
+
+    pub fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let size = self.size();
+        SymbolicSparseColMatRef::new_checked(size, size, &self.first, None, &self.rows)
     }
 
     /// Where the entry, which is there, stands in `values`.
@@ -117,20 +127,20 @@ impl LowerTriangle {
     }
 }
 
-/// Stable counting sort: linear, and the order of sums stays fixed.
-fn bucket(entries: &[Entry], size: usize, key: impl Fn(&Entry) -> usize) -> Vec<Entry> {
-    let mut next = vec![0; size + 1];
-    for entry in entries {
-        next[key(entry) + 1] += 1;
+/// Rows and values of each column in the order of the entries, and where columns start.
+fn by_column(entries: &[Entry], size: usize) -> (Vec<usize>, Vec<(usize, f64)>) {
+    let mut starts = vec![0; size + 1];
+    for &(_, column, _) in entries {
+        starts[column + 1] += 1;
     }
     for at in 0..size {
-        next[at + 1] += next[at];
+        starts[at + 1] += starts[at];
     }
-    let mut sorted = vec![(0, 0, 0.0); entries.len()];
-    for entry in entries {
-        let slot = &mut next[key(entry)];
-        sorted[*slot] = *entry;
-        *slot += 1;
+    let mut next = starts.clone();
+    let mut sorted = vec![(0, 0.0); entries.len()];
+    for &(row, column, value) in entries {
+        sorted[next[column]] = (row, value);
+        next[column] += 1;
     }
-    sorted
+    (starts, sorted)
 }

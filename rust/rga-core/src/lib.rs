@@ -5,9 +5,12 @@
 //! (`input`, `check*`), members get their stiffness (`axes`, `element`,
 //! `connection`, `member`) and their fixed-end forces (`load`), supports and
 //! ties reduce the dofs (`constraint`), the reduced matrix is assembled
-//! (`model`, `reduction`, `assembly`, `turning`) and factorised (`solve`, `stability`), and the outputs are
+//! (`model`, `reduction`, `assembly`, `turning`) and factorised (`solve`, `stability`, `softening`), and the outputs are
 //! read off the balanced solution (`equilibrium`, `observe`). `respond` runs
 //! the steps; `friction` follows bearings through time.
+//!
+//! Large matrices are eliminated in an order that keeps their factor small (`ordering`, `graph`,
+//! `dissection`), dense front by dense front (`supernodes`, `multifrontal`).
 //!
 //! `refactor` repeats an analysis for samples of which every stiffness may
 //! vary: the structure is read off its elements as sums over their factors
@@ -36,29 +39,36 @@ mod connection;
 mod constraint;
 mod deformed;
 mod directions;
+mod dissection;
 mod element;
 mod equilibrium;
 mod error;
 mod friction;
 mod gaussian_window;
+mod graph;
 mod input;
 mod instructions;
 mod lanes;
 mod load;
 mod member;
 mod model;
+mod multifrontal;
 mod nonlinear;
 mod observe;
+mod ordering;
 mod parallel;
 mod reduction;
 mod refactor;
 mod respond;
 mod scatter;
+mod softening;
 mod solve;
 mod stability;
+mod supernodes;
 mod system;
 mod turning;
 
+pub use assembly::LowerTriangle;
 pub use condensed::Condensed;
 pub use directions::Directions;
 pub use error::{Error, Result};
@@ -67,5 +77,6 @@ pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
 pub use input::{Array, Loads, Outputs, Structure};
 pub use instructions::instructions;
 pub use nonlinear::respond_nonlinear;
+pub use ordering::fill_reducing;
 pub use refactor::{Refactored, Samples};
 pub use respond::respond;

@@ -41,6 +41,8 @@ impl Spring {
 
 #[derive(Debug, Clone)]
 pub struct Model {
+    /// Coordinates of the nodes.
+    pub nodes: Vec<[f64; 3]>,
     pub members: Vec<Member>,
     pub springs: Vec<Spring>,
     pub dofs: usize,
@@ -59,6 +61,7 @@ impl Model {
             }
         });
         Ok(Self {
+            nodes: structure.coordinates.values.as_chunks().0.to_vec(),
             members: members.collect::<Result<_>>()?,
             springs: springs.collect(),
             dofs: 6 * structure.node_count(),

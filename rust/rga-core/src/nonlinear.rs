@@ -26,6 +26,7 @@ use crate::input::{Array, Loads, Outputs, Structure};
 use crate::load::fixed_end_forces;
 use crate::model::Model;
 use crate::observe::{Observer, Output, State, read_outputs};
+use crate::ordering::OFTEN;
 use crate::parallel::in_chunks;
 use crate::reduction::Reduction;
 use crate::scatter::{Scatter, listed};
@@ -137,7 +138,8 @@ impl Analysis {
         let constraints = Constraints::new(structure);
         let reduction = Reduction::new(&constraints, &model.diagonal()?);
         let (scatter, matrix) = Scatter::new(&model, &reduction);
-        let solver = Solver::analyse(matrix, Vec::new())?;
+        let places = reduction.places(&model.nodes);
+        let solver = Solver::analyse(matrix, Vec::new(), &places, OFTEN)?;
         let mut analysis = Self {
             flexible: model.members.iter().map(Flexible::new).collect(),
             combination: Combination::new(loads, &constraints, model.members.len())?,

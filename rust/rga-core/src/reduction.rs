@@ -61,6 +61,11 @@ impl Reduction {
         reduction
     }
 
+    /// Of the unknowns, from those of the nodes.
+    pub fn places(&self, nodes: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.unknowns.iter().map(|dof| nodes[dof / 6]).collect()
+    }
+
     /// The unknowns that move `dof`, with their factors.
     pub fn entries(&self, dof: usize) -> &[(usize, f64)] {
         &self.entries[self.first[dof]..self.first[dof + 1]]

@@ -30,6 +30,7 @@ use crate::instructions::instructions_named;
 use crate::lanes::{Lanes, MOST, ONE, One, Packs};
 use crate::model::Model;
 use crate::observe::read_outputs;
+use crate::ordering::OFTEN;
 use crate::parallel::in_chunks;
 use crate::reduction::Reduction;
 use crate::stability::Solver;
@@ -82,8 +83,9 @@ impl Refactored {
         let reduction = Reduction::new(&constraints, &model.diagonal()?);
         let wanted = read_outputs(outputs);
         let (system, matrix) = System::new(&model, &constraints, &reduction, loads, &wanted)?;
+        let places = reduction.places(&model.nodes);
         Ok(Self {
-            solver: Solver::analyse(matrix, system.turns.clone())?,
+            solver: Solver::analyse(matrix, system.turns.clone(), &places, OFTEN)?,
             patterns: loads.pattern_count(),
             outputs: wanted.len(),
             model,

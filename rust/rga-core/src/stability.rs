@@ -5,6 +5,7 @@ use crate::equilibrium::{REFINE, REFUSE};
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::reduction::{NO_STIFFNESS, Reduction, stiffest};
+use crate::softening::Softening;
 use crate::solve::Factor;
 use crate::turning::FreeTurn;
 
@@ -31,7 +32,11 @@ pub const SOFTEST: f64 = 1e-10;
 /// Makes the scaled matrix definite; far below every stiffness that counts.
 const SHIFT: f64 = 1e-10;
 
-const ITERATIONS: usize = 20;
+/// Of inverse iteration.
+const STEPS: usize = 20;
+
+/// Changes of a motion below this are rounding.
+const SETTLED: f64 = 1e-13;
 
 /// Among motions within this part of the largest, the first dof is named.
 const AS_LARGE: f64 = 1.0 - 1e-6;
@@ -51,7 +56,8 @@ impl Solver {
         let mut matrix = LowerTriangle::assemble(model, reduction);
         let turns = FreeTurn::find(&matrix, reduction);
         turns.iter().for_each(|turn| turn.hold(&mut matrix));
-        let mut solver = Self::analyse(matrix, turns)?;
+        let places = reduction.places(&model.nodes);
+        let mut solver = Self::analyse(matrix, turns, &places, 1.0)?;
         let stands = solver.factorise(model, reduction);
         if stands && !solver.moves_freely(model, reduction, |_| 1.0)? {
             Ok(solver)
@@ -60,12 +66,17 @@ impl Solver {
         }
     }
 
-    /// The symbolic analysis alone; `factorise` must follow. `turns` are held in new values of K
-    /// by `hold_turns`.
-    pub fn analyse(matrix: LowerTriangle, turns: Vec<FreeTurn>) -> Result<Self> {
+    /// The symbolic analysis alone; `factorise` must follow, about `repeats` times. `turns` are
+    /// held in new values of K by `hold_turns`; `places` are those of the unknowns.
+    pub fn analyse(
+        matrix: LowerTriangle,
+        turns: Vec<FreeTurn>,
+        places: &[[f64; 3]],
+        repeats: f64,
+    ) -> Result<Self> {
         Ok(Self {
             scale: vec![1.0; matrix.size()],
-            factor: Factor::analyse(&matrix)?,
+            factor: Factor::analyse(&matrix, places, repeats)?,
             turns,
             matrix,
         })
@@ -108,9 +119,10 @@ impl Solver {
         self.factor.refactor(&self.matrix) && self.factor.smallest_pivot() >= SMALLEST_PIVOT
     }
 
-    /// Whether the softest motion strains no element: where members are much stiffer along than
-    /// across, the pivot of a mechanism may be all rounding and yet not small. Rounding of the
-    /// elements' own deformations is smaller by far.
+    /// Whether a motion strains no element: where members are much stiffer along than across, the
+    /// pivot of a mechanism may be all rounding and yet not small. Rounding of the elements' own
+    /// deformations is smaller by far. That of the scaled matrix, whose entries are 1 at most, is
+    /// small beside `FREE_ENERGY`: where it leaves no motion so little energy, none is free.
     ///
     /// `factor` is that of a member, or spring behind them, on the stiffness of `model`.
     pub fn moves_freely(
@@ -122,12 +134,18 @@ impl Solver {
         if self.scale.is_empty() || self.factor.smallest_pivot() >= SUSPICIOUS_PIVOT {
             return Ok(false);
         }
-        let motion = softest(&self.factor, self.scale.len())?;
-        let unscaled: Vec<f64> = motion.iter().zip(&self.scale).map(|(m, s)| m * s).collect();
-        let mut displacements = vec![0.0; model.dofs];
-        reduction.expand(&unscaled, &mut displacements);
-        let size: f64 = motion.iter().map(|value| value * value).sum();
-        Ok(model.energy(&displacements, factor) < FREE_ENERGY * size)
+        let mut softening = Softening::new(&self.factor, self.scale.len());
+        for _ in 0..STEPS {
+            softening.step()?;
+            let displacements = displacements(&softening.motion, &self.scale, model, reduction);
+            if model.energy(&displacements, &factor) < FREE_ENERGY {
+                return Ok(true);
+            }
+            if softening.least_energy() > FREE_ENERGY {
+                return Ok(false);
+            }
+        }
+        Ok(false)
     }
 
     /// Solves in place for right-hand sides one behind the other.
@@ -253,7 +271,35 @@ impl Solver {
 
     /// The error for K that does not factorise, or leaves a large residual.
     pub fn unstable(&self, model: &Model, reduction: &Reduction) -> Error {
-        name_mechanism(self.matrix.clone(), &self.scale, model, reduction)
+        match self.null_vector() {
+            Ok(motion) => name(
+                &displacements(&motion, &self.scale, model, reduction),
+                model.arm(),
+            ),
+            Err(error) => error,
+        }
+    }
+
+    /// The motion that the matrix, shifted until it is definite, resists least.
+    fn null_vector(&self) -> Result<Vec<f64>> {
+        let mut matrix = self.matrix.clone();
+        let mut factor = self.factor.another()?;
+        let mut shift = SHIFT;
+        matrix.shift(shift);
+        while !factor.refactor(&matrix) {
+            if shift >= 1.0 {
+                return Err(Error::invalid("the stiffness is not a finite number"));
+            }
+            shift *= 100.0;
+            matrix.shift(shift);
+        }
+        let mut softening = Softening::new(&factor, matrix.size());
+        for _ in 0..STEPS {
+            if softening.step()? < SETTLED {
+                break;
+            }
+        }
+        Ok(softening.motion)
     }
 }
 
@@ -273,26 +319,23 @@ fn scaling(matrix: &LowerTriangle, reduction: &Reduction, dofs: usize) -> Vec<f6
     reduction.unknowns.iter().map(own).collect()
 }
 
-fn name_mechanism(
-    matrix: LowerTriangle,
-    scale: &[f64],
-    model: &Model,
-    reduction: &Reduction,
-) -> Error {
-    let motion = match null_vector(matrix) {
-        Ok(motion) => motion,
-        Err(error) => return error,
-    };
+/// Of all dofs, from a motion of the scaled unknowns.
+fn displacements(motion: &[f64], scale: &[f64], model: &Model, reduction: &Reduction) -> Vec<f64> {
     let unscaled: Vec<f64> = motion.iter().zip(scale).map(|(m, s)| m * s).collect();
     let mut displacements = vec![0.0; model.dofs];
     reduction.expand(&unscaled, &mut displacements);
-    let arm = model.arm();
+    displacements
+}
+
+/// Where a mechanism moves most; `arm` makes rotations count as translations.
+fn name(displacements: &[f64], arm: f64) -> Error {
     let size = |dof: usize| {
         let lever = if dof % 6 < 3 { 1.0 } else { arm };
         displacements[dof].abs() * lever
     };
-    let most = (0..model.dofs).map(size).fold(0.0, f64::max);
-    let worst = (0..model.dofs)
+    let dofs = displacements.len();
+    let most = (0..dofs).map(size).fold(0.0, f64::max);
+    let worst = (0..dofs)
         .find(|&dof| size(dof) >= AS_LARGE * most)
         .unwrap_or(0);
     let node = worst / 6;
@@ -313,33 +356,4 @@ fn name_mechanism(
         dof: worst % 6,
         direction,
     }
-}
-
-/// The motion that the matrix, shifted until it is definite, resists least.
-fn null_vector(mut matrix: LowerTriangle) -> Result<Vec<f64>> {
-    let mut shift = SHIFT;
-    let factor = loop {
-        matrix.shift(shift);
-        match Factor::new(&matrix)? {
-            Some(factor) => break factor,
-            None if shift < 1.0 => shift *= 100.0,
-            None => return Err(Error::invalid("the stiffness is not a finite number")),
-        }
-    };
-    softest(&factor, matrix.size())
-}
-
-/// Inverse iteration from a fixed irregular start.
-fn softest(factor: &Factor, size: usize) -> Result<Vec<f64>> {
-    let golden = 0.618_033_988_749_895;
-    let start = |at: usize| 0.5 + (golden * (at + 1) as f64).fract();
-    let mut motion: Vec<f64> = (0..size).map(start).collect();
-    for _ in 0..ITERATIONS {
-        factor.solve(&mut motion, 1)?;
-        let largest = motion
-            .iter()
-            .fold(0.0_f64, |most, value| most.max(value.abs()));
-        motion.iter_mut().for_each(|value| *value /= largest);
-    }
-    Ok(motion)
 }

@@ -5,11 +5,8 @@
 //! amalgamation; Ashcraft and Grimes, The influence of relaxed supernode partitions on the
 //! multifrontal method, 1989).
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
-
 use crate::assembly::LowerTriangle;
+use crate::ordering::minimum_degree;
 
 #[derive(Debug)]
 pub struct Elimination {
@@ -30,7 +27,12 @@ pub struct Supernode {
 impl Elimination {
     /// Nothing where the factor would have more than `most` numbers.
     pub fn new(matrix: &LowerTriangle, most: usize) -> Option<Self> {
-        let orders = [minimum_degree(matrix)?, breadth_first(matrix)];
+        // It has all that the matrix has.
+        if matrix.rows.len() > most {
+            return None;
+        }
+        let (by_degree, _) = minimum_degree(matrix.pattern())?;
+        let orders = [by_degree, breadth_first(matrix)];
         let found = orders.map(|order| Self::along(matrix, order, most));
         let found = found.into_iter().flatten();
         found.min_by(|one, other| one.cost().total_cmp(&other.cost()))
@@ -202,26 +204,6 @@ fn best_child(nodes: &[Node], node: usize) -> Option<usize> {
     let gains = own.children.iter().map(|&child| (gain(child), child));
     let best = gains.max_by(|one, other| one.0.total_cmp(&other.0))?;
     (best.0 > 0.0).then_some(best.1)
-}
-
-fn minimum_degree(matrix: &LowerTriangle) -> Option<Vec<usize>> {
-    let size = matrix.size();
-    // AMD takes either triangle, in order or not.
-    let pattern =
-        SymbolicSparseColMatRef::new_checked(size, size, &matrix.first, None, &matrix.rows);
-    let (mut order, mut place) = (vec![0; size], vec![0; size]);
-    let scratch = amd::order_maybe_unsorted_scratch::<usize>(size, matrix.rows.len());
-    let mut memory = MemBuffer::try_new(scratch).ok()?;
-    let stack = MemStack::new(&mut memory);
-    amd::order_maybe_unsorted(
-        &mut order,
-        &mut place,
-        pattern,
-        amd::Control::default(),
-        stack,
-    )
-    .ok()?;
-    Some(order)
 }
 
 /// From one end to the other (reverse Cuthill-McKee): good where a structure is long.

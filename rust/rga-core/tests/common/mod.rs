@@ -1,6 +1,7 @@
 //! Small structures for the tests: owned arrays, lent to the core.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub mod grid;
 pub mod samples;
 
 use rga_core::{Array, Loads, Outputs, Result, Structure, respond};
