@@ -17,6 +17,7 @@ use crate::load::{PatternLoads, fixed_end_forces};
 use crate::member::Member;
 use crate::model::Model;
 use crate::observe::{Observer, Output, Reading, State};
+use crate::ordering::inverse;
 use crate::reduction::Reduction;
 use crate::refactor::{Elimination, Panels};
 use crate::turning::FreeTurn;
@@ -125,10 +126,7 @@ impl System {
             Some(elimination) => elimination.order.clone(),
             None => (0..size).collect(),
         };
-        let mut place = vec![0; size];
-        for (at, &unknown) in order.iter().enumerate() {
-            place[unknown] = at;
-        }
+        let place = inverse(&order);
         let rows = |entries: Vec<Entry>| with_rows(entries, &place);
         let columns = |entries: Vec<Entry>| with_columns(entries, &place);
         let stiffness = rows(columns(stiffness));

@@ -6,7 +6,7 @@
 //! multifrontal method, 1989).
 
 use crate::assembly::LowerTriangle;
-use crate::ordering::minimum_degree;
+use crate::ordering::{inverse, minimum_degree};
 
 #[derive(Debug)]
 pub struct Elimination {
@@ -137,10 +137,7 @@ fn columns_of_factor(
     order: &[usize],
     most: usize,
 ) -> Option<Vec<Vec<usize>>> {
-    let mut place = vec![0; order.len()];
-    for (at, &unknown) in order.iter().enumerate() {
-        place[unknown] = at;
-    }
+    let place = inverse(order);
     let mut columns = vec![Vec::new(); order.len()];
     for (unknown, &own) in place.iter().enumerate() {
         for &row in &matrix.rows[matrix.first[unknown]..matrix.first[unknown + 1]] {
