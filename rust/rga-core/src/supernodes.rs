@@ -94,25 +94,22 @@ impl<'a> Supernodes<'a> {
         matrix: &LowerTriangle,
         inverse: &[usize],
     ) -> (Vec<usize>, Vec<(usize, usize)>) {
-        let each = || {
-            (0..matrix.size()).flat_map(|column| {
-                let own = matrix.first[column]..matrix.first[column + 1];
-                own.map(move |at| {
-                    let (one, other) = (inverse[column], inverse[matrix.rows[at]]);
-                    (at, one.max(other), one.min(other))
-                })
-            })
+        let each = |pass: &mut dyn FnMut(usize, usize, usize)| {
+            for (column, &one) in inverse.iter().enumerate() {
+                for at in matrix.first[column]..matrix.first[column + 1] {
+                    let other = inverse[matrix.rows[at]];
+                    pass(at, one.max(other), one.min(other));
+                }
+            }
         };
         let mut first = vec![0; self.count() + 1];
-        for (_, _, column) in each() {
-            first[self.of_column[column] + 1] += 1;
-        }
+        each(&mut |_, _, column| first[self.of_column[column] + 1] += 1);
         for at in 0..self.count() {
             first[at + 1] += first[at];
         }
         let mut next = first.clone();
         let mut entries = vec![(0, 0); matrix.values.len()];
-        for (at, row, column) in each() {
+        each(&mut |at, row, column| {
             let own = self.of_column[column];
             let (columns, below) = (self.columns(own), self.below(own));
             let height = columns.len() + below.len();
@@ -123,7 +120,7 @@ impl<'a> Supernodes<'a> {
             };
             entries[next[own]] = (at, (column - columns.start) * height + row);
             next[own] += 1;
-        }
+        });
         (first, entries)
     }
 }
