@@ -1,6 +1,7 @@
 """Tasks in several processes: of this machine, or of a Dask cluster."""
 
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
@@ -27,6 +28,8 @@ Processes = tuple[Executor, Callable[[], int]]
 
 #: time that a Dask cluster has to answer [s]
 PATIENCE = 5.0
+#: of a scheduler: a scheme that Dask knows, where there is one, a host and a port
+ADDRESS = r"((tcp|tls|ucx|ucxx|ws|wss)://)?[^/\s]+:\d{1,5}"
 _ALONE = Lock()
 
 
@@ -100,8 +103,8 @@ def _cluster(address: str) -> Iterator[Processes]:
         ) from None
     where = f"Dask cluster {address!r}"
     try:
-        if not address:
-            raise ValueError("the address is empty")
+        if not re.fullmatch(ADDRESS, address):
+            raise ValueError("that is no address with a port")
         client = _within(
             2 * PATIENCE, lambda: Client(address, timeout=PATIENCE, set_as_default=False)
         )

@@ -40,7 +40,8 @@ def whole_directory(path: Path) -> Iterator[Path]:
     if path.exists() and not path.is_dir():
         raise InputError("the output is a file", str(path), "give a directory")
     with _scratch(path) as scratch:
-        draft = scratch / path.name
+        # The current directory has no name.
+        draft = scratch / "draft"
         draft.mkdir()
         yield draft
         if not path.exists():

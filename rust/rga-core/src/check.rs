@@ -40,7 +40,7 @@ impl Array<'_, f64> {
         match self.row(row).iter().position(|&value| !good(value)) {
             None => Ok(()),
             Some(at) => Err(Error::invalid(format!(
-                "{name}[{row}, {at}] is {}; it must be {right}",
+                "{name}[{row}, {at}] is {:?}; it must be {right}",
                 self.row(row)[at]
             ))),
         }

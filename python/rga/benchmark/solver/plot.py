@@ -20,7 +20,7 @@ def plot(result: Result, path: Path) -> None:
         axes.barh(place, ratio - 1.0, left=1.0, color=f"C{cases.index(one.case)}")
         axes.annotate(
             digits(ratio),
-            (max(ratio, 1.0), place),
+            (max(ratio, 1.0, one.least or 0.0), place),
             (4, 0),
             textcoords="offset points",
             va="center",
@@ -28,15 +28,17 @@ def plot(result: Result, path: Path) -> None:
         )
         if one.least is not None:
             axes.plot([one.least] * 2, [place - 0.45, place + 0.45], color="black", lw=2)
-    axes.plot([], [], color="black", lw=2, label="at least")
+    if any(one.least is not None for one, _ in shown):
+        axes.plot([], [], color="black", lw=2, label="asked at least")
+        axes.legend(loc="lower right")
     axes.set(
         xscale="log",
         xlabel="times as good as the peer",
         yticks=range(len(shown)),
-        yticklabels=[", ".join((one.case, one.name, one.peer or "")) for one, _ in shown],
+        yticklabels=[f"{one.case}: {one.name} vs {one.peer}" for one, _ in shown],
         title=f"{result.machine['processor']}, {result.day}",
     )
     axes.invert_yaxis()
-    axes.margins(x=0.15)
-    axes.legend(loc="lower right")
+    lowest = min([1.0, *(ratio for _, ratio in shown), *(one.least or 1.0 for one, _ in shown)])
+    axes.set_xlim(0.7 * lowest, 3.0 * max([1.0, *(ratio for _, ratio in shown)]))
     canvas.savefig(path, format="png", dpi=110)

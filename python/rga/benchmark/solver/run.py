@@ -1,7 +1,7 @@
 """All measurements in one run."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from functools import partial
 from typing import Any
@@ -67,5 +67,7 @@ def measure(setting: Setting, progress: Callable[[float], None] | None = None) -
             figures += part(setting, roofs)
             if progress is not None:
                 progress(number / len(parts))
+    if not setting.judged:
+        figures = [replace(figure, least=None) for figure in figures]
     day = date.today().isoformat()
     return Result(machine(), versions(), day, setting.seed, roofs, figures)
