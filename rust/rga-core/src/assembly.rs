@@ -20,36 +20,48 @@ pub type Entry = (usize, usize, f64);
 impl LowerTriangle {
     /// T' K T
     pub fn assemble(model: &Model, reduction: &Reduction) -> Self {
-        let size = reduction.unknowns.len();
-        let mut entries: Vec<Entry> = (0..size).map(|at| (at, at, 0.0)).collect();
-        model.for_each_stiffness(|row, column, value| {
-            if value == 0.0 {
-                return;
-            }
-            for &(i, left) in reduction.entries(row) {
-                for &(j, right) in reduction.entries(column) {
-                    if i >= j {
-                        entries.push((i, j, left * value * right));
+        Self::sum(reduction.unknowns.len(), |add| {
+            model.for_each_stiffness(|row, column, value| {
+                if value == 0.0 {
+                    return;
+                }
+                for &(i, left) in reduction.entries(row) {
+                    for &(j, right) in reduction.entries(column) {
+                        if i >= j {
+                            add(i, j, left * value * right);
+                        }
                     }
                 }
-            }
-        });
-        Self::from_entries(&entries, size)
+            });
+        })
     }
 
-    /// Entries repeat, and are summed in their order; all diagonal ones are there.
-    pub fn from_entries(entries: &[Entry], size: usize) -> Self {
-        let (starts, sorted) = by_column(entries, size);
+    /// `each` calls `add(row, column, value)` for all entries; entries repeat, and are summed in
+    /// their order.
+    pub fn sum(size: usize, each: impl Fn(&mut dyn FnMut(usize, usize, f64))) -> Self {
+        let mut starts = vec![0; size + 1];
+        each(&mut |_, column, _| starts[column + 1] += 1);
+        for at in 0..size {
+            starts[at + 1] += starts[at];
+        }
+        let mut next = starts.clone();
+        let mut sorted = vec![(0, 0.0); starts[size]];
+        each(&mut |row, column, value| {
+            sorted[next[column]] = (row, value);
+            next[column] += 1;
+        });
         let mut matrix = Self {
             first: Vec::with_capacity(size + 1),
             rows: Vec::new(),
             values: Vec::new(),
         };
-        let mut sums: Vec<(usize, f64)> = Vec::new();
+        let mut sums = Vec::new();
         // Of each row, where its sum may stand.
         let mut place = vec![0; size];
         for column in 0..size {
             sums.clear();
+            sums.push((column, 0.0));
+            place[column] = 0;
             for &(row, value) in &sorted[starts[column]..starts[column + 1]] {
                 match sums.get_mut(place[row]) {
                     Some((same, sum)) if *same == row => *sum += value,
@@ -125,22 +137,4 @@ impl LowerTriangle {
             self.values[self.first[column]] += shift;
         }
     }
-}
-
-/// Rows and values of each column in the order of the entries, and where columns start.
-fn by_column(entries: &[Entry], size: usize) -> (Vec<usize>, Vec<(usize, f64)>) {
-    let mut starts = vec![0; size + 1];
-    for &(_, column, _) in entries {
-        starts[column + 1] += 1;
-    }
-    for at in 0..size {
-        starts[at + 1] += starts[at];
-    }
-    let mut next = starts.clone();
-    let mut sorted = vec![(0, 0.0); entries.len()];
-    for &(row, column, value) in entries {
-        sorted[next[column]] = (row, value);
-        next[column] += 1;
-    }
-    (starts, sorted)
 }

@@ -5,8 +5,6 @@
 //! Structures tell their places, so that a cut is a plane through the middle: the best of thirteen,
 //! across the axes and across diagonals.
 
-use faer::sparse::SymbolicSparseColMatRef;
-
 use crate::graph::Graph;
 use crate::ordering::minimum_degree;
 
@@ -200,10 +198,7 @@ impl Dissection<'_> {
             rows.extend(within.map(|neighbour| self.number[neighbour]));
             first.push(rows.len());
         }
-        let size = own.len();
-        let pattern =
-            SymbolicSparseColMatRef::new_unsorted_checked(size, size, &first, None, &rows);
-        let (order, _) = minimum_degree(pattern)?;
+        let (order, _) = minimum_degree(&first, &rows)?;
         let sorted: Vec<usize> = order.iter().map(|&number| own[number]).collect();
         own.copy_from_slice(&sorted);
         Some(())

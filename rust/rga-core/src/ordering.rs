@@ -27,7 +27,7 @@ pub fn fill_reducing(
     places: &[[f64; 3]],
     repeats: f64,
 ) -> Option<Vec<usize>> {
-    let (order, work) = minimum_degree(matrix.pattern())?;
+    let (order, work) = minimum_degree(&matrix.first, &matrix.rows)?;
     if work * repeats < WORTHWHILE * matrix.size() as f64 {
         return Some(order);
     }
@@ -37,10 +37,14 @@ pub fn fill_reducing(
     Some(if better { dissected } else { order })
 }
 
-/// By approximate minimum degree, with the multiplications of the factorisation.
-pub fn minimum_degree(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<usize>, f64)> {
-    let size = pattern.ncols();
-    let scratch = amd::order_maybe_unsorted_scratch::<usize>(size, pattern.compute_nnz());
+/// By approximate minimum degree, with the multiplications of the factorisation. Of each unknown,
+/// `rows` has what it is coupled with, once or twice, from `first` on.
+pub fn minimum_degree(first: &[usize], rows: &[usize]) -> Option<(Vec<usize>, f64)> {
+    // Half of the memory is half of the time.
+    let [first, rows] = [first, rows].map(narrow);
+    let size = first.len() - 1;
+    let pattern = SymbolicSparseColMatRef::new_unsorted_checked(size, size, &first, None, &rows);
+    let scratch = amd::order_maybe_unsorted_scratch::<u32>(size, rows.len());
     let mut memory = MemBuffer::try_new(scratch).ok()?;
     let (mut order, mut inverse) = (vec![0; size], vec![0; size]);
     let counts = amd::order_maybe_unsorted(
@@ -51,7 +55,12 @@ pub fn minimum_degree(pattern: SymbolicSparseColMatRef<usize>) -> Option<(Vec<us
         MemStack::new(&mut memory),
     );
     let counts = counts.ok()?;
-    Some((order, counts.n_div + counts.n_mult_subs_ldl))
+    let order = order.into_iter().map(|at| at as usize);
+    Some((order.collect(), counts.n_div + counts.n_mult_subs_ldl))
+}
+
+fn narrow(numbers: &[usize]) -> Vec<u32> {
+    numbers.iter().map(|&number| number as u32).collect()
 }
 
 /// Those of a factorisation, from the lengths of the factor's columns (Liu, The role of

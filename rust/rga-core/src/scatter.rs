@@ -1,6 +1,6 @@
 //! Where the tangent stiffness of members, and the stiffness of springs, goes in K = T' K T.
 
-use crate::assembly::{Entry, LowerTriangle};
+use crate::assembly::LowerTriangle;
 use crate::model::Model;
 use crate::reduction::Reduction;
 
@@ -42,11 +42,10 @@ impl Scatter {
             .map(|spring| additions(reduction, |add| spring.for_each_stiffness(add)))
             .collect();
         let size = reduction.unknowns.len();
-        let diagonal = (0..size).map(|at| (at, at, 0.0));
-        let added = members.iter().chain(&springs).flatten();
-        let added = added.map(|addition| (addition.row, addition.column, 0.0));
-        let entries: Vec<Entry> = diagonal.chain(added).collect();
-        let matrix = LowerTriangle::from_entries(&entries, size);
+        let matrix = LowerTriangle::sum(size, |add| {
+            let added = members.iter().chain(&springs).flatten();
+            added.for_each(|addition| add(addition.row, addition.column, 0.0));
+        });
         let placed = |of_each: &[Vec<Addition>]| {
             let of_each = of_each.iter();
             of_each.map(|own| links(own, &matrix)).collect()

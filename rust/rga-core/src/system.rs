@@ -5,7 +5,7 @@
 //! with load coefficients q, unknowns z and outputs y. The matrices are read off the elements once,
 //! by probing them with unit motions and with each load pattern.
 
-use crate::assembly::{Entry as Place, LowerTriangle};
+use crate::assembly::LowerTriangle;
 
 use crate::bilinear::{Bilinear, Entry, merged};
 use crate::constraint::Constraints;
@@ -106,15 +106,9 @@ impl System {
         let stiffness = merged(stiffness(model, reduction, &weights));
         let size = reduction.unknowns.len();
         let lower = stiffness.iter().filter(|entry| entry.row >= entry.column);
-        let diagonal = (0..size).map(|at| (at, at, 0.0));
-        let all: Vec<Place> = diagonal
-            .chain(
-                lower
-                    .clone()
-                    .map(|entry| (entry.row, entry.column, entry.value)),
-            )
-            .collect();
-        let matrix = LowerTriangle::from_entries(&all, size);
+        let matrix = LowerTriangle::sum(size, |add| {
+            (lower.clone()).for_each(|entry| add(entry.row, entry.column, entry.value));
+        });
         let entry = |entry: &Entry| {
             let place = matrix.place(entry.row, entry.column);
             (place, entry.weight, entry.value)

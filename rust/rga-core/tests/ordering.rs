@@ -39,12 +39,10 @@ fn lattice(shape: [usize; 3]) -> (LowerTriangle, Vec<[f64; 3]>) {
     (coupled(unknowns, places.len()), places)
 }
 
-fn coupled(pairs: impl Iterator<Item = [usize; 2]>, size: usize) -> LowerTriangle {
-    let diagonal = (0..size).map(|at| [at; 2]);
-    let entries: Vec<_> = (diagonal.chain(pairs))
-        .map(|[one, other]| (one.max(other), one.min(other), 1.0))
-        .collect();
-    LowerTriangle::from_entries(&entries, size)
+fn coupled(pairs: impl Iterator<Item = [usize; 2]> + Clone, size: usize) -> LowerTriangle {
+    LowerTriangle::sum(size, |add| {
+        (pairs.clone()).for_each(|[one, other]| add(one.max(other), one.min(other), 1.0));
+    })
 }
 
 fn order(matrix: &LowerTriangle, places: &[[f64; 3]], repeats: f64) -> Vec<usize> {

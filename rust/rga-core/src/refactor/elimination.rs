@@ -31,7 +31,7 @@ impl Elimination {
         if matrix.rows.len() > most {
             return None;
         }
-        let (by_degree, _) = minimum_degree(matrix.pattern())?;
+        let (by_degree, _) = minimum_degree(&matrix.first, &matrix.rows)?;
         let orders = [by_degree, breadth_first(matrix)];
         let found = orders.map(|order| Self::along(matrix, order, most));
         let found = found.into_iter().flatten();
