@@ -115,6 +115,11 @@ def solver(
     quick: Shorter = False, seed: Seed = 0, output: WrittenTo = None, json: JsonTarget = None
 ) -> None:
     """What a simulated sample costs, beside other solvers on the same structures."""
+    import os
+
+    # CHOLMOD asks for four threads, however many are allowed, and on one core these wait for each
+    # other; OpenMP reads its limit when it is loaded.
+    os.environ["OMP_THREAD_LIMIT"] = "1"
     from contextlib import nullcontext
     from dataclasses import asdict
 

@@ -1,6 +1,5 @@
 """CHOLMOD by scikit-sparse: one symbolic analysis, and a numeric factorisation a sample."""
 
-import os
 from functools import partial
 from itertools import product
 
@@ -31,8 +30,6 @@ class Cholmod:
         Raises:
             NotInstalledError: scikit-sparse is not there.
         """
-        # It asks for four threads, however many are allowed: on one core these wait for each other.
-        os.environ["OMP_THREAD_LIMIT"] = "1"
         try:
             from sksparse.cholmod import analyze
         except ImportError:
