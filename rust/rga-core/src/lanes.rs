@@ -107,12 +107,6 @@ pub struct Packs<S, const P: usize>(pub S);
 pub type One = Packs<Scalar, 1>;
 pub const ONE: One = Packs(Scalar);
 
-impl<S: Simd, const P: usize> From<S> for Packs<S, P> {
-    fn from(simd: S) -> Self {
-        Self(simd)
-    }
-}
-
 impl<S: Simd, const P: usize> Packs<S, P> {
     #[inline(always)]
     fn each(

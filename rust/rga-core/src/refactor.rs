@@ -14,6 +14,7 @@ mod cholesky;
 mod elimination;
 mod panels;
 mod reading;
+mod tiles;
 
 use std::ops::Range;
 
@@ -226,13 +227,7 @@ impl<R: Reading> WithSimd for Sweep<'_, R> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Result<()> {
-        self.over(Packs::<S, 1>(simd))
-    }
-}
-
-impl<R: Reading> Sweep<'_, R> {
-    #[inline(always)]
-    fn over<L: Lanes>(self, lanes: L) -> Result<()> {
+        let lanes = Packs::<S, 1>(simd);
         let Self {
             refactored,
             samples,
@@ -257,14 +252,15 @@ impl<R: Reading> Sweep<'_, R> {
                 },
             })
         };
-        let work = |scratch: &mut Scratch<L, R>, rows: Range<usize>, results: &mut [f64]| {
-            lanes.vectorize(Chunk {
-                lanes,
-                scratch,
-                rows,
-                results,
-            })
-        };
+        let work =
+            |scratch: &mut Scratch<Packs<S, 1>, R>, rows: Range<usize>, results: &mut [f64]| {
+                lanes.vectorize(Chunk {
+                    lanes,
+                    scratch,
+                    rows,
+                    results,
+                })
+            };
         in_chunks(
             results,
             reading.width().max(1),

@@ -41,6 +41,9 @@ class Result:
 def measure(setting: Setting, progress: Callable[[float], None] | None = None) -> Result:
     """All figures, on one core unless they say otherwise, after all solvers agree.
 
+    CHOLMOD keeps to one thread only where OMP_THREAD_LIMIT is 1 before OpenMP is loaded, as the
+    command sees to.
+
     Args:
         setting: how much is measured.
         progress: told the share that is done.

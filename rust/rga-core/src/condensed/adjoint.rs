@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Packs};
 
 /// Gradients `[n, p + r]` of rows; gives the first row whose structure is not stable.
 pub struct AdjointKernel<'a> {
@@ -35,7 +35,7 @@ impl WithSimd for AdjointKernel<'_> {
         let both = [&self.condensed.loaded[..], &self.condensed.influence[..]].concat();
         let both = transposed(&both, outputs);
         let driven = transposed(&self.condensed.driven, terms);
-        let lanes = Together::<S>::from(simd);
+        let lanes: Together<S> = Packs(simd);
         let zero = lanes.splat(0.0);
         let mut samples = Samples::new(lanes, self.condensed);
         let mut gradients = vec![zero; outputs];

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Packs};
 
 /// Outputs of rows; gives the first row whose structure is not stable.
 pub struct Kernel<'a> {
@@ -41,7 +41,7 @@ impl WithSimd for Kernel<'_> {
             );
             return None;
         }
-        let lanes = Together::<S>::from(simd);
+        let lanes: Together<S> = Packs(simd);
         let many = Together::<S>::COUNT;
         let rows = self.results.len() / outputs.max(1);
         let mut samples = Samples::new(lanes, self.condensed);

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
 use crate::directions::Directions;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Packs};
 
 /// Derivatives `[n, c, o]` of rows; gives the first row whose structure is not stable.
 pub struct SensitivityKernel<'a> {
@@ -70,7 +70,7 @@ impl WithSimd for SensitivityKernel<'_> {
         let width = outputs * directions.len();
         let many = Together::<S>::COUNT;
         let rows = self.results.len() / width;
-        let lanes = Together::<S>::from(simd);
+        let lanes: Together<S> = Packs(simd);
         let zero = lanes.splat(0.0);
         let mut samples = Samples::new(lanes, self.condensed);
         let mut load_rates = vec![zero; self.directions.loads.len()];

@@ -1,8 +1,7 @@
 //! The stiffness of many samples, one a lane: filled in, factorised and solved panel by panel.
 //!
 //! Every sum is a chain of fused multiply-adds in a fixed order, so that a sample has the same bits
-//! in any lane of any instruction set. Tiles of sums stay in registers: loops over them have fixed
-//! lengths.
+//! in any lane of any instruction set. Sums stay in registers (`tiles`).
 
 // Tiles are indexed by loops of fixed lengths, which are unrolled.
 #![allow(clippy::needless_range_loop)]
@@ -10,6 +9,7 @@
 use pulp::NullaryFnOnce;
 
 use super::panels::{Panel, Panels, Update};
+use super::tiles::{Below, Hand, columns, load, store, take_products};
 use crate::lanes::Lanes;
 
 /// L of K = L L', with one over its diagonal beside it.
@@ -270,13 +270,11 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     #[inline(always)]
     fn backward<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
         for panel in self.panels.panels.iter().rev() {
-            let whole = panel.width / TOGETHER * TOGETHER;
-            let mut column = panel.width;
-            while column > whole + HALF || (whole < column && column < whole + HALF) {
-                column -= 1;
-                self.backward_columns::<N, 1>(lanes, panel, column, right);
+            let mut column = panel.width - panel.width % TOGETHER % HALF;
+            for single in (column..panel.width).rev() {
+                self.backward_columns::<N, 1>(lanes, panel, single, right);
             }
-            if column > whole {
+            if column % TOGETHER == HALF {
                 column -= HALF;
                 self.backward_columns::<N, HALF>(lanes, panel, column, right);
             }
@@ -401,190 +399,4 @@ impl<L: Lanes, const N: usize> NullaryFnOnce for Substitute<'_, '_, L, N> {
         }
         self.cholesky.backward::<N>(self.lanes, self.right);
     }
-}
-
-/// Rows of a panel below columns of which the triangle is factorised.
-struct Below<'a, V, const WIDE: usize> {
-    /// The columns before.
-    before: &'a [V],
-    rows: usize,
-    column: usize,
-    triangle: &'a [[V; WIDE]; WIDE],
-    inverse: &'a [V; WIDE],
-}
-
-impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
-    #[inline(always)]
-    fn factorise<const TALL: usize>(
-        &self,
-        lanes: impl Lanes<Numbers = V>,
-        row: usize,
-        own: &mut [V],
-    ) {
-        let mut sums = load::<_, TALL, WIDE>(lanes, own, self.rows, row);
-        take_products(lanes, self.before, self.rows, (row, self.column), &mut sums);
-        for at in 0..WIDE {
-            for before in 0..WIDE {
-                if before < at {
-                    let factor = self.triangle[before][at];
-                    for i in 0..TALL {
-                        sums[at][i] = lanes.take_product(sums[before][i], factor, sums[at][i]);
-                    }
-                }
-            }
-            for value in &mut sums[at] {
-                *value = lanes.mul(*value, self.inverse[at]);
-            }
-        }
-        store(lanes, own, self.rows, row, &sums);
-    }
-}
-
-/// Products of rows of a panel, taken from another.
-struct Hand<'a, V> {
-    /// The panel that hands on, of columns as high as this.
-    given: &'a [V],
-    height: usize,
-    /// Rows before the first that is a column of the other panel.
-    skipped: usize,
-    /// Rows in the other panel.
-    rows: &'a [usize],
-    /// From a column of the other panel to the next.
-    offset: usize,
-}
-
-impl<V: Copy> Hand<'_, V> {
-    /// `WIDE` columns, and all rows from the first of them on. What falls above the diagonal of
-    /// the other panel counts for nothing.
-    #[inline(always)]
-    fn columns<L: Lanes<Numbers = V>, const TALL: usize, const WIDE: usize>(
-        &self,
-        lanes: L,
-        column: usize,
-        to: &mut [V],
-    ) {
-        let mut row = column;
-        while row + TALL <= self.rows.len() {
-            self.tile::<L, TALL, WIDE>(lanes, row, column, to);
-            row += TALL;
-        }
-        if row + 2 <= self.rows.len() {
-            self.tile::<L, 2, WIDE>(lanes, row, column, to);
-            row += 2;
-        }
-        if row < self.rows.len() {
-            self.tile::<L, 1, WIDE>(lanes, row, column, to);
-        }
-    }
-
-    #[inline(always)]
-    fn tile<L: Lanes<Numbers = V>, const TALL: usize, const WIDE: usize>(
-        &self,
-        lanes: L,
-        row: usize,
-        column: usize,
-        to: &mut [V],
-    ) {
-        let mut sums = [[lanes.splat(0.0); TALL]; WIDE];
-        let rows = &self.rows[row..row + TALL];
-        let together = rows[TALL - 1] - rows[0] == TALL - 1;
-        for (sums, column) in sums.iter_mut().zip(&self.rows[column..column + WIDE]) {
-            let line = &to[column * self.offset..][..self.offset];
-            if together {
-                for (sum, value) in sums.iter_mut().zip(&line[rows[0]..rows[0] + TALL]) {
-                    *sum = *value;
-                }
-            } else {
-                for (sum, row) in sums.iter_mut().zip(rows) {
-                    *sum = line[*row];
-                }
-            }
-        }
-        let places = (self.skipped + row, self.skipped + column);
-        take_products(lanes, self.given, self.height, places, &mut sums);
-        for (sums, column) in sums.iter().zip(&self.rows[column..column + WIDE]) {
-            let line = &mut to[column * self.offset..][..self.offset];
-            if together {
-                for (sum, place) in sums.iter().zip(&mut line[rows[0]..rows[0] + TALL]) {
-                    *place = *sum;
-                }
-            } else {
-                for (sum, row) in sums.iter().zip(rows) {
-                    line[*row] = *sum;
-                }
-            }
-        }
-    }
-}
-
-/// `sums` -= the products of rows from each of two places on, over all columns.
-#[inline(always)]
-fn take_products<L: Lanes, const TALL: usize, const WIDE: usize>(
-    lanes: L,
-    columns: &[L::Numbers],
-    height: usize,
-    (row, other): (usize, usize),
-    sums: &mut [[L::Numbers; TALL]; WIDE],
-) {
-    let mut held = *sums;
-    let mut rest = columns;
-    while rest.len() >= height && height > 0 {
-        let (line, further) = rest.split_at(height);
-        let (own, factors) = (&line[row..row + TALL], &line[other..other + WIDE]);
-        for (sums, factor) in held.iter_mut().zip(factors) {
-            for (sum, value) in sums.iter_mut().zip(own) {
-                *sum = lanes.take_product(*value, *factor, *sum);
-            }
-        }
-        rest = further;
-    }
-    *sums = held;
-}
-
-/// A tile from `row` on of the first columns.
-#[inline(always)]
-fn load<L: Lanes, const TALL: usize, const WIDE: usize>(
-    lanes: L,
-    columns: &[L::Numbers],
-    height: usize,
-    row: usize,
-) -> [[L::Numbers; TALL]; WIDE] {
-    let mut tile = [[lanes.splat(0.0); TALL]; WIDE];
-    for (at, line) in tile.iter_mut().enumerate() {
-        let given = &columns[at * height + row..][..TALL];
-        for (place, value) in line.iter_mut().zip(given) {
-            *place = *value;
-        }
-    }
-    tile
-}
-
-#[inline(always)]
-fn store<L: Lanes, const TALL: usize, const WIDE: usize>(
-    _: L,
-    columns: &mut [L::Numbers],
-    height: usize,
-    row: usize,
-    tile: &[[L::Numbers; TALL]; WIDE],
-) {
-    for (at, line) in tile.iter().enumerate() {
-        let places = &mut columns[at * height + row..][..TALL];
-        for (place, value) in places.iter_mut().zip(line) {
-            *place = *value;
-        }
-    }
-}
-
-/// Whole columns, from one on.
-#[inline(always)]
-fn columns<L: Lanes, const WIDE: usize>(
-    values: &[L::Numbers],
-    height: usize,
-    column: usize,
-) -> [&[L::Numbers]; WIDE] {
-    let mut lines = [&values[..0]; WIDE];
-    for (at, line) in lines.iter_mut().enumerate() {
-        *line = &values[(column + at) * height..][..height];
-    }
-    lines
 }
