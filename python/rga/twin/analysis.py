@@ -123,7 +123,7 @@ class RealityGapAnalysis:
         standing, settings, calibration = self.standing, self._settings, self._calibration
         first = self._policy.due(standing, last)
         assert first is not None
-        recent = (first, standing.row)
+        recent, open_alarm = (first, standing.row), self._policy.waits(standing, last)
         before, expected = calibration.gap(*recent), calibration.gap(*recent, standing.share)
         if calibration.learned is not None:
             self._refine(recent)
@@ -146,7 +146,7 @@ class RealityGapAnalysis:
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
         else:
-            self._go_on(last)
+            self._go_on(last, open_alarm)
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
@@ -273,8 +273,9 @@ class RealityGapAnalysis:
         self.synchrony.begin_again(self._calibration.ledger.residuals)
         self.standing.synchronised = self.standing.row
 
-    def _go_on(self, last: bool) -> None:
-        self.standing.alarm = self.standing.since = None
+    def _go_on(self, last: bool, open_alarm: bool = False) -> None:
+        if not open_alarm:
+            self.standing.alarm = self.standing.since = None
         self.standing.stage = "close" if last else "watch"
 
     def _may_ask(self) -> bool:

@@ -18,8 +18,8 @@ STEP = 2.0
 class Policy:
     """When a recalibration is begun (the four categories of Alghamdi et al., 2024).
 
-    An alarm first gathers rows under the new conditions. A clock that runs out meanwhile waits for
-    them: rows of before and after the change, mixed, would hide it.
+    An alarm first gathers rows under the new conditions. A clock that runs out meanwhile does not
+    wait for them, and the alarm still has its recalibration when they are there.
 
     Attributes:
         alarms: an alarm begins one.
@@ -58,12 +58,17 @@ class Policy:
             last: no more rows will come.
         """
         row = standing.row
-        if self.alarms and standing.alarm is not None:
-            gathered = last or row - standing.alarm >= self.settle
-            return standing.since if gathered else None
+        if self.alarms and standing.alarm is not None and not self.waits(standing, last):
+            return standing.since
         if self.clock and row - standing.synchronised >= standing.interval:
             return max(0, min(standing.synchronised, row - self.settle))
         return None
+
+    def waits(self, standing: Standing, last: bool) -> bool:
+        """Whether an alarm is gathering rows for a recalibration of its own."""
+        if not self.alarms or standing.alarm is None:
+            return False
+        return not last and standing.row - standing.alarm < self.settle
 
     def next_interval(self, interval: int, gain: float) -> int:
         """The interval after a recalibration.

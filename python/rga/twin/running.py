@@ -240,6 +240,12 @@ class Running:
                 self._checkpoint()
             self._progress("stream", self.row / self.rows)
 
+    def postpone(self, why: str) -> None:
+        """Go on without the diagnosis that is next; it is asked for again later."""
+        with self._archive.step():
+            self.analysis.postpone(why)
+            self._checkpoint()
+
     def findings(self) -> Findings:
         """Findings of the closing diagnosis, with their account."""
         if self._closing is None:
@@ -305,9 +311,7 @@ class Running:
         except InputError as error:
             if closing:
                 raise
-            with self._archive.step():
-                self.analysis.postpone(str(error))
-                self._checkpoint()
+            self.postpone(str(error))
             return
         if closing:
             self._closing = findings
