@@ -123,7 +123,8 @@ class RealityGapAnalysis:
         standing, settings, calibration = self.standing, self._settings, self._calibration
         first = self._policy.due(standing, last)
         assert first is not None
-        recent, open_alarm = (first, standing.row), self._policy.waits(standing, last)
+        recent = (first, standing.row)
+        open_alarm = self._policy.waits(standing, last)
         before, expected = calibration.gap(*recent), calibration.gap(*recent, standing.share)
         if calibration.learned is not None:
             self._refine(recent)
@@ -139,7 +140,7 @@ class RealityGapAnalysis:
         standing.interval = interval
         words = f"{done}, rows {recent[0]} to {recent[1] - 1}: {ended}"
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
-        if settings.level == "C" and recovered:
+        if settings.level == "C" and recovered and not open_alarm:
             self._integrate(*recent)
         self._begin_again()
         standing.doubted = standing.doubted or not recovered
