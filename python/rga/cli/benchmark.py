@@ -37,6 +37,7 @@ CaseName = Annotated[
 ]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
+Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 #: of a table, in a terminal that is narrower and in a file
 WIDTH = 140
@@ -149,3 +150,43 @@ def solver(
         for line in table.about(result):
             console.print(line, markup=False, highlight=False)
         console.print(table.terminal(result))
+
+
+@benchmark.command()
+def policies(
+    quick: Few = False,
+    seed: Seed = 0,
+    workers: Workers = 2,
+    output: WrittenTo = None,
+    json: JsonTarget = None,
+) -> None:
+    """What each policy of synchronisation costs, and what gap it leaves."""
+    from contextlib import nullcontext
+    from dataclasses import asdict
+
+    from rich.console import Console
+
+    from rga.benchmark.policies import table
+    from rga.benchmark.policies.run import compare
+    from rga.benchmark.policies.setting import Setting, shorter
+    from rga.cli.output import whole_directory, write_json
+    from rga.cli.progress import shown_progress
+
+    setting = shorter(seed) if quick else Setting(seed=seed)
+    command = f"rga benchmark policies{' --quick' if quick else ''} --seed {seed}"
+    with nullcontext() if output is None else whole_directory(output) as draft:
+        with shown_progress() as progress:
+            played = compare(
+                setting, workers=workers, progress=lambda done: progress("policies", done)
+            )
+        if draft is not None:
+            from rga.benchmark.policies.plot import plot
+
+            (draft / "policies.md").write_text(table.markdown(played, command), encoding="utf-8")
+            plot(played, draft / "policies.png")
+    if json is not None:
+        write_json({"command": command, "played": [asdict(one) for one in played]}, json)
+    if json != "-":
+        console = Console()
+        console.width = max(console.width, WIDTH)
+        console.print(table.terminal(played))
