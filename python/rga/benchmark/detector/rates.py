@@ -1,0 +1,160 @@
+"""Rates of false alarms and delays, with 90 % intervals, from courses."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import binomtest, chi2, kstest, t
+
+from rga.benchmark.detector.watch import Course
+
+#: of all intervals
+LEVEL = 0.9
+
+
+@dataclass(frozen=True)
+class Arl0:
+    """Rows between false alarms.
+
+    Attributes:
+        rows: the average; None where nothing alarmed.
+        low, high: its interval, exact for exponential run lengths (Epstein and Sobel, 1954);
+            None: there is no upper bound.
+        alarms: that were counted.
+        watched: rows that were watched.
+        exponential: chance of run lengths as unlike an exponential as these, were they one
+            (Kolmogorov and Smirnov; too large, as the mean is fitted); None of fewer than five.
+    """
+
+    rows: float | None
+    low: float
+    high: float | None
+    alarms: int
+    watched: int
+    exponential: float | None
+
+
+@dataclass(frozen=True)
+class Share:
+    """Streams without an alarm.
+
+    Attributes:
+        share: of all.
+        low, high: its interval: Wilson's, or where several streams have one baseline Student's t
+            over baselines.
+        streams: how many.
+    """
+
+    share: float
+    low: float
+    high: float
+    streams: int
+
+
+@dataclass(frozen=True)
+class Delay:
+    """Rows from the onset to the alarm, the row of the onset counted.
+
+    Attributes:
+        mean: over runs without an alarm before the onset; None where there was none.
+        low, high: interval of the mean (Student's t).
+        median: of the same.
+        runs: that were counted.
+        left_out: runs with an alarm before the onset.
+        capped: runs that ended without an alarm; they count as what was watched, so that mean and
+            interval are lower bounds.
+    """
+
+    mean: float | None
+    low: float | None
+    high: float | None
+    median: float | None
+    runs: int
+    left_out: int
+    capped: int
+
+
+def arl0(courses: Sequence[Course], limit: float) -> Arl0:
+    """Of streams without a change."""
+    lengths, alarmed = _lengths(courses, limit)
+    rows, alarms = int(lengths.sum()), int(alarmed.sum())
+    rest = (1.0 - LEVEL) / 2.0
+    return Arl0(
+        rows=rows / alarms if alarms else None,
+        low=float(2.0 * rows / chi2.ppf(1.0 - rest, 2 * alarms + 2)),
+        high=float(2.0 * rows / chi2.ppf(rest, 2 * alarms)) if alarms else None,
+        alarms=alarms,
+        watched=rows,
+        exponential=_exponential(lengths[alarmed], float(lengths.max()), rows),
+    )
+
+
+def share(courses: Sequence[Course], limit: float, rows: int, each: int = 1) -> Share:
+    """Streams without an alarm in so many rows; `each` in turn have a baseline in common."""
+    lengths, alarmed = _lengths(courses, limit)
+    quiet = ~alarmed | (lengths > rows)
+    found = float(quiet.mean())
+    if each == 1:
+        interval = binomtest(int(quiet.sum()), len(quiet)).proportion_ci(LEVEL, method="wilson")
+        return Share(found, float(interval.low), float(interval.high), len(quiet))
+    low, high = _mean_interval(quiet.reshape(-1, each).mean(axis=1))
+    return Share(found, max(low, 0.0), min(high, 1.0), len(quiet))
+
+
+def delay(courses: Sequence[Course], limit: float) -> Delay:
+    """Of streams with a change at the onset."""
+    counted = [course for course in courses if course.before <= limit]
+    left_out = len(courses) - len(counted)
+    if not counted:
+        return Delay(None, None, None, None, 0, left_out, 0)
+    lengths, alarmed = _lengths(counted, limit)
+    low, high = _mean_interval(lengths)
+    return Delay(
+        float(lengths.mean()), low, high, float(np.median(lengths)),
+        len(counted), left_out, int((~alarmed).sum()),
+    )  # fmt: skip
+
+
+def limit_for(courses: Sequence[Course], rows: float) -> float:
+    """The least limit at which streams without a change alarm once in so many rows, or less often.
+
+    Args:
+        courses: watched without a ceiling.
+        rows: between alarms.
+
+    Raises:
+        ArithmeticError: the streams are too short for it.
+    """
+    limits = np.unique(np.concatenate([course.values for course in courses]))
+    low, high = 0, len(limits) - 1
+    while low < high:
+        middle = (low + high) // 2
+        found = arl0(courses, float(limits[middle])).rows
+        if found is not None and found < rows:
+            low = middle + 1
+        else:
+            high = middle
+    if arl0(courses, float(limits[low])).rows is None:
+        raise ArithmeticError(f"no alarm in {sum(one.watched for one in courses)} rows")
+    return float(limits[low])
+
+
+def _lengths(courses: Sequence[Course], limit: float) -> tuple[np.ndarray, np.ndarray]:
+    found = [course.length(limit) for course in courses]
+    return np.array([rows for rows, _ in found], float), np.array([alarm for _, alarm in found])
+
+
+def _mean_interval(values: np.ndarray) -> tuple[float, float]:
+    mean, count = float(values.mean()), len(values)
+    if count < 2:
+        return mean, mean
+    reach = float(t.ppf((1.0 + LEVEL) / 2.0, count - 1) * values.std(ddof=1) / np.sqrt(count))
+    return mean - reach, mean + reach
+
+
+def _exponential(lengths: np.ndarray, end: float, rows: int) -> float | None:
+    """Of the run lengths that ended before the end, as a truncated exponential."""
+    if len(lengths) < 5:
+        return None
+    rate = len(lengths) / rows
+    return float(kstest(np.expm1(-rate * lengths) / np.expm1(-rate * end), "uniform").pvalue)

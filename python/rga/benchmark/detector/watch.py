@@ -1,0 +1,136 @@
+"""Streams watched by a method: what its values rose to, and when."""
+
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.benchmark.detector.charts import Chart, Method
+from rga.benchmark.detector.faults import Fault
+from rga.benchmark.detector.noise import WHITE, Noise, NoiseSource
+from rga.benchmark.detector.streams import Stream
+from rga.model.parameter import FloatArray
+
+#: rows that are fed at once: few where an alarm is soon expected, then more and more
+FIRST_BLOCK, LAST_BLOCK = 64, 4096
+
+
+@dataclass(frozen=True)
+class Case:
+    """Streams, drawn by number.
+
+    Attributes:
+        seed: what is drawn depends on it, the purpose, the noise and the number of the stream only,
+            so that all methods and faults meet the same noise.
+        streams: how many.
+        cap: rows after the onset that are watched at most.
+        onset: rows before the fault, or before run lengths are counted.
+        fault: what happens; None: nothing.
+        noise: the world.
+        baseline: rows that a method is made from; 0: the noise is known.
+        each: streams to a baseline.
+        sensors: in a row.
+        purpose: other purposes see other streams.
+    """
+
+    seed: int
+    streams: int
+    cap: int
+    onset: int = 0
+    fault: Fault | None = None
+    noise: Noise = WHITE
+    baseline: int = 0
+    each: int = 1
+    sensors: int = 84
+    purpose: str = ""
+
+    def stream(self, number: int) -> Stream:
+        """One of them."""
+        return Stream(self.noise, self.sensors, self._seed(number, 0), self.fault, self.onset)
+
+    def made(self, method: Method, number: int) -> Chart:
+        """A fresh chart from the baseline of that number."""
+        seed = self._seed(number, 1)
+        rows = None
+        if self.baseline:
+            rows = NoiseSource(self.noise, self.sensors, seed).take(self.baseline)
+        return method.make(rows, int(seed.generate_state(1)[0]))
+
+    def _seed(self, *key: int) -> np.random.SeedSequence:
+        words = f"{self.purpose} {self.noise.name}".encode()
+        return np.random.SeedSequence([self.seed, *words], spawn_key=key)
+
+
+@dataclass(frozen=True)
+class Course:
+    """What a chart did on a stream.
+
+    Attributes:
+        before: its largest value before the onset.
+        rows: of its records since the onset, counted from 1.
+        values: of the records, ascending.
+        watched: rows since the onset.
+    """
+
+    before: float
+    rows: FloatArray
+    values: FloatArray
+    watched: int
+
+    def exceeds(self, limit: float) -> int | None:
+        """Number of the first record above the limit."""
+        found = int(np.searchsorted(self.values, limit, side="right"))
+        return found if found < len(self.values) else None
+
+    def length(self, limit: float) -> tuple[int, bool]:
+        """Rows until the alarm, and whether there was one."""
+        found = self.exceeds(limit)
+        return (self.watched, False) if found is None else (int(self.rows[found]), True)
+
+
+def watched(
+    case: Case, method: Method, numbers: range | None = None, ceiling: float | None = None
+) -> list[Course]:
+    """Courses of a method on the streams of a case.
+
+    Args:
+        case: the streams.
+        method: what watches.
+        numbers: of the streams; None: all.
+        ceiling: a stream ends where a value exceeds it; None: the method's limit.
+    """
+    end = method.limit if ceiling is None else ceiling
+    courses = []
+    made: tuple[int, Chart] | None = None
+    for number in range(case.streams) if numbers is None else numbers:
+        # Where the noise is known, one chart serves all streams.
+        own = number // case.each if case.baseline else 0
+        if made is None or made[0] != own:
+            made = own, case.made(method, own)
+        courses.append(_course(deepcopy(made[1]), case.stream(number), case.onset, case.cap, end))
+    return courses
+
+
+def _course(chart: Chart, stream: Stream, onset: int, cap: int, ceiling: float) -> Course:
+    before = -np.inf
+    for size in _blocks(onset):
+        before = max(before, float(chart.values(stream.take(size)).max()))
+    rows, values, seen, highest = [np.zeros(0)], [np.zeros(0)], 0, -np.inf
+    for size in _blocks(cap):
+        found = chart.values(stream.take(size))
+        largest = np.maximum.accumulate(found)
+        new = found > np.maximum(np.concatenate([[-np.inf], largest[:-1]]), highest)
+        rows.append(seen + 1.0 + np.flatnonzero(new))
+        values.append(found[new])
+        seen, highest = seen + size, max(highest, float(largest[-1]))
+        if highest > ceiling:
+            break
+    return Course(before, np.concatenate(rows), np.concatenate(values), seen)
+
+
+def _blocks(rows: int) -> Iterator[int]:
+    size = FIRST_BLOCK
+    while rows > 0:
+        yield min(size, rows)
+        rows, size = rows - size, min(2 * size, LAST_BLOCK)
