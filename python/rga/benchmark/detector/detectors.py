@@ -6,14 +6,45 @@ import numpy as np
 from scipy.signal import lfilter
 
 from rga.benchmark.detector.charts import Chart, Method
-from rga.detection import GaussianWindow
 from rga.model.parameter import FloatArray
 
-#: of the paper's rule
-WINDOW = 100
-Z = 3.0
-#: weight of a row in the average of `Mewma`
+WINDOW_RULE, MEWMA, MONITOR = "window rule", "MEWMA", "monitor"
+#: rows of the window, and the bound of the paper [sd]
+WINDOW, Z = 100, 3.0
+#: of a row in the average of `Mewma`
 WEIGHT = 0.1
+#: relative, of a standard deviation that comes from running sums
+ROUNDING = 1e-6
+
+
+def free(sensors: int) -> tuple[Method, ...]:
+    """Detectors whose limit is set here, for so many rows between false alarms in white noise."""
+    return (
+        Method(WINDOW_RULE, partial(window_rule, sensors), np.inf, WINDOW),
+        Method(MEWMA, partial(mewma, sensors), np.inf),
+    )
+
+
+def ready(sensors: int, arl0: float) -> tuple[Method, ...]:
+    """Detectors that set their limit themselves, for that many rows between false alarms."""
+    return ()
+
+
+def window_rule(sensors: int, baseline: FloatArray | None, seed: int) -> Chart:
+    """Of that many sensors; a baseline gives the mean and fills the window."""
+    if baseline is None:
+        return WindowRule(WINDOW, np.zeros(sensors))
+    chart = WindowRule(WINDOW, baseline.mean(axis=0))
+    chart.values(baseline)
+    return chart
+
+
+def mewma(sensors: int, baseline: FloatArray | None, seed: int) -> Chart:
+    """Of that many sensors, with mean and covariance of the baseline."""
+    if baseline is None:
+        return Mewma(WEIGHT, np.zeros(sensors), np.eye(sensors))
+    factor = np.linalg.cholesky(np.cov(baseline, rowvar=False))
+    return Mewma(WEIGHT, baseline.mean(axis=0), np.linalg.inv(factor))
 
 
 class WindowRule:
@@ -40,7 +71,8 @@ class WindowRule:
         if filling < len(rows):
             sums, squares = (_windows(part, self._window) for part in (gaps, gaps**2))
             mean = sums / self._window
-            spread = np.sqrt(squares / self._window - mean**2)
+            # A sensor that is stuck has no spread but that of rounding.
+            spread = np.sqrt(np.maximum(squares / self._window - mean**2, (ROUNDING * mean) ** 2))
             found[filling:] = ((gaps[self._window :] - mean) / spread).max(axis=1)
         return found
 
@@ -68,23 +100,6 @@ class Mewma:
         self._rows += len(rows)
         variance = self._weight / (2.0 - self._weight) * (1.0 - kept ** (2.0 * ages))
         return np.asarray((average**2).sum(axis=1) / variance)
-
-
-def window_rule(sensors: int, window: int, baseline: FloatArray | None, seed: int) -> Chart:
-    """Of that many sensors; a baseline gives the mean and fills the window."""
-    if baseline is None:
-        return WindowRule(window, np.zeros(sensors))
-    chart = WindowRule(window, baseline.mean(axis=0))
-    chart.values(baseline)
-    return chart
-
-
-def mewma(sensors: int, weight: float, baseline: FloatArray | None, seed: int) -> Chart:
-    """Of that many sensors, with mean and covariance of the baseline."""
-    if baseline is None:
-        return Mewma(weight, np.zeros(sensors), np.eye(sensors))
-    factor = np.linalg.cholesky(np.cov(baseline, rowvar=False))
-    return Mewma(weight, baseline.mean(axis=0), np.linalg.inv(factor))
 
 
 def _windows(values: FloatArray, window: int) -> FloatArray:

@@ -39,9 +39,13 @@ class Fault(ABC):
         """
 
     @property
-    @abstractmethod
     def name(self) -> str:
         """What happens, without the number of sensors."""
+        return f"{self._words}, signs drawn" if self.signed else self._words
+
+    @property
+    @abstractmethod
+    def _words(self) -> str: ...
 
 
 class Step(Fault):
@@ -53,7 +57,7 @@ class Step(Fault):
         return rows + self.size
 
     @property
-    def name(self) -> str:
+    def _words(self) -> str:
         return f"step of {self.size:g} sd"
 
 
@@ -66,7 +70,7 @@ class Drift(Fault):
         return rows + self.size * np.arange(earlier + 1.0, earlier + 1.0 + len(rows))[:, None]
 
     @property
-    def name(self) -> str:
+    def _words(self) -> str:
         return f"drift of {self.size:g} sd a row"
 
 
@@ -79,7 +83,7 @@ class Spread(Fault):
         return rows * self.size
 
     @property
-    def name(self) -> str:
+    def _words(self) -> str:
         return f"noise times {self.size:g}"
 
 
@@ -92,7 +96,7 @@ class Stuck(Fault):
         return np.broadcast_to(last, rows.shape)
 
     @property
-    def name(self) -> str:
+    def _words(self) -> str:
         return "stuck at its last value"
 
 
@@ -106,5 +110,5 @@ class Spikes(Fault):
         return rows + self.size * ((lot < SPIKES / 2.0) - 1.0 * (lot > 1.0 - SPIKES / 2.0))
 
     @property
-    def name(self) -> str:
+    def _words(self) -> str:
         return f"spikes of {self.size:g} sd in {SPIKES:.0%} of rows"

@@ -1,5 +1,6 @@
 """Worlds of noise, of mean 0 and variance 1 at every sensor."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,9 +65,9 @@ class NoiseSource:
         shared, freedom = self._noise.shared, self._noise.freedom
         shape = (rows, self._sensors + bool(shared))
         if freedom:
-            drawn = self._generator.standard_t(freedom, shape) * np.sqrt(1.0 - 2.0 / freedom)
+            drawn = self._generator.standard_t(freedom, shape) * math.sqrt(1.0 - 2.0 / freedom)
         else:
             drawn = self._generator.standard_normal(shape)
         if not shared:
-            return drawn
-        return np.sqrt(1.0 - shared) * drawn[:, 1:] + np.sqrt(shared) * drawn[:, :1]
+            return np.asarray(drawn)
+        return np.asarray(math.sqrt(1.0 - shared) * drawn[:, 1:] + math.sqrt(shared) * drawn[:, :1])

@@ -1,4 +1,4 @@
-"""The optimum of a test that knows the size of a change and in how many sensors it is, not in which.
+"""The optimum of a test that knows a change and in how many sensors it is, but not in which.
 
 The likelihood ratio of a change from row nu on, averaged over all subsets of that many sensors, is
 summed over the onsets nu: R_n, the statistic of Shiryaev and Roberts (Pollak, Annals of Statistics
@@ -8,13 +8,16 @@ R_n >= A has the least delay, up to terms that vanish with the rate of false ala
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
+from rga.benchmark.detector.charts import Method
 from rga.benchmark.detector.faults import Drift, Fault, Spread, Step
 from rga.benchmark.detector.watch import Course
 from rga.model.parameter import FloatArray
 
+OPTIMUM = "optimum"
 #: onsets that are kept lie within this many expected delays; what is older has alarmed
 REACH = 3.0
 #: onsets within an expected delay, at most
@@ -23,6 +26,26 @@ FINENESS = 40
 BLOCK = 32
 #: the limit hardly moves the overshoot, so that few are needed
 ROUNDS = 20
+
+
+def has_optimum(fault: Fault) -> bool:
+    """Whether the optimum for a fault is known."""
+    return isinstance(fault, Step | Drift | Spread)
+
+
+def expected_delay(fault: Fault, sensors: int, arl0: float) -> float:
+    """Rows in which the likelihood of the true change grows by all that an alarm needs, roughly."""
+    needed = math.log(arl0) + math.log(math.comb(sensors, fault.count))
+    if isinstance(fault, Drift):
+        return float((6.0 * needed / (fault.count * fault.size**2)) ** (1.0 / 3.0))
+    if isinstance(fault, Step):
+        return needed / (fault.count * fault.size**2 / 2.0)
+    return needed / (fault.count * ((fault.size**2 - 1.0) / 2.0 - math.log(fault.size)))
+
+
+def _joint(fault: Fault, sensors: int) -> bool:
+    """Whether all sensors change alike, so that their sum tells all."""
+    return fault.count == sensors and not fault.signed
 
 
 class Optimum:
@@ -40,15 +63,15 @@ class Optimum:
     """
 
     def __init__(self, fault: Fault, sensors: int, arl0: float) -> None:
-        if not isinstance(fault, Step | Drift | Spread):
+        if not has_optimum(fault):
             raise TypeError(f"no optimum is known for a fault: {fault.name}")
         self._fault, self._sensors = fault, sensors
         self._subsets = math.log(math.comb(sensors, fault.count))
-        expected = self._expected(math.log(arl0) + self._subsets)
+        expected = expected_delay(fault, sensors, arl0)
         self._stride = max(1, int(expected / FINENESS))
         self._kept = 4 + math.ceil(REACH * expected / self._stride)
         #: the likelihood ratio of all sensors depends on their sum only
-        self._joint = fault.count == sensors and not fault.signed
+        self._joint = _joint(fault, sensors)
         width = 1 if self._joint else sensors
         self._rows = 0
         #: sums of the rows before each onset that is kept, and of the rows times their number
@@ -64,15 +87,6 @@ class Optimum:
         """
         blocks = [self._block(rows[at : at + BLOCK]) for at in range(0, len(rows), BLOCK)]
         return np.concatenate([np.zeros(0), *blocks])
-
-    def _expected(self, needed: float) -> float:
-        """Rows until the log-likelihood of the true change has grown by that on average."""
-        fault = self._fault
-        if isinstance(fault, Drift):
-            return float((6.0 * needed / (fault.count * fault.size**2)) ** (1.0 / 3.0))
-        if isinstance(fault, Step):
-            return needed / (fault.count * fault.size**2 / 2.0)
-        return needed / (fault.count * ((fault.size**2 - 1.0) / 2.0 - math.log(fault.size)))
 
     def _block(self, rows: FloatArray) -> FloatArray:
         numbers = self._rows + 1.0 + np.arange(len(rows))
@@ -125,7 +139,7 @@ class Optimum:
         for sensor in range(self._sensors):
             polynomial[1:] += ratios[..., sensor] * polynomial[:-1]
         with np.errstate(divide="ignore"):
-            return np.log(polynomial[-1]) + count * largest - self._subsets
+            return np.asarray(np.log(polynomial[-1]) + count * largest - self._subsets)
 
 
 def optimal_limit(courses: Sequence[Course], arl0: float) -> float:
@@ -133,17 +147,34 @@ def optimal_limit(courses: Sequence[Course], arl0: float) -> float:
 
     That takes E[R_T] rows on average, A times the mean of R_T / A. Weighting paths by R_T turns it
     round: the mean of R_T / A without the change is one over the mean of A / R_T with it, which
-    needs no false alarms to be waited for. Where one row can tell, as with a step in all of many
-    sensors, A / R_T is too wild for its mean to be known; then `limit_for` finds the limit.
+    needs no false alarms to be waited for. Where one row can tell, A / R_T is too wild for its mean
+    to be known: use it where `expected_delay` is more than a few rows, else `limit_for`.
 
     Args:
         courses: of `Optimum` under its change, watched up to log(arl0).
         arl0: rows between false alarms.
+
+    Raises:
+        ArithmeticError: all streams alarm before the change.
     """
     limit = math.log(arl0)
     for _ in range(ROUNDS):
         counted = [course for course in courses if course.before <= limit]
         found = [(course, course.exceeds(limit)) for course in counted]
         over = [course.values[at] - limit for course, at in found if at is not None]
+        if not over:
+            raise ArithmeticError("every stream has a false alarm before the change")
         limit = math.log(arl0) + math.log(float(np.exp(-np.array(over)).mean()))
     return limit
+
+
+def optimal(fault: Fault, sensors: int, arl0: float) -> Method:
+    """The optimum for a fault as a method, without a limit."""
+    return Method(OPTIMUM, partial(_made, fault, sensors, arl0), math.log(arl0))
+
+
+def _made(
+    fault: Fault, sensors: int, arl0: float, baseline: FloatArray | None, seed: int
+) -> Optimum:
+    """It knows the noise."""
+    return Optimum(fault, sensors, arl0)

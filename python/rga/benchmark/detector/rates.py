@@ -10,6 +10,10 @@ from rga.benchmark.detector.watch import Course
 
 #: of all intervals
 LEVEL = 0.9
+#: of baselines
+RESAMPLES = 2000
+#: run lengths that are not told from the steps between whole numbers
+SHORT = 20
 
 
 @dataclass(frozen=True)
@@ -18,16 +22,18 @@ class Arl0:
 
     Attributes:
         rows: the average; None where nothing alarmed.
-        low, high: its interval, exact for exponential run lengths (Epstein and Sobel, 1954);
-            None: there is no upper bound.
+        low, high: its interval, exact for exponential run lengths (Epstein and Sobel, Annals of
+            Mathematical Statistics 25, 1954); where several streams have one baseline, by a
+            bootstrap of baselines. None: there is no such bound.
         alarms: that were counted.
         watched: rows that were watched.
         exponential: chance of run lengths as unlike an exponential as these, were they one
-            (Kolmogorov and Smirnov; too large, as the mean is fitted); None of fewer than five.
+            (Kolmogorov and Smirnov; too large, as the mean is fitted); None of fewer than five, of
+            short ones, which are whole numbers, and where streams have a baseline in common.
     """
 
     rows: float | None
-    low: float
+    low: float | None
     high: float | None
     alarms: int
     watched: int
@@ -74,18 +80,23 @@ class Delay:
     capped: int
 
 
-def arl0(courses: Sequence[Course], limit: float) -> Arl0:
-    """Of streams without a change."""
+def arl0(courses: Sequence[Course], limit: float, each: int = 1) -> Arl0:
+    """Of streams without a change; `each` in turn have a baseline in common."""
     lengths, alarmed = _lengths(courses, limit)
     rows, alarms = int(lengths.sum()), int(alarmed.sum())
     rest = (1.0 - LEVEL) / 2.0
+    if each > 1:
+        low, high = _resampled(lengths.reshape(-1, each).sum(1), alarmed.reshape(-1, each).sum(1))
+    else:
+        low = float(2.0 * rows / chi2.ppf(1.0 - rest, 2 * alarms + 2))
+        high = float(2.0 * rows / chi2.ppf(rest, 2 * alarms)) if alarms else None
     return Arl0(
         rows=rows / alarms if alarms else None,
-        low=float(2.0 * rows / chi2.ppf(1.0 - rest, 2 * alarms + 2)),
-        high=float(2.0 * rows / chi2.ppf(rest, 2 * alarms)) if alarms else None,
+        low=low,
+        high=high,
         alarms=alarms,
         watched=rows,
-        exponential=_exponential(lengths[alarmed], float(lengths.max()), rows),
+        exponential=None if each > 1 else _exponential(lengths[alarmed], lengths.max(), rows),
     )
 
 
@@ -152,9 +163,24 @@ def _mean_interval(values: np.ndarray) -> tuple[float, float]:
     return mean - reach, mean + reach
 
 
+def _resampled(rows: np.ndarray, alarms: np.ndarray) -> tuple[float | None, float | None]:
+    """Interval of rows over alarms, by a bootstrap of baselines; no bound where none alarmed."""
+    generator = np.random.default_rng(0)
+    drawn = generator.integers(len(rows), size=(RESAMPLES, len(rows)))
+    with np.errstate(divide="ignore"):
+        found = rows[drawn].sum(axis=1) / alarms[drawn].sum(axis=1)
+    rest = (1.0 - LEVEL) / 2.0
+    low, high = np.quantile(found, [rest, 1.0 - rest], method="inverted_cdf")
+    return _finite(low), _finite(high)
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
 def _exponential(lengths: np.ndarray, end: float, rows: int) -> float | None:
     """Of the run lengths that ended before the end, as a truncated exponential."""
-    if len(lengths) < 5:
+    if len(lengths) < 5 or rows < SHORT * len(lengths):
         return None
     rate = len(lengths) / rows
     return float(kstest(np.expm1(-rate * lengths) / np.expm1(-rate * end), "uniform").pvalue)

@@ -1,6 +1,6 @@
 """Streams watched by a method: what its values rose to, and when."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 
@@ -17,49 +17,59 @@ FIRST_BLOCK, LAST_BLOCK = 64, 4096
 
 
 @dataclass(frozen=True)
-class Case:
-    """Streams, drawn by number.
+class World:
+    """Where streams and baselines come from.
 
     Attributes:
-        seed: what is drawn depends on it, the purpose, the noise and the number of the stream only,
-            so that all methods and faults meet the same noise.
-        streams: how many.
-        cap: rows after the onset that are watched at most.
-        onset: rows before the fault, or before run lengths are counted.
-        fault: what happens; None: nothing.
-        noise: the world.
+        seed: what is drawn depends on it, the noise, the purpose and the number only, so that all
+            methods and faults meet the same noise.
+        noise: of every stream.
+        sensors: in a row.
         baseline: rows that a method is made from; 0: the noise is known.
         each: streams to a baseline.
-        sensors: in a row.
-        purpose: other purposes see other streams.
     """
 
     seed: int
-    streams: int
-    cap: int
-    onset: int = 0
-    fault: Fault | None = None
     noise: Noise = WHITE
+    sensors: int = 84
     baseline: int = 0
     each: int = 1
-    sensors: int = 84
-    purpose: str = ""
 
-    def stream(self, number: int) -> Stream:
-        """One of them."""
-        return Stream(self.noise, self.sensors, self._seed(number, 0), self.fault, self.onset)
+    def stream(self, case: "Case", number: int) -> Stream:
+        """One of a case."""
+        seed = self._seed(case.purpose, number)
+        return Stream(self.noise, self.sensors, seed, case.fault, case.onset)
 
     def made(self, method: Method, number: int) -> Chart:
         """A fresh chart from the baseline of that number."""
-        seed = self._seed(number, 1)
+        seed = self._seed("baseline", number)
         rows = None
         if self.baseline:
             rows = NoiseSource(self.noise, self.sensors, seed).take(self.baseline)
         return method.make(rows, int(seed.generate_state(1)[0]))
 
-    def _seed(self, *key: int) -> np.random.SeedSequence:
-        words = f"{self.purpose} {self.noise.name}".encode()
-        return np.random.SeedSequence([self.seed, *words], spawn_key=key)
+    def _seed(self, purpose: str, number: int) -> np.random.SeedSequence:
+        words = f"{purpose} {self.noise.name}".encode()
+        return np.random.SeedSequence([self.seed, *words], spawn_key=(number,))
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is watched.
+
+    Attributes:
+        streams: how many.
+        cap: rows after the onset at most.
+        onset: rows before the fault, or before run lengths are counted.
+        fault: what happens; None: nothing.
+        purpose: other purposes see other streams.
+    """
+
+    streams: int
+    cap: int
+    onset: int = 0
+    fault: Fault | None = None
+    purpose: str = ""
 
 
 @dataclass(frozen=True)
@@ -90,25 +100,42 @@ class Course:
 
 
 def watched(
-    case: Case, method: Method, numbers: range | None = None, ceiling: float | None = None
+    world: World,
+    case: Case,
+    method: Method,
+    numbers: range | None = None,
+    ceiling: float | None = None,
 ) -> list[Course]:
     """Courses of a method on the streams of a case.
 
     Args:
-        case: the streams.
+        world: where the streams come from.
+        case: what is watched.
         method: what watches.
         numbers: of the streams; None: all.
         ceiling: a stream ends where a value exceeds it; None: the method's limit.
     """
+    return watched_together(world, (case,), method, numbers or range(case.streams), ceiling)[0]
+
+
+def watched_together(
+    world: World,
+    cases: Sequence[Case],
+    method: Method,
+    numbers: range,
+    ceiling: float | None = None,
+) -> list[list[Course]]:
+    """The same of several cases; a chart is made once for all streams of a baseline."""
     end = method.limit if ceiling is None else ceiling
-    courses = []
+    courses: list[list[Course]] = [[] for _ in cases]
     made: tuple[int, Chart] | None = None
-    for number in range(case.streams) if numbers is None else numbers:
-        # Where the noise is known, one chart serves all streams.
-        own = number // case.each if case.baseline else 0
+    for number in numbers:
+        own = number // world.each if world.baseline else 0
         if made is None or made[0] != own:
-            made = own, case.made(method, own)
-        courses.append(_course(deepcopy(made[1]), case.stream(number), case.onset, case.cap, end))
+            made = own, world.made(method, own)
+        for case, found in zip(cases, courses, strict=True):
+            stream = world.stream(case, number)
+            found.append(_course(deepcopy(made[1]), stream, case.onset, case.cap, end))
     return courses
 
 
@@ -116,12 +143,14 @@ def _course(chart: Chart, stream: Stream, onset: int, cap: int, ceiling: float) 
     before = -np.inf
     for size in _blocks(onset):
         before = max(before, float(chart.values(stream.take(size)).max()))
-    rows, values, seen, highest = [np.zeros(0)], [np.zeros(0)], 0, -np.inf
+    rows: list[FloatArray] = []
+    values: list[FloatArray] = []
+    seen, highest = 0, -np.inf
     for size in _blocks(cap):
         found = chart.values(stream.take(size))
         largest = np.maximum.accumulate(found)
         new = found > np.maximum(np.concatenate([[-np.inf], largest[:-1]]), highest)
-        rows.append(seen + 1.0 + np.flatnonzero(new))
+        rows.append(np.asarray(seen + 1.0 + np.flatnonzero(new)))
         values.append(found[new])
         seen, highest = seen + size, max(highest, float(largest[-1]))
         if highest > ceiling:
