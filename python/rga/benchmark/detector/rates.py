@@ -46,8 +46,8 @@ class Share:
 
     Attributes:
         share: of all.
-        low, high: its interval: Wilson's, or where several streams have one baseline Student's t
-            over baselines.
+        low, high: Wilson's interval; where several streams have one baseline, that of as many
+            independent streams as they are worth (Korn and Graubard, Survey Methodology 24, 1998).
         streams: how many.
     """
 
@@ -63,7 +63,8 @@ class Delay:
 
     Attributes:
         mean: over runs without an alarm before the onset; None where there was none.
-        low, high: interval of the mean (Student's t).
+        low, high: interval of the mean: Student's t, or a bootstrap of baselines where several
+            streams have one; None of a single run.
         median: of the same.
         runs: that were counted.
         left_out: runs with an alarm before the onset.
@@ -104,25 +105,32 @@ def share(courses: Sequence[Course], limit: float, rows: int, each: int = 1) -> 
     """Streams without an alarm in so many rows; `each` in turn have a baseline in common."""
     lengths, alarmed = _lengths(courses, limit)
     quiet = ~alarmed | (lengths > rows)
-    found = float(quiet.mean())
-    if each == 1:
-        interval = binomtest(int(quiet.sum()), len(quiet)).proportion_ci(LEVEL, method="wilson")
-        return Share(found, float(interval.low), float(interval.high), len(quiet))
-    low, high = _mean_interval(quiet.reshape(-1, each).mean(axis=1))
-    return Share(found, max(low, 0.0), min(high, 1.0), len(quiet))
+    found, worth = float(quiet.mean()), float(len(quiet))
+    if each > 1:
+        own = quiet.reshape(-1, each).mean(axis=1)
+        variance = own.var(ddof=1) / len(own) if len(own) > 1 else 0.0
+        worth = max(found * (1.0 - found) / variance, len(own)) if variance else len(own)
+        worth = min(worth, len(quiet))
+    interval = binomtest(round(found * worth), round(worth)).proportion_ci(LEVEL, method="wilson")
+    return Share(found, float(interval.low), float(interval.high), len(quiet))
 
 
-def delay(courses: Sequence[Course], limit: float) -> Delay:
-    """Of streams with a change at the onset."""
-    counted = [course for course in courses if course.before <= limit]
-    left_out = len(courses) - len(counted)
-    if not counted:
+def delay(courses: Sequence[Course], limit: float, each: int = 1) -> Delay:
+    """Of streams with a change at the onset; `each` in turn have a baseline in common."""
+    counted = np.array([course.before <= limit for course in courses])
+    left_out = int((~counted).sum())
+    if not counted.any():
         return Delay(None, None, None, None, 0, left_out, 0)
-    lengths, alarmed = _lengths(counted, limit)
-    low, high = _mean_interval(lengths)
+    lengths, alarmed = _lengths(courses, limit)
+    own = lengths[counted]
+    if each > 1:
+        rows = np.where(counted, lengths, 0.0).reshape(-1, each).sum(axis=1)
+        low, high = _resampled(rows, counted.reshape(-1, each).sum(axis=1))
+    else:
+        low, high = _mean_interval(own)
     return Delay(
-        float(lengths.mean()), low, high, float(np.median(lengths)),
-        len(counted), left_out, int((~alarmed).sum()),
+        float(own.mean()), low, high, float(np.median(own)),
+        len(own), left_out, int((~alarmed[counted]).sum()),
     )  # fmt: skip
 
 
@@ -155,20 +163,22 @@ def _lengths(courses: Sequence[Course], limit: float) -> tuple[np.ndarray, np.nd
     return np.array([rows for rows, _ in found], float), np.array([alarm for _, alarm in found])
 
 
-def _mean_interval(values: np.ndarray) -> tuple[float, float]:
+def _mean_interval(values: np.ndarray) -> tuple[float | None, float | None]:
+    """Of rows, of which there is one at least."""
     mean, count = float(values.mean()), len(values)
     if count < 2:
-        return mean, mean
+        return None, None
     reach = float(t.ppf((1.0 + LEVEL) / 2.0, count - 1) * values.std(ddof=1) / np.sqrt(count))
-    return mean - reach, mean + reach
+    return max(mean - reach, 1.0), mean + reach
 
 
-def _resampled(rows: np.ndarray, alarms: np.ndarray) -> tuple[float | None, float | None]:
-    """Interval of rows over alarms, by a bootstrap of baselines; no bound where none alarmed."""
+def _resampled(rows: np.ndarray, counts: np.ndarray) -> tuple[float | None, float | None]:
+    """Interval of rows over a count, by a bootstrap of baselines; no bound where that is none."""
     generator = np.random.default_rng(0)
     drawn = generator.integers(len(rows), size=(RESAMPLES, len(rows)))
-    with np.errstate(divide="ignore"):
-        found = rows[drawn].sum(axis=1) / alarms[drawn].sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = rows[drawn].sum(axis=1) / counts[drawn].sum(axis=1)
+    found[np.isnan(found)] = np.inf
     rest = (1.0 - LEVEL) / 2.0
     low, high = np.quantile(found, [rest, 1.0 - rest], method="inverted_cdf")
     return _finite(low), _finite(high)

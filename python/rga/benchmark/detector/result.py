@@ -79,6 +79,7 @@ class Judged:
         name: what it is.
         value: what was found; None where it cannot be told.
         low, high: its 90 % interval.
+        rare: whether false alarms are as rare as they should be; else the figure means nothing.
         least, aim: bounds that are asked for and aimed at.
     """
 
@@ -86,12 +87,15 @@ class Judged:
     value: float | None
     low: float | None
     high: float | None
+    rare: bool
     least: Bounds
     aim: Bounds
 
     @property
     def verdict(self) -> str:
         """Whether the figure lies within the bounds."""
+        if not self.rare:
+            return "too many false alarms"
         for bounds, word in ((self.aim, "aim"), (self.least, "met")):
             if self.value is None:
                 return ""

@@ -84,7 +84,7 @@ def measure(
             delays.append(_seen(job.world, name, job.method.limit, case.fault, courses))
             if case.fault == EXAMPLE and not job.world.baseline and name in limits.undisturbed:
                 points += curve(name, limits.undisturbed[name], courses, setting.arl0)
-    judged = targets(alarms, delays) if setting.judged else []
+    judged = targets(setting.arl0, alarms, delays) if setting.judged else []
     day = date.today().isoformat()
     return Result(machine(), versions(), day, setting, alarms, delays, points, judged)
 
@@ -174,7 +174,7 @@ def _seen(world: World, name: str, limit: float, fault: Fault, courses: list[Cou
         fault.size,
         fault.count,
         not world.baseline,
-        delay(courses, limit),
+        delay(courses, limit, world.each if world.baseline else 1),
     )
 
 
