@@ -5,14 +5,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rga.benchmark.detector.rates import arl0, limit_for
+from rga.benchmark.detector.rates import arl0, delay, limit_for
 from rga.benchmark.detector.result import Point
 from rga.benchmark.detector.watch import Course
 
 #: limits to a curve
 POINTS = 25
 #: part of the rows between false alarms at which the optimum's curve begins
-LOWEST = 100.0
+LOWEST = 20.0
 
 
 def curve(
@@ -41,17 +41,20 @@ def curve(
 def optimal_curve(name: str, limit: float, changed: Sequence[Course], rows: float) -> list[Point]:
     """The same of the optimum, whose rows between false alarms are proportional to exp(limit).
 
+    It sums up all that came before, so that only runs without an alarm before the onset count.
+
     Args:
         name: of the detector.
         limit: for so many rows between false alarms.
         changed: streams with a change.
         rows: between false alarms at that limit.
     """
-    lower = np.linspace(-math.log(LOWEST), 0.0, POINTS // 2)
-    return [
-        Point(name, limit + one, rows * math.exp(one), _next(changed, limit + one))
-        for one in lower.tolist()
-    ]
+    points = []
+    for lower in np.linspace(-math.log(LOWEST), 0.0, POINTS // 2).tolist():
+        found = delay(changed, limit + lower).mean
+        if found is not None:
+            points.append(Point(name, limit + lower, rows * math.exp(lower), found))
+    return points
 
 
 def _next(courses: Sequence[Course], limit: float) -> float:

@@ -92,13 +92,7 @@ def _any_delay(axes: Axes, result: Result) -> None:
 
 def _costs(axes: Axes, result: Result) -> None:
     highest = result.setting.arl0
-    axes.set(xscale="log", yscale="log")
-    axes.plot([1.0, highest], [1.0, highest], color="0.6", lw=1, ls=":")
-    axes.text(
-        highest**0.6, highest**0.6 / 1.3, "alarms that do not depend on the change",
-        size=8, color="0.4", ha="center", va="top",
-        rotation=45, rotation_mode="anchor", transform_rotates_text=True,
-    )  # fmt: skip
+    axes.plot([1.0, highest], [1.0, highest], color="0.6", lw=1, ls=":", label="blind")
     for detector, style in _styles(result).items():
         own = [one for one in result.points if one.detector == detector]
         if own:
@@ -115,7 +109,7 @@ def _costs(axes: Axes, result: Result) -> None:
         if alarms and alarms[0].arl0.rows and seen and seen[0]:
             axes.plot(alarms[0].arl0.rows, seen[0], label=detector, **{**style, "ms": 9, "ls": ""})
     axes.set(
-        xlabel="rows between false alarms", ylabel="delay [rows]",
+        xscale="log", yscale="log", xlabel="rows between false alarms", ylabel="delay [rows]",
         title="What a delay costs: step of 1 sd in one sensor",
     )  # fmt: skip
     axes.grid(alpha=0.3)

@@ -62,7 +62,7 @@ class Point:
         detector: its name.
         limit: of its values.
         arl0: rows between false alarms.
-        delay: rows from the onset to the next alarm, whatever came before.
+        delay: rows from the onset to the next alarm.
     """
 
     detector: str
