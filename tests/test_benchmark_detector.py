@@ -343,7 +343,7 @@ def test_a_detector_of_ones_own_stands_in_the_tables() -> None:
     assert own.limit is None
     assert f"({own.quiet.low:.2f} to {own.quiet.high:.2f})" in line
     published = result.alarms[0]
-    assert published.detector == "window rule as published"
+    assert published.detector == WINDOW_RULE
     assert published.limit == 3.0
     assert published.arl0.rows is not None
     assert published.arl0.rows < 20.0

@@ -3,8 +3,11 @@
 from dataclasses import dataclass
 from typing import Any
 
-from rga.benchmark.detector.rates import Arl0, Delay, Share
+from rga.benchmark.detector.charts import Method
+from rga.benchmark.detector.faults import Fault
+from rga.benchmark.detector.rates import Arl0, Delay, Share, arl0, delay, share
 from rga.benchmark.detector.setting import Setting
+from rga.benchmark.detector.watch import Course, World
 
 #: None: none
 Bounds = tuple[float | None, float | None]
@@ -30,6 +33,28 @@ class Alarms:
     arl0: Arl0
     quiet: Share
 
+    @classmethod
+    def of(
+        cls, world: World, method: Method, limit: float | None, rows: float, found: list[Course]
+    ) -> "Alarms":
+        """Of courses without a change.
+
+        Args:
+            world: where their streams come from.
+            method: what watched.
+            limit: that is told.
+            rows: that should be between alarms.
+            found: the courses.
+        """
+        return cls(
+            method.name,
+            limit,
+            world.noise.name,
+            not world.baseline,
+            arl0(found, method.limit, world.in_common),
+            share(found, method.limit, int(rows), world.in_common),
+        )
+
 
 @dataclass(frozen=True)
 class Seen:
@@ -52,6 +77,19 @@ class Seen:
     count: int
     known: bool
     delay: Delay
+
+    @classmethod
+    def of(cls, world: World, method: Method, fault: Fault, found: list[Course]) -> "Seen":
+        """Of courses with a change."""
+        return cls(
+            method.name,
+            type(fault).__name__.lower(),
+            fault.name,
+            fault.size,
+            fault.count,
+            not world.baseline,
+            delay(found, method.limit, world.in_common),
+        )
 
 
 @dataclass(frozen=True)

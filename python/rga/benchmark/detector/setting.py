@@ -6,6 +6,8 @@ from rga.benchmark.detector.faults import Drift, Fault, Spikes, Spread, Step, St
 from rga.benchmark.detector.noise import WHITE
 from rga.benchmark.detector.watch import Case, World
 
+#: the change whose delay is shown against false alarms
+EXAMPLE = Step(1.0)
 #: rows of a baseline
 BASELINE = 2000
 #: run lengths without a change are watched for so many times the average, delays for so many
@@ -25,8 +27,8 @@ class Setting:
         each: streams to a baseline.
         onset: rows before a change: enough for every detector to be filled.
         sensors: in a row.
-        sizes: of steps [sd].
-        counts: of sensors that change.
+        sizes: of steps [sd]; 1 is among them.
+        counts: of sensors that change; 1 is among them.
         judged: whether what is found is held against what is asked.
     """
 

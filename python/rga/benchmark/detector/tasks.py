@@ -9,6 +9,8 @@ from rga.workers import finished
 
 #: streams, or baselines, that one process watches in one go
 CHUNK, BASELINES = 25, 2
+#: told the share that is done
+Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Job:
 
 
 def courses_of(
-    jobs: Sequence[Job], workers: int, progress: Callable[[float], None] | None = None
+    jobs: Sequence[Job], workers: int, progress: Progress | None = None
 ) -> list[list[list[Course]]]:
     """Courses by job and case, the same ones for any number of processes.
 

@@ -35,6 +35,11 @@ class World:
     baseline: int = 0
     each: int = 1
 
+    @property
+    def in_common(self) -> int:
+        """Streams in turn that have a baseline in common; 1: none have."""
+        return self.each if self.baseline else 1
+
     def stream(self, case: "Case", number: int) -> Stream:
         """One of a case."""
         seed = self._seed(case.purpose, number)
