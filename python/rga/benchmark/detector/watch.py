@@ -12,8 +12,8 @@ from rga.benchmark.detector.noise import WHITE, Noise, NoiseSource
 from rga.benchmark.detector.streams import Stream
 from rga.model.parameter import FloatArray
 
-#: rows that are fed at once: few where an alarm is soon expected, then more and more
-FIRST_BLOCK, LAST_BLOCK = 64, 4096
+#: rows that are fed at once: few at first, for an alarm may come soon, then what caches hold
+FIRST_BLOCK, LAST_BLOCK = 64, 256
 
 
 @dataclass(frozen=True)
