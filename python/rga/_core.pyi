@@ -160,7 +160,7 @@ class Refactored:
 
 @final
 class ChangeStatistics:
-    """Statistics of change over a stream of readings; `rga.detection.SyncMonitor` is made of them."""
+    """Statistics of change over a stream; `rga.detection.SyncMonitor` is made of them."""
 
     def __new__(
         cls,
