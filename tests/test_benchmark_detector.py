@@ -288,8 +288,8 @@ def test_mewma_is_hotellings_statistic() -> None:
     found = np.concatenate([chart.values(rows[:100]), chart.values(rows[100:])])
     average, center, inverse = np.zeros(5), rows.mean(axis=0), np.linalg.inv(np.cov(rows.T))
     for number, row in enumerate(rows[:150], start=1):
-        average += 0.1 * (row - center - average)
-        variance = 0.1 / 1.9 * (1.0 - 0.9 ** (2 * number))
+        average += 0.05 * (row - center - average)
+        variance = 0.05 / 1.95 * (1.0 - 0.95 ** (2 * number))
         assert found[number - 1] == pytest.approx(average @ inverse @ average / variance)
     assert found.mean() == pytest.approx(5.0, abs=0.5)
 
