@@ -5,7 +5,8 @@ from functools import partial
 import numpy as np
 from scipy.signal import lfilter
 
-from rga.benchmark.detector.charts import Chart, Method
+from rga.benchmark.detector.charts import Chart, Method, detecting
+from rga.detection import SyncMonitor
 from rga.model.parameter import FloatArray
 
 WINDOW_RULE, MEWMA, MONITOR = "window rule", "MEWMA", "monitor"
@@ -27,7 +28,14 @@ def free(sensors: int) -> tuple[Method, ...]:
 
 def ready(sensors: int, arl0: float) -> tuple[Method, ...]:
     """Detectors that set their limit themselves, for that many rows between false alarms."""
-    return ()
+    return (detecting(MONITOR, partial(monitor, sensors, arl0)),)
+
+
+def monitor(sensors: int, arl0: float, baseline: FloatArray | None, seed: int) -> SyncMonitor:
+    """Of that many sensors; the seed of its thresholds is its own."""
+    if baseline is None:
+        return SyncMonitor.known(sensors, arl0=arl0)
+    return SyncMonitor(baseline, arl0=arl0)
 
 
 def window_rule(sensors: int, baseline: FloatArray | None, seed: int) -> Chart:
