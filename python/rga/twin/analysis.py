@@ -143,7 +143,7 @@ class RealityGapAnalysis:
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
         if settings.level == "C" and recovered and not open_alarm:
             self._integrate(*recent)
-        self._begin_again(recent[0])
+        self._begin_again(None)
         standing.doubted = standing.doubted or not recovered
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
@@ -271,7 +271,7 @@ class RealityGapAnalysis:
         channels, measured = self._station.channels, self._station.measured
         return self._exchange.ask(Q1(row=row, channels=channels, measured=measured, **change))
 
-    def _begin_again(self, first: int) -> None:
+    def _begin_again(self, first: int | None) -> None:
         if self._settings.level != "A":
             self.synchrony.begin_again(first, self._calibration.ledger.residuals)
         self.standing.synchronised = self.standing.row

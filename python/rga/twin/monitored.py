@@ -15,8 +15,9 @@ from rga.twin.synchrony import OutOfSync, listed
 class Monitored:
     """Out of sync where residuals are no longer what they were when the twin was calibrated.
 
-    What they were is learned from the rows of the calibration; where these are few, from the next
-    rows too, and until then there is no alarm. Sensors with few readings are not watched.
+    What they were is learned from all rows since the model came into force, so that what a
+    recalibration has dealt with is usual from then on. Until there are enough of them there is no
+    alarm. Sensors with few readings are not watched.
 
     Args:
         channels: names of the sensors.
@@ -50,14 +51,16 @@ class Monitored:
         words = f"out of sync: {alarm.looks} in {listed(sensors)} since row {since}"
         return OutOfSync(self._began + alarm.row, since, sensors, words)
 
-    def begin_again(self, first: int, residuals: FloatArray) -> None:
+    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
         """Learn what residuals are now.
 
         Args:
-            first: of the rows that the twin was calibrated on.
+            first: of the rows that say what is usual; None: still the same.
             residuals: of all rows so far, float[rows, channels], NaN where missing.
         """
-        self._monitor, self._baseline = None, first
+        self._monitor = None
+        if first is not None:
+            self._baseline = first
         self._learn(residuals)
 
     @property

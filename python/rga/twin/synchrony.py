@@ -38,11 +38,11 @@ class Synchrony(Protocol):
             residuals: of all rows so far, float[rows, channels], NaN where missing.
         """
 
-    def begin_again(self, first: int, residuals: FloatArray) -> None:
+    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
         """Learn what a newly calibrated twin leaves.
 
         Args:
-            first: of the latest rows, that it was calibrated on.
+            first: of the rows that say what is usual; None: still the same.
             residuals: of all rows so far, float[rows, channels], NaN where missing.
         """
 

@@ -41,11 +41,11 @@ class WindowRule:
         words = f"out of sync: the gap of {listed(sensors)} exceeds its bound"
         return OutOfSync(row, max(0, row - self._settings.persistence[1] + 1), sensors, words)
 
-    def begin_again(self, first: int, residuals: FloatArray) -> None:
+    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
         """Fill a new window with the latest rows.
 
         Args:
-            first: of the rows that the twin was calibrated on.
+            first: of the rows that say what is usual; None: still the same.
             residuals: of all rows so far, float[rows, channels], NaN where missing.
         """
         self._window = self._fresh()
