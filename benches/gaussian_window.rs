@@ -47,7 +47,9 @@ fn bench(criterion: &mut Criterion) {
     group.bench_function("update", |bencher| {
         bencher.iter(|| {
             for (row, alarms) in rows.chunks(SENSORS).zip(alarms.chunks_mut(SENSORS)) {
-                window.update(Array::new(row, &[SENSORS]), alarms).expect("finite");
+                window
+                    .update(Array::new(row, &[SENSORS]), alarms)
+                    .expect("finite");
             }
         });
     });

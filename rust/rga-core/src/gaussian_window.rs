@@ -16,11 +16,10 @@
 mod block;
 mod bytes;
 mod careful;
-mod columns;
 mod moments;
 mod pass;
-mod ring;
 mod rule;
+mod tile;
 
 use pulp::Arch;
 
@@ -28,8 +27,8 @@ use crate::input::Array;
 use crate::instructions::instructions_named;
 use block::Block;
 use pass::Pass;
-use ring::{Eight, WIDTH};
 pub use rule::{Refusal, WindowRule};
+use tile::{Eight, WIDTH};
 
 /// Part of the largest M Q below which M Q - S^2 has lost too many digits.
 const DIGITS_LEFT: f64 = 1e-6;
@@ -45,6 +44,8 @@ pub struct GaussianWindow {
     rule: WindowRule,
     arch: Arch,
     rows: u64,
+    /// Where the next row goes, 0..M.
+    slot: usize,
     /// Lanes behind the last sensor hold that sensor again.
     blocks: Vec<Block>,
     /// `[M, blocks]`
@@ -70,14 +71,15 @@ impl GaussianWindow {
             rule,
             arch: Arch::new(),
             rows: 0,
+            slot: 0,
             blocks: vec![Block::new(rule.earlier()); blocks],
             ring,
         })
     }
 
-    /// On one of `instructions()`; nothing names the best. Results do not depend on it.
-    pub fn on(self, instructions: Option<&str>) -> crate::Result<Self> {
-        let arch = instructions_named(instructions)?;
+    /// The same on one of `instructions()`; nothing names the best. Results do not depend on it.
+    pub fn with_instructions(self, name: Option<&str>) -> crate::Result<Self> {
+        let arch = instructions_named(name)?;
         Ok(Self { arch, ..self })
     }
 
@@ -86,18 +88,20 @@ impl GaussianWindow {
         self.rows
     }
 
-    /// Alarms `[sensors]` of one row `[sensors]`; NaN is missing.
+    /// Writes the alarms `[sensors]` of one row `[sensors]`; NaN is missing.
     pub fn update(&mut self, row: Array<f64>, alarms: &mut [bool]) -> Result<(), Refusal> {
-        if row.shape != [self.rule.sensors()] {
-            return Err(self.misshapen("row", row.shape, format!("[{}]", self.rule.sensors)));
+        let sensors = self.rule.sensors();
+        if row.shape != [sensors] {
+            return Err(misshapen("row", row.shape, &format!("[{sensors}]")));
         }
         self.advance(row.values, alarms)
     }
 
-    /// Alarms `[n, sensors]` of rows `[n, sensors]`; NaN is missing.
+    /// Writes the alarms `[n, sensors]` of rows `[n, sensors]`; NaN is missing.
     pub fn update_many(&mut self, rows: Array<f64>, alarms: &mut [bool]) -> Result<(), Refusal> {
-        if rows.shape != [rows.len(), self.rule.sensors()] {
-            return Err(self.misshapen("rows", rows.shape, format!("[n, {}]", self.rule.sensors)));
+        let sensors = self.rule.sensors();
+        if rows.shape != [rows.len(), sensors] {
+            return Err(misshapen("rows", rows.shape, &format!("[n, {sensors}]")));
         }
         self.advance(rows.values, alarms)
     }
@@ -105,14 +109,16 @@ impl GaussianWindow {
     /// `[sensors]` what the next value must exceed; NaN while the window fills.
     pub fn bound(&self) -> Vec<f64> {
         let (own, others) = self.rule.weights();
-        let lanes = |sensor| { let at = sensor / WIDTH; (&self.blocks[at], sensor - self.rule.first(at)) };
         (0..self.rule.sensors())
-            .map(lanes)
-            .map(|(block, lane)| match block.lacking[lane] {
-                1.. => f64::NAN,
-                _ if own <= 0.0 => f64::INFINITY,
-                _ => {
-                    let moments = &block.moments;
+            .map(|sensor| {
+                let at = sensor / WIDTH;
+                let (block, lane) = (&self.blocks[at], sensor - self.rule.first(at));
+                let moments = &block.moments;
+                if block.lacking[lane] > 0 {
+                    f64::NAN
+                } else if own <= 0.0 {
+                    f64::INFINITY
+                } else {
                     let reach = (others / own * moments.spread.0[lane]).sqrt();
                     let sum = moments.sum.0[lane] + reach;
                     moments.shift.0[lane] + sum / self.rule.earlier() as f64
@@ -121,19 +127,20 @@ impl GaussianWindow {
             .collect()
     }
 
-    fn misshapen(&self, place: &str, shape: &[usize], right: String) -> Refusal {
-        let what = format!("the array has shape {shape:?}");
-        Refusal::new(what, place, &format!("its shape must be {right}"))
-    }
-
     fn advance(&mut self, values: &[f64], alarms: &mut [bool]) -> Result<(), Refusal> {
         if alarms.len() != values.len() {
-            return Err(self.misshapen("alarms", &[alarms.len()], format!("[{}]", values.len())));
+            let right = format!("[{}], as many as there are values", values.len());
+            return Err(misshapen("alarms", &[alarms.len()], &right));
         }
-        // A long call is read only once, beside a copy of what it changes.
+        // A call of more rows than a window has is read only once, beside a copy of the windows.
         let kept = (values.len() > WIDTH * self.ring.len()).then(|| self.clone());
-        let arch = self.arch;
-        if arch.dispatch(Pass { window: self, values, alarms, checked: kept.is_none() }) {
+        let pass = Pass {
+            checked: kept.is_none(),
+            values,
+            alarms,
+            window: self,
+        };
+        if pass.window.arch.dispatch(pass) {
             return Ok(());
         }
         if let Some(kept) = kept {
@@ -143,8 +150,9 @@ impl GaussianWindow {
     }
 
     fn infinite(&self, values: &[f64]) -> Refusal {
-        let found = values.iter().enumerate().find(|(_, value)| value.abs() > LARGEST);
-        let (at, value) = found.unwrap_or((0, &f64::INFINITY));
+        let mut numbered = values.iter().enumerate();
+        let beyond = numbered.find(|(_, value)| value.abs() > LARGEST);
+        let (at, value) = beyond.unwrap_or((0, &f64::INFINITY));
         let sensors = self.rule.sensors();
         let row = self.rows + (at / sensors) as u64;
         Refusal::new(
@@ -153,4 +161,9 @@ impl GaussianWindow {
             &format!("give numbers within {LARGEST:e} in size, and NaN for a missing value"),
         )
     }
+}
+
+fn misshapen(place: &str, shape: &[usize], right: &str) -> Refusal {
+    let what = format!("the array has shape {shape:?}");
+    Refusal::new(what, place, &format!("its shape must be {right}"))
 }

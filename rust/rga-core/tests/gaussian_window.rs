@@ -80,7 +80,8 @@ fn decisions_are_exact() -> Result<(), Refusal> {
     let mut exceeded = [0; STREAMS];
     for row in 0..ROWS {
         let values = values(&mut noise, row);
-        let found = window.update(Array::new(&values, &[STREAMS]))?;
+        let mut found = [false; STREAMS];
+        window.update(Array::new(&values, &[STREAMS]), &mut found)?;
         for stream in 0..STREAMS {
             let right = exact[stream].exceeds(values[stream]);
             assert_eq!(found[stream], right, "stream {stream}, row {row}");

@@ -1,9 +1,8 @@
 //! Eight sensors side by side, one a lane of SIMD vectors.
 
 use super::LARGEST;
-use super::columns::Columns;
 use super::moments::{Moments, Weights};
-use super::ring::{Eight, Ring, WIDTH};
+use super::tile::{Eight, Part, Tile, WIDTH};
 use crate::lanes::Lanes;
 
 #[derive(Debug, Clone)]
@@ -51,26 +50,20 @@ impl Block {
 
     /// Tests rows and lets them into the windows. False: some have, and a value is infinite.
     #[inline(always)]
-    pub fn take<L: Lanes>(
-        &mut self,
-        task: &Task<L>,
-        ring: &mut Ring,
-        columns: &mut Columns,
-    ) -> bool {
+    pub fn take<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
         let mut row = 0;
-        while row < columns.rows {
-            let next = if self.pace == Pace::Together && task.persistence.1 == 1 {
-                self.walk(task, ring, columns, row)
-            } else {
-                Some(row)
-            };
-            let next = match next {
-                Some(next) if next < columns.rows => self.careful(task, ring, columns, next),
-                next => next,
-            };
-            match next {
-                Some(next) => row = next,
-                None => return false,
+        while row < tile.rows {
+            if self.pace == Pace::Together && task.persistence.1 == 1 {
+                match self.walk(task, tile, part, row) {
+                    Some(next) => row = next,
+                    None => return false,
+                }
+            }
+            if row < tile.rows {
+                match self.careful(task, tile, part, row) {
+                    Some(next) => row = next,
+                    None => return false,
+                }
             }
         }
         true
@@ -82,19 +75,19 @@ impl Block {
     fn walk<L: Lanes>(
         &mut self,
         task: &Task<L>,
-        ring: &mut Ring,
-        columns: &mut Columns,
+        tile: &mut Tile,
+        part: Part,
         from: usize,
     ) -> Option<usize> {
         let Task { lanes, weights, .. } = *task;
         let mut moments = Moments::load(lanes, &self.moments);
         let mut largest = lanes.splat(0.0);
-        let mut cell = ring.next(self.lag[0]);
+        let mut cell = tile.cell(part, from, self.lag[0]);
         let mut row = from;
-        while row < columns.rows {
-            columns.prefetch(row + columns.rows);
-            let value = lanes.load(columns.values(row));
-            let Some(place) = ring.cells.get_mut(cell) else {
+        while row < tile.rows {
+            tile.prefetch(part, row + tile.rows);
+            let value = lanes.load(tile.values(part, row));
+            let Some(place) = tile.windows.get_mut(cell) else {
                 break;
             };
             let moved = moments.moved(lanes, &weights, value, lanes.load(&place.0));
@@ -102,24 +95,68 @@ impl Block {
                 break;
             }
             let exceeds = moments.exceeded(lanes, &weights, value);
+            let mut alarms = 0;
             if lanes.any(exceeds) {
                 if task.frozen {
                     break;
                 }
-                columns.alarm(row, lanes.bits(exceeds));
-            } else {
-                columns.alarm(row, 0);
+                alarms = lanes.bits(exceeds);
             }
             largest = lanes.max(largest, lanes.abs(value));
             lanes.store(value, &mut place.0);
+            tile.alarm(part, row, alarms);
             moments = moved;
-            cell += ring.stride;
+            cell += tile.blocks;
             row += 1;
         }
         moments.store(lanes, &mut self.moments);
-        ring.step(row - from);
         let within = lanes.at_most(largest, lanes.splat(LARGEST));
         lanes.all(within).then_some(row)
+    }
+
+    /// Sums full windows of lanes, given by their bits, from what they hold.
+    ///
+    /// The shift is the value nearest to the mean: values that are alike leave no rounding, and
+    /// M Q - S^2 is then at least half of M Q.
+    #[inline(never)]
+    pub fn sum_anew(&mut self, tile: &Tile, part: Part, bits: u64) {
+        let values = || tile.windows[part.block..].iter().step_by(tile.blocks);
+        let count = tile.places as f64;
+        let first = tile.windows[part.block].0;
+        let (mut mean, mut shift) = ([0.0; WIDTH], first);
+        let (mut sum, mut square) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for value in values() {
+            for lane in 0..WIDTH {
+                mean[lane] += value.0[lane] - first[lane];
+            }
+        }
+        for lane in 0..WIDTH {
+            mean[lane] = first[lane] + mean[lane] / count;
+        }
+        for value in values() {
+            for lane in 0..WIDTH {
+                let nearer = (value.0[lane] - mean[lane]).abs() < (shift[lane] - mean[lane]).abs();
+                shift[lane] = if nearer { value.0[lane] } else { shift[lane] };
+            }
+        }
+        for value in values() {
+            for lane in 0..WIDTH {
+                let gained = value.0[lane] - shift[lane];
+                sum[lane] += gained;
+                square[lane] += gained * gained;
+            }
+        }
+        let moments = &mut self.moments;
+        for lane in 0..WIDTH {
+            if bits >> lane & 1 == 1 && self.lacking[lane] == 0 {
+                moments.shift.0[lane] = shift[lane];
+                moments.sum.0[lane] = sum[lane];
+                moments.square.0[lane] = square[lane];
+                moments.peak.0[lane] = square[lane];
+                let spread = count * square[lane] - sum[lane] * sum[lane];
+                moments.spread.0[lane] = spread.max(0.0);
+            }
+        }
     }
 }
 

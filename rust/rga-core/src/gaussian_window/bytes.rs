@@ -2,7 +2,7 @@
 
 use super::block::{Block, Pace};
 use super::moments::Moments;
-use super::ring::{Eight, WIDTH};
+use super::tile::{Eight, WIDTH};
 use super::{GaussianWindow, Refusal, WindowRule};
 
 /// What the bytes are, and the version of their layout.
@@ -61,6 +61,7 @@ impl GaussianWindow {
         }
         let mut window = Self::new(rule)?;
         window.rows = rows;
+        window.slot = (rows % rule.earlier() as u64) as usize;
         let mut line = || -> Line { std::array::from_fn(|_| words.next().unwrap_or_default()) };
         for block in &mut window.blocks {
             *block = Block::from_lines(std::array::from_fn(|_| line()));

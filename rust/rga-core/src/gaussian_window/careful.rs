@@ -4,9 +4,8 @@ use pulp::NullaryFnOnce;
 
 use super::LARGEST;
 use super::block::{Block, Pace, Task};
-use super::columns::Columns;
 use super::moments::Moments;
-use super::ring::{Ring, WIDTH};
+use super::tile::{Part, Tile, WIDTH};
 use crate::lanes::Lanes;
 
 impl Block {
@@ -17,29 +16,29 @@ impl Block {
     pub fn careful<L: Lanes>(
         &mut self,
         task: &Task<L>,
-        ring: &mut Ring,
-        columns: &mut Columns,
+        tile: &mut Tile,
+        part: Part,
         row: usize,
     ) -> Option<usize> {
         task.lanes.vectorize(Careful {
             block: self,
             task,
-            ring,
-            columns,
+            tile,
+            part,
             row,
         })
     }
 }
 
-struct Careful<'a, 'b, 'c, L: Lanes> {
+struct Careful<'a, 'b, L: Lanes> {
     block: &'a mut Block,
     task: &'a Task<L>,
-    ring: &'a mut Ring<'b>,
-    columns: &'a mut Columns<'c>,
+    tile: &'a mut Tile<'b>,
+    part: Part,
     row: usize,
 }
 
-impl<L: Lanes> NullaryFnOnce for Careful<'_, '_, '_, L> {
+impl<L: Lanes> NullaryFnOnce for Careful<'_, '_, L> {
     type Output = Option<usize>;
 
     #[inline(always)]
@@ -56,7 +55,7 @@ impl<L: Lanes> NullaryFnOnce for Careful<'_, '_, '_, L> {
     }
 }
 
-impl<L: Lanes> Careful<'_, '_, '_, L> {
+impl<L: Lanes> Careful<'_, '_, L> {
     /// Takes rows while all their values are within reach and enter full windows, and leave enough
     /// digits.
     #[inline(always)]
@@ -64,24 +63,24 @@ impl<L: Lanes> Careful<'_, '_, '_, L> {
         let Self {
             block,
             task,
-            ring,
-            columns,
-            row: from,
+            tile,
+            part,
+            ..
         } = self;
+        let (part, from) = (*part, self.row);
         let Task { lanes, weights, .. } = **task;
         let mut moments = Moments::load(lanes, &block.moments);
-        let mut cells = [0; WIDTH];
-        for lane in 0..WIDTH {
-            cells[lane] = ring.next(block.lag[lane]);
-        }
         let largest = lanes.splat(LARGEST);
-        let mut row = *from;
-        while row < columns.rows {
-            columns.prefetch(row + columns.rows);
-            let value = lanes.load(columns.values(row));
-            let mut oldest = [0.0; WIDTH];
+        let mut row = from;
+        while row < tile.rows {
+            tile.prefetch(part, row + tile.rows);
+            let value = lanes.load(tile.values(part, row));
+            let (mut cells, mut oldest) = ([0; WIDTH], [0.0; WIDTH]);
             for lane in 0..WIDTH {
-                oldest[lane] = ring.cells[cells[lane]].0[lane];
+                cells[lane] = tile.cell(part, row, block.lag[lane]);
+            }
+            for lane in 0..WIDTH {
+                oldest[lane] = tile.windows[cells[lane]].0[lane];
             }
             let moved = moments.moved(lanes, &weights, value, lanes.load(&oldest));
             let within = lanes.at_most(lanes.abs(value), largest);
@@ -90,17 +89,17 @@ impl<L: Lanes> Careful<'_, '_, '_, L> {
             if !enter || task.frozen && exceeds != 0 {
                 break;
             }
+            let mut own = [0.0; WIDTH];
+            lanes.store(value, &mut own);
             for lane in 0..WIDTH {
-                ring.cells[cells[lane]].0[lane] = columns.values(row)[lane];
-                cells[lane] = ring.behind(cells[lane]);
+                tile.windows[cells[lane]].0[lane] = own[lane];
             }
             let alarms = block.persist(task.persistence, exceeds, u64::MAX);
-            columns.alarm(row, alarms);
+            tile.alarm(part, row, alarms);
             moments = moved;
             row += 1;
         }
         moments.store(lanes, &mut block.moments);
-        ring.step(row - *from);
         row
     }
 
@@ -110,13 +109,13 @@ impl<L: Lanes> Careful<'_, '_, '_, L> {
         let Self {
             block,
             task,
-            ring,
-            columns,
+            tile,
+            part,
             row,
         } = self;
         let Task { lanes, weights, .. } = *task;
         let mut values = [0.0; WIDTH];
-        values.copy_from_slice(columns.values(row));
+        values.copy_from_slice(tile.values(part, row));
         for value in values {
             if value.abs() > LARGEST {
                 return None;
@@ -136,7 +135,8 @@ impl<L: Lanes> Careful<'_, '_, '_, L> {
         let entered = lanes.bits(enters);
         let mut oldest = [0.0; WIDTH];
         for lane in 0..WIDTH {
-            let cell = &mut ring.cells[ring.next(block.lag[lane])].0[lane];
+            let cell = tile.cell(part, row, block.lag[lane]);
+            let cell = &mut tile.windows[cell].0[lane];
             oldest[lane] = *cell;
             if entered >> lane & 1 == 1 {
                 *cell = values[lane];
@@ -145,12 +145,13 @@ impl<L: Lanes> Careful<'_, '_, '_, L> {
         let moved = moments.moved(lanes, &weights, value, lanes.load(&oldest));
         let moved = moved.select(lanes, lanes.and(enters, full), &moments);
         moved.store(lanes, &mut block.moments);
-        let filled = block.count(ring.places as u64, entered);
-        let lost = !lanes.bits(moved.sound(lanes, &weights));
-        block.sum_anew(ring, filled | lost);
+        let filled = block.count(tile.places as u64, entered);
+        let lost = !lanes.bits(moved.sound(lanes, &weights)) & 0xff;
+        if filled | lost != 0 {
+            block.sum_anew(tile, part, filled | lost);
+        }
         let alarms = block.persist(task.persistence, lanes.bits(exceeds), tested);
-        columns.alarm(row, alarms);
-        ring.step(1);
+        tile.alarm(part, row, alarms);
         Some(row + 1)
     }
 }
@@ -187,35 +188,5 @@ impl Block {
             }
         }
         alarms
-    }
-
-    /// Sums full windows of lanes, given by their bits, from what they hold.
-    ///
-    /// The shift is the value nearest to the mean: values that are alike leave no rounding, and
-    /// M Q - S^2 is then at least half of M Q.
-    #[inline(never)]
-    pub fn sum_anew(&mut self, ring: &Ring, bits: u64) {
-        let count = ring.places as f64;
-        let full = |lane: &usize| bits >> lane & 1 == 1 && self.lacking[*lane] == 0;
-        for lane in (0..WIDTH).filter(full) {
-            let values = || ring.of(lane);
-            let first = ring.cells[0].0[lane];
-            let mean = first + values().map(|value| value - first).sum::<f64>() / count;
-            let shift = values().fold(first, |nearest, value| {
-                if (value - mean).abs() < (nearest - mean).abs() {
-                    value
-                } else {
-                    nearest
-                }
-            });
-            let sum = values().map(|value| value - shift).sum::<f64>();
-            let square = values().map(|value| (value - shift).powi(2)).sum::<f64>();
-            let moments = &mut self.moments;
-            moments.shift.0[lane] = shift;
-            moments.sum.0[lane] = sum;
-            moments.square.0[lane] = square;
-            moments.peak.0[lane] = square;
-            moments.spread.0[lane] = (count * square - sum * sum).max(0.0);
-        }
     }
 }

@@ -1,8 +1,8 @@
 //! Sums over a window, and what they tell of the next value.
 
-use super::ring::{Eight, WIDTH};
-use super::rule::WindowRule;
 use super::DIGITS_LEFT;
+use super::rule::WindowRule;
+use super::tile::{Eight, WIDTH};
 use crate::lanes::Lanes;
 
 /// Of each lane.
@@ -31,6 +31,7 @@ impl Moments<Eight> {
 
 /// A rule in numbers that stand in every lane.
 #[derive(Clone, Copy)]
+#[repr(align(64))]
 pub struct Weights<N> {
     count: N,
     /// Of r^2 and of M Q - S^2 in the comparison.

@@ -3,9 +3,8 @@
 use pulp::{Simd, WithSimd};
 
 use super::block::Task;
-use super::columns::Columns;
 use super::moments::Weights;
-use super::ring::{Ring, WIDTH};
+use super::tile::{Part, Tile, WIDTH};
 use super::{GaussianWindow, LAPS, LARGEST};
 use crate::lanes::{Lanes, Packs};
 
@@ -44,8 +43,9 @@ impl Pass<'_> {
         let GaussianWindow {
             rule,
             rows: seen,
+            slot: next,
             blocks,
-            ring,
+            ring: windows,
             ..
         } = self.window;
         let task = Task {
@@ -54,46 +54,83 @@ impl Pass<'_> {
             persistence: rule.persistence,
             frozen: rule.frozen,
         };
-        let (sensors, places, stride) = (rule.sensors(), rule.earlier(), blocks.len());
+        let (sensors, places, count) = (rule.sensors(), rule.earlier(), blocks.len());
+        let part = |block| Part {
+            block,
+            first: rule.first(block),
+        };
+        let mut broad = Broad::default();
         let (mut values, mut alarms) = (self.values, self.alarms);
         while !values.is_empty() {
-            let slot = (*seen % places as u64) as usize;
-            let rows = TILE.min(places - slot).min(values.len() / sensors);
-            let (tile, marks);
-            (tile, values) = values.split_at(rows * sensors);
+            let rows = TILE.min(places - *next).min(values.len() / sensors);
+            let (own, marks);
+            (own, values) = values.split_at(rows * sensors);
             (marks, alarms) = alarms.split_at_mut(rows * sensors);
+            let narrow = sensors < WIDTH;
+            if narrow {
+                broad.widen(own, sensors);
+            }
+            let mut tile = Tile {
+                values: if narrow {
+                    broad.values.as_flattened()
+                } else {
+                    own
+                },
+                alarms: if narrow {
+                    broad.alarms.as_flattened_mut()
+                } else {
+                    &mut *marks
+                },
+                rows,
+                sensors: sensors.max(WIDTH),
+                windows: &mut *windows,
+                places,
+                blocks: count,
+                slot: *next,
+            };
             for (at, block) in blocks.iter_mut().enumerate() {
-                let first = rule.first(at);
-                let mut ring = Ring {
-                    cells: &mut ring[at..],
-                    stride,
-                    places,
-                    slot,
-                };
-                let mut columns = Columns {
-                    values: &tile[first..],
-                    alarms: &mut marks[first..],
-                    stride: sensors,
-                    rows,
-                };
-                if !block.take(&task, &mut ring, &mut columns) {
+                if !block.take(&task, &mut tile, part(at)) {
                     return false;
                 }
             }
             *seen += rows as u64;
-            if seen.is_multiple_of(places as u64 * LAPS) {
-                for (at, block) in blocks.iter_mut().enumerate() {
-                    let ring = Ring {
-                        cells: &mut ring[at..],
-                        stride,
-                        places,
-                        slot: 0,
-                    };
-                    block.sum_anew(&ring, u64::MAX);
+            *next += rows;
+            if *next == places {
+                *next = 0;
+                if (*seen / places as u64).is_multiple_of(LAPS) {
+                    for (at, block) in blocks.iter_mut().enumerate() {
+                        block.sum_anew(&tile, part(at), u64::MAX);
+                    }
                 }
+            }
+            if narrow {
+                broad.narrow(marks, sensors);
             }
         }
         true
+    }
+}
+
+/// A tile of fewer sensors than a block has; the last one fills the lanes behind it.
+#[derive(Default)]
+struct Broad {
+    values: [[f64; WIDTH]; TILE],
+    alarms: [[bool; WIDTH]; TILE],
+}
+
+impl Broad {
+    fn widen(&mut self, values: &[f64], sensors: usize) {
+        for (row, own) in self.values.iter_mut().zip(values.chunks_exact(sensors)) {
+            for (lane, value) in row.iter_mut().enumerate() {
+                *value = own[lane.min(sensors - 1)];
+            }
+        }
+    }
+
+    fn narrow(&self, alarms: &mut [bool], sensors: usize) {
+        for (row, own) in self.alarms.iter().zip(alarms.chunks_exact_mut(sensors)) {
+            own.copy_from_slice(&row[..sensors]);
+        }
     }
 }
 

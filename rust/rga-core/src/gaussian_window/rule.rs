@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::LARGEST;
-use super::ring::WIDTH;
+use super::tile::WIDTH;
 
 /// Input that cannot be used: what is wrong, where, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Error)]
