@@ -110,6 +110,22 @@ def test_drift_is_unlike_any_ordinary_day() -> None:
         assert np.all(np.flatnonzero(during) / len(during) < 0.65)
 
 
+def test_a_slow_drift_grows_up_to_the_last_row() -> None:
+    slow, null = (
+        draw_stream(5, hidden=None, **what) for what in ({"slow": True}, {"drift": False})
+    )
+    drift, crowd = slow.truth["drift"], slow.truth["contexts"]["crowd"]
+    assert 0.35 * slow.time[-1] < drift["from"] < 0.45 * slow.time[-1]
+    assert drift["until"] == slow.time[-1]
+    assert crowd[-1] > 1.5 * drift["ordinary"]["crowd"][1]
+    beyond = np.array(crowd) - np.array(null.truth["contexts"]["crowd"])
+    thirds = [part.mean() for part in np.array_split(beyond[slow.time >= drift["from"]], 3)]
+    assert thirds == sorted(thirds)
+    early = slow.time < drift["from"]
+    for name, channel in slow.channels.items():
+        assert np.array_equal(channel[early], null.channels[name][early], equal_nan=True)
+
+
 def test_null_twin_has_neither_and_shares_the_rest() -> None:
     stream = draw_stream(5)
     null = draw_stream(5, hidden=None, drift=False)

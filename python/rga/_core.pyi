@@ -1,11 +1,13 @@
 """Finite elements for truss and frame bridges."""
 
+from collections.abc import Sequence
 from typing import Any, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "ChangeStatistics",
     "Condensed",
     "GaussianWindow",
     "InvalidInput",
@@ -157,6 +159,43 @@ class Refactored:
         """Gradients [n, p + elements] of outputs times gradients [n, o]: the adjoint."""
 
 @final
+class ChangeStatistics:
+    """Statistics of change over a stream; `rga.detection.SyncMonitor` is made of them."""
+
+    def __new__(
+        cls,
+        reference: dict[str, NDArray[np.float64]],
+        largest: float,
+        thresholds: Sequence[float],
+        rows_kept: int,
+    ) -> Self: ...
+    def update_many(self, rows: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether an alarm stands after each of the rows float[n, sensors]: bool[n]."""
+
+    def take_peaks(self) -> NDArray[np.float32]:
+        """The largest value of each statistic since this was last asked."""
+
+    def recent(self) -> NDArray[np.float32]:
+        """Scores of the latest rows since the statistics began, float32[rows, sensors]."""
+
+    def begin_again(self) -> None:
+        """Forget the alarm and all evidence."""
+
+    @property
+    def rows(self) -> int:
+        """Rows seen."""
+
+    @property
+    def alarm(self) -> tuple[int, int] | None:
+        """Row of the stream that raised the alarm that stands, and number of the statistic."""
+
+    def to_bytes(self) -> bytes:
+        """The whole state: what `from_bytes` makes of it goes on with the same bits."""
+
+    @classmethod
+    def from_bytes(cls, state: bytes) -> Self:
+        """The statistics that `to_bytes` stored; InputError for other bytes."""
+
 class GaussianWindow:
     """A Gaussian bound for each sensor, on a stream; `help(GaussianWindow)` tells the rule."""
 

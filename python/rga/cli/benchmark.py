@@ -37,6 +37,8 @@ CaseName = Annotated[
 ]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
+Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
+Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 #: of a table, in a terminal that is narrower and in a file
 WIDTH = 140
@@ -143,6 +145,89 @@ def solver(
             plot(result, draft / "solver.png")
     if json is not None:
         write_json({"command": command, **asdict(result)}, json)
+    if json != "-":
+        console = Console()
+        console.width = max(console.width, WIDTH)
+        for line in table.about(result):
+            console.print(line, markup=False, highlight=False)
+        console.print(table.terminal(result))
+
+
+@benchmark.command()
+def policies(
+    quick: Few = False,
+    seed: Seed = 0,
+    workers: Workers = 2,
+    output: WrittenTo = None,
+    json: JsonTarget = None,
+) -> None:
+    """What each policy of synchronisation costs, and what gap it leaves."""
+    from contextlib import nullcontext
+    from dataclasses import asdict
+
+    from rich.console import Console
+
+    from rga.benchmark.policies import table
+    from rga.benchmark.policies.run import compare
+    from rga.benchmark.policies.setting import Setting, shorter
+    from rga.cli.output import whole_directory, write_json
+    from rga.cli.progress import shown_progress
+
+    setting = shorter(seed) if quick else Setting(seed=seed)
+    command = f"rga benchmark policies{' --quick' if quick else ''} --seed {seed}"
+    with nullcontext() if output is None else whole_directory(output) as draft:
+        with shown_progress() as progress:
+            played = compare(
+                setting, workers=workers, progress=lambda done: progress("policies", done)
+            )
+        if draft is not None:
+            from rga.benchmark.policies.plot import plot
+
+            (draft / "policies.md").write_text(table.markdown(played, command), encoding="utf-8")
+            plot(played, draft / "policies.png")
+    if json is not None:
+        write_json({"command": command, "played": [asdict(one) for one in played]}, json)
+    if json != "-":
+        console = Console()
+        console.width = max(console.width, WIDTH)
+        console.print(table.terminal(played))
+
+
+@benchmark.command()
+def detector(
+    quick: Fewer = False,
+    seed: Seed = 0,
+    workers: Workers = 2,
+    output: WrittenTo = None,
+    json: JsonTarget = None,
+) -> None:
+    """How soon a change is seen, at which rate of false alarms, beside the optimum."""
+    from contextlib import nullcontext
+    from dataclasses import asdict
+
+    from rich.console import Console
+
+    from rga.benchmark.detector import table
+    from rga.benchmark.detector.run import measure
+    from rga.benchmark.detector.setting import Setting, shorter
+    from rga.cli.output import whole_directory, write_json
+    from rga.cli.progress import shown_progress
+
+    setting = shorter(seed) if quick else Setting(seed=seed)
+    command = f"rga benchmark detector{' --quick' if quick else ''} --seed {seed}"
+    with nullcontext() if output is None else whole_directory(output) as draft:
+        with shown_progress() as progress:
+            result = measure(
+                setting, workers=workers, progress=lambda done: progress("detectors", done)
+            )
+        if draft is not None:
+            from rga.benchmark.detector.plot import plot
+
+            (draft / "detector.md").write_text(table.markdown(result, command), encoding="utf-8")
+            plot(result, draft)
+    if json is not None:
+        verdicts = [{**asdict(one), "verdict": one.verdict} for one in result.judged]
+        write_json({"command": command, **asdict(result), "judged": verdicts}, json)
     if json != "-":
         console = Console()
         console.width = max(console.width, WIDTH)

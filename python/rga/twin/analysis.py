@@ -19,12 +19,12 @@ from rga.twin.hardware import Station
 from rga.twin.history import Event, Kind
 from rga.twin.integration import novel, spacing
 from rga.twin.messages import Q1, R1
+from rga.twin.policy import Policy
 from rga.twin.settings import Pace, Settings
 from rga.twin.standing import Standing
 from rga.twin.synchrony import Synchrony
 
 Effects = dict[str, dict[str, Any]]
-SHOWN = 4
 #: a gap that rises by more than this factor speaks against a new version
 WORSE = 1.25
 
@@ -53,10 +53,11 @@ class RealityGapAnalysis:
         label: Callable[[int], str | float],
     ) -> None:
         self.standing = Standing()
-        self.synchrony = Synchrony(len(station.channels), settings)
+        self.synchrony = Synchrony(station.channels, settings)
         self._exchange, self._archive, self._station = exchange, archive, station
         self._calibration, self._settings = calibration, settings
         self._pace, self._label = pace, label
+        self._policy = Policy.of(settings, pace)
 
     def initialise(self) -> R1:
         """Q1: can the twin represent what a calibration needs? Then the design phase is filled."""
@@ -84,7 +85,8 @@ class RealityGapAnalysis:
         calibration.estimate_noise()
         calibration.learn([(0, standing.row)], afresh=True)
         calibration.follow(0, standing.row)
-        self.synchrony.begin_again(calibration.ledger.gaps)
+        self._begin_again()
+        standing.interval = self._policy.interval
         standing.share = calibration.scatter_share(0, standing.row)
         words = f"calibrated on {standing.row} rows, scatter of the model {standing.share:.1%}"
         self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
@@ -105,7 +107,7 @@ class RealityGapAnalysis:
                 self._detect(first, end)
             if settings.level == "C" and standing.alarm is None:
                 self._integrate(first, end)
-        if standing.alarm is not None and (last or end - standing.alarm >= self._pace.settle):
+        if self._policy.due(standing, last) is not None:
             standing.stage = "recalibrate"
         elif standing.doubted and self._may_ask():
             standing.stage = "diagnose"
@@ -119,27 +121,33 @@ class RealityGapAnalysis:
             last: no more rows will come.
         """
         standing, settings, calibration = self.standing, self._settings, self._calibration
-        assert standing.alarm is not None
-        recent = (max(0, standing.alarm - settings.persistence[1] + 1), standing.row)
-        before = calibration.gap(*recent)
+        first = self._policy.due(standing, last)
+        assert first is not None
+        recent = (first, standing.row)
+        open_alarm = self._policy.waits(standing, last)
+        before, expected = calibration.gap(*recent), calibration.gap(*recent, standing.share)
         if calibration.learned is not None:
             self._refine(recent)
-        after = calibration.gap(*recent)
-        recovered = calibration.gap(*recent, standing.share) <= settings.recovered
+        after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
+        recovered = left <= settings.recovered
         done = "recalibrated" if calibration.learned is not None else "all contexts are measured"
         ended = "the gap stays, the model is in doubt"
         if recovered:
             ended = "the gap is what noise and scatter let expect"
+        interval = self._policy.next_interval(standing.interval, expected - left)
+        if interval != standing.interval:
+            ended += f"; the interval is now {interval} rows"
+        standing.interval = interval
         words = f"{done}, rows {recent[0]} to {recent[1] - 1}: {ended}"
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
-        if settings.level == "C" and recovered:
+        if settings.level == "C" and recovered and not open_alarm:
             self._integrate(*recent)
         self._begin_again()
         standing.doubted = standing.doubted or not recovered
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
         else:
-            self._go_on(last)
+            self._go_on(last, open_alarm)
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
@@ -169,16 +177,11 @@ class RealityGapAnalysis:
             standing.stage = "report"
 
     def _detect(self, first: int, end: int) -> None:
-        exceeded = self.synchrony.exceeded(self._calibration.ledger.gaps[first:end])
-        rows = np.flatnonzero(exceeded.any(axis=1))
-        if not len(rows) or self.standing.alarm is not None:
+        alarm = self.synchrony.alarm(first, self._calibration.ledger.residuals[first:end])
+        if alarm is None or self.standing.alarm is not None:
             return
-        row = first + int(rows[0])
-        self.standing.alarm = row
-        sensors = tuple(np.array(self._station.channels)[exceeded[rows[0]]].tolist())
-        more = f" and {len(sensors) - SHOWN} more" if len(sensors) > SHOWN else ""
-        words = f"out of sync: the gap of {', '.join(sensors[:SHOWN])}{more} exceeds its bound"
-        self._event("alarm", row, words, sensors)
+        self.standing.alarm, self.standing.since = alarm.row, alarm.since
+        self._event("alarm", alarm.row, alarm.words, alarm.sensors)
 
     def _integrate(self, first: int, end: int) -> None:
         state, ledger = self._exchange.twin.state, self._calibration.ledger
@@ -268,11 +271,12 @@ class RealityGapAnalysis:
         return self._exchange.ask(Q1(row=row, channels=channels, measured=measured, **change))
 
     def _begin_again(self) -> None:
-        gaps = self._calibration.ledger.gaps
-        self.synchrony.begin_again(gaps[-2 * self._settings.window :])
+        self.synchrony.begin_again(self._calibration.ledger.residuals)
+        self.standing.synchronised = self.standing.row
 
-    def _go_on(self, last: bool) -> None:
-        self.standing.alarm = None
+    def _go_on(self, last: bool, open_alarm: bool = False) -> None:
+        if not open_alarm:
+            self.standing.alarm = self.standing.since = None
         self.standing.stage = "close" if last else "watch"
 
     def _may_ask(self) -> bool:

@@ -50,7 +50,22 @@ def against_expected(
     >>> against_expected(np.array([[4.0, np.nan], [1.0, 3.0]]), np.zeros((2, 2)), np.ones(2), 0.0)
     3.0
     """
-    with np.errstate(invalid="ignore"):
-        scaled = gaps / (noise**2 + (share * simulated) ** 2)
-    rows = scaled[np.isfinite(scaled).any(axis=1)]
-    return float(np.median(np.nanmean(rows, axis=1))) if len(rows) else float("nan")
+    by_row = rows_against_expected(gaps, simulated, noise, share)
+    known = np.isfinite(by_row)
+    return float(np.median(by_row[known])) if known.any() else float("nan")
+
+
+def rows_against_expected(
+    gaps: FloatArray, simulated: FloatArray, noise: FloatArray, share: float
+) -> FloatArray:
+    """The same of each row, float[rows]; NaN where nothing is known of one [-].
+
+    >>> rows_against_expected(np.array([[4.0, np.nan], [1.0, 3.0]]), np.zeros((2, 2)),
+    ...                       np.ones(2), 0.0)
+    array([4., 2.])
+    """
+    scaled = gaps / (noise**2 + (share * simulated) ** 2)
+    known = np.isfinite(scaled).any(axis=1)
+    by_row = np.full(len(scaled), np.nan)
+    by_row[known] = np.nanmean(scaled[known], axis=1)
+    return by_row

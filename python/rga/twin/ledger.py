@@ -52,9 +52,14 @@ class Ledger:
         return Ledger(*(getattr(self, field.name).copy() for field in fields(self)))
 
     @property
+    def residuals(self) -> FloatArray:
+        """Measured minus simulated, float[rows, channels]."""
+        return np.asarray(self.readings - self.simulated)
+
+    @property
     def gaps(self) -> FloatArray:
-        """Squared differences of measured and simulated, float[rows, channels]."""
-        return np.asarray((self.readings - self.simulated) ** 2)
+        """Squares of the residuals, float[rows, channels]."""
+        return np.asarray(self.residuals**2)
 
     def told(self, middle: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Measured contexts with the last known value where one is missing, and complete rows.

@@ -1,6 +1,7 @@
 """A run of the twin on a record: from where the repository says it stands, to the findings."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,20 +87,14 @@ def run(
     """
     check_length(record)
     directory = made(Path(directory))
-    settings = settings or Settings()
-    digest = model.sha256 or written(model)[1]
-    identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
     if repository is not None and "://" not in repository:
         raise InputError(
             f"{repository!r} is no URL of a database",
             "the repository",
             "write postgresql://user@host/database, or leave it out",
         )
-    with (
-        threadpool_limits(1),
-        Repository.open(repository or directory / FILE) as kept,
-    ):
-        running = Running(model, record, kept.run(identity), settings, seed, progress)
+    place = repository or directory / FILE
+    with taken_up(model, record, place, settings or Settings(), seed, progress) as running:
         if running.stage == "done" and running.is_written(directory):
             return Outcome(running.stored_findings(), running.history())
         while running.stage not in ("report", "done"):
@@ -110,6 +105,30 @@ def run(
         outcome.write(directory)
         running.end()
     return outcome
+
+
+@contextmanager
+def taken_up(
+    model: Model,
+    record: Record,
+    place: str | Path,
+    settings: Settings,
+    seed: int,
+    progress: Progress | None = None,
+) -> Iterator["Running"]:
+    """A run where its repository says that it stands, or a new one, to be played step by step.
+
+    Args:
+        model, record, settings, seed, progress: as of `run`.
+        place: of the repository: a file, a directory that holds `twin.sqlite`, or a URL.
+
+    Raises:
+        InputError: the repository cannot be used.
+    """
+    digest = model.sha256 or written(model)[1]
+    identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
+    with threadpool_limits(1), Repository.open(place) as kept:
+        yield Running(model, record, kept.run(identity), settings, seed, progress)
 
 
 def made(directory: Path) -> Path:
@@ -221,6 +240,12 @@ class Running:
                 self._checkpoint()
             self._progress("stream", self.row / self.rows)
 
+    def postpone(self, why: str) -> None:
+        """Go on without the diagnosis that is next; it is asked for again later."""
+        with self._archive.step():
+            self.analysis.postpone(why)
+            self._checkpoint()
+
     def findings(self) -> Findings:
         """Findings of the closing diagnosis, with their account."""
         if self._closing is None:
@@ -286,9 +311,7 @@ class Running:
         except InputError as error:
             if closing:
                 raise
-            with self._archive.step():
-                self.analysis.postpone(str(error))
-                self._checkpoint()
+            self.postpone(str(error))
             return
         if closing:
             self._closing = findings
@@ -312,7 +335,7 @@ class Running:
         standing, row = self.analysis.standing, max(0, self.row - 1)
         standing.draws = self.calibration.draws
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
-        self._archive.keep("window", self.analysis.synchrony.to_bytes(), row)
+        self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
         learned = self.calibration.learned
         if learned is not None and learned is not self._learned_kept:
             self._archive.keep("learned", learned.to_bytes(), row)
@@ -326,9 +349,9 @@ class Running:
         self.analysis.standing = standing_of(view)
         self.resumed_at = self.row
         self._twin.state = replay(view, station.channels)
-        window = view.kept("window")
-        assert window is not None  # every step keeps it
-        self.analysis.synchrony.restore(window)
+        synchrony = view.kept("synchrony")
+        assert synchrony is not None  # every step keeps it
+        self.analysis.synchrony.restore(synchrony)
         ledger = ledger_of(
             view, len(station.channels), len(station.measured), len(self._model.context)
         )

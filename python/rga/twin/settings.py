@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from rga.inference.settings import TrainingSettings
 
 Level = Literal["A", "B", "C"]
+PolicyName = Literal["event", "time", "hybrid", "adaptive"]
 Count = Annotated[int, Field(ge=1, strict=True)]
 
 
@@ -21,8 +22,13 @@ class Settings(BaseModel):
         packet: rows that arrive together; None: a 24th of the record.
         window, z, persistence: the Gaussian window of T1: rows, width of its bound in standard
             deviations, and how many of the last rows must exceed it.
-        settle: rows that are gathered after an alarm before a recalibration; None: a twelfth of
-            the record.
+        policy: when levels B and C recalibrate: on an alarm (`event`), after every `interval`
+            (`time`), on an alarm and after an interval without a recalibration (`hybrid`), or so
+            with an interval that follows what recalibrations were worth (`adaptive`).
+        interval: rows from one recalibration to the next, rounded up to whole packets; the first
+            of the adaptive ones; None: a sixth of the record. `event` has none.
+        settle: rows that are gathered after an alarm before a recalibration, and that one learns
+            from at the least; None: a twelfth of the record.
         recovered: a recalibration has brought the gap down when the gap is below this multiple of
             what noise and the model's scatter, as of the first calibration, let expect.
         growth: the diagnosis is asked again when the record has grown by this factor.
@@ -40,6 +46,8 @@ class Settings(BaseModel):
     window: Annotated[int, Field(ge=2)] = 100
     z: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 4.0
     persistence: tuple[Count, Count] = (4, 6)
+    policy: PolicyName = "event"
+    interval: Count | None = None
     settle: Count | None = None
     recovered: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.8
     growth: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 2.0
@@ -52,25 +60,35 @@ class Settings(BaseModel):
     def _some_of_more(self) -> "Settings":
         if self.persistence[0] > self.persistence[1]:
             raise ValueError(f"persistence {self.persistence}: more exceedances than rows")
+        if self.interval is not None and self.policy == "event":
+            raise ValueError("policy 'event' has no interval: choose time, hybrid or adaptive")
         return self
 
     def pace(self, rows: int) -> "Pace":
         """What depends on the length of a record, in rows.
 
         >>> Settings().pace(480)
-        Pace(calibration_rows=160, packet=20, settle=40)
+        Pace(calibration_rows=160, packet=20, settle=40, interval=80)
         """
         return Pace(
             min(self.calibration_rows or max(1, min(200, rows // 3)), rows),
             self.packet or max(1, rows // 24),
             self.settle or max(1, rows // 12),
+            self.interval or max(1, rows // 6),
         )
 
 
 @dataclass(frozen=True)
 class Pace:
-    """Rows of the first calibration, of a packet, and between an alarm and a recalibration."""
+    """Rows of the first calibration, of a packet, and before a recalibration.
+
+    Attributes:
+        calibration_rows, packet: as of the settings.
+        settle: between an alarm and a recalibration.
+        interval: between recalibrations by the clock.
+    """
 
     calibration_rows: int
     packet: int
     settle: int
+    interval: int

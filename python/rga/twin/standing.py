@@ -17,7 +17,10 @@ class Standing(BaseModel):
         stage: what is to be done next.
         row: the next row of the record.
         calibrated: rows of the first calibration.
-        alarm: row of an alarm that is being dealt with.
+        alarm: row of an alarm that has not been dealt with.
+        since: first row that the alarm is about.
+        synchronised: rows when the twin was last calibrated, recalibrated or given a version.
+        interval: rows from there to the next recalibration by the clock.
         draws: seeds drawn so far.
         share: by which the model was off on the rows of the first calibration [-].
         distinct: least distance of a novel context, in shares of the ranges.
@@ -31,6 +34,9 @@ class Standing(BaseModel):
     row: int = 0
     calibrated: int = 0
     alarm: int | None = None
+    since: int | None = None
+    synchronised: int = 0
+    interval: int = 0
     draws: int = 0
     share: float = 0.0
     distinct: float = 0.0

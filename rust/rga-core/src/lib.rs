@@ -25,11 +25,13 @@
 //! that are `deformed`: loads are combined (`combination`), and tangents go where they belong in
 //! the matrix (`scatter`).
 //!
-//! `gaussian_window` stands on its own: it watches what sensors send.
+//! Two watch what sensors send: `gaussian_window` is the paper's rule, `change_statistics` weighs
+//! every kind and scale of change.
 
 mod assembly;
 mod axes;
 mod bilinear;
+mod change_statistics;
 mod check;
 mod check_loads;
 mod check_structure;
@@ -69,6 +71,7 @@ mod system;
 mod turning;
 
 pub use assembly::LowerTriangle;
+pub use change_statistics::{Alarm, ChangeStatistics, Reference, ReferenceArrays, STATISTICS};
 pub use condensed::Condensed;
 pub use directions::Directions;
 pub use error::{Error, Result};

@@ -1,6 +1,7 @@
 //! Python binding of the finite-element core: converts and documents.
 
 mod arrays;
+mod change_statistics;
 mod condensed;
 mod exceptions;
 mod functions;
@@ -24,6 +25,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
         "UnstableSample",
         py.get_type::<exceptions::UnstableSample>(),
     )?;
+    module.add_class::<change_statistics::ChangeStatistics>()?;
     module.add_class::<condensed::Condensed>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
     module.add_class::<refactor::Refactored>()?;

@@ -33,15 +33,19 @@ def ordinary(rng: np.random.Generator, time: Array) -> Contexts:
     }
 
 
-def event(rng: np.random.Generator, contexts: Contexts) -> tuple[Contexts, Array]:
+def event(rng: np.random.Generator, contexts: Contexts, slow: bool) -> tuple[Contexts, Array]:
     """``contexts`` with an event in them, and how far it is on in every row, [n] in 0..1.
 
-    A crowd beyond its stated range stands near one end and on one side of the deck.
+    A crowd beyond its stated range stands near one end and on one side of the deck. It comes and
+    goes, or (``slow``) it gathers up to the last row.
     """
     rows = len(contexts["crowd"])
     first, last = (np.array(rng.uniform([0.38, 0.57], [0.42, 0.62])) * rows).astype(int)
     row = np.arange(rows)
-    weight = np.clip(np.minimum(row - first, last - row) / _RAMP, 0.0, 1.0)
+    if slow:
+        weight = np.clip((row - first) / (rows - 1 - first), 0.0, 1.0)
+    else:
+        weight = np.clip(np.minimum(row - first, last - row) / _RAMP, 0.0, 1.0)
     restless = np.tanh(autoregressive(rng, rows, np.ones(3), np.full(3, 0.9))).T
     end, side = rng.choice([-1.0, 1.0], 2)
     there = {

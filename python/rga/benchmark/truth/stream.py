@@ -46,14 +46,20 @@ class _Reality(NamedTuple):
 
 
 def draw_stream(
-    seed: int, *, hidden: str | None = "drawn", drift: bool = True, rows: int = 480
+    seed: int,
+    *,
+    hidden: str | None = "drawn",
+    drift: bool = True,
+    slow: bool = False,
+    rows: int = 480,
 ) -> Case:
     """A stream of ``rows`` records, ten minutes apart, of the bridge of the case study.
 
-    From about 40 % to 60 % of the rows an event is on that no ordinary day has (``drift``); from
-    about 70 % on, an effect of a kind in ``STREAM_KINDS`` is there to stay (``hidden``: the kind,
-    "drawn" by the seed, or None). Of the contexts only the temperature is measured. Streams of
-    one seed share their bridge, ordinary days and noise, whatever else is in them.
+    From about 40 % to 60 % of the rows an event is on that no ordinary day has (``drift``), or it
+    comes on from there to the last row (``slow``); from about 70 % on, an effect of a kind in
+    ``STREAM_KINDS`` is there to stay (``hidden``: the kind, "drawn" by the seed, or None). Of the
+    contexts only the temperature is measured. Streams of one seed share their bridge, ordinary
+    days and noise, whatever else is in them.
 
     ``truth`` has the keys of a case and two more. ``drift`` is None, or holds the times ``from``
     and ``until`` [s] of the event's first and last row, the ranges ``novel`` that the contexts had
@@ -75,7 +81,7 @@ def draw_stream(
         contexts = ordinary(stream(seed, "contexts"), time)
         on = None
         if drift:
-            contexts, on = event(stream(seed, "event"), contexts)
+            contexts, on = event(stream(seed, "event"), contexts, slow)
         world = built.world.copy()
         world.join(bridge.jointed, built.joint)
         clean = observe(world, contexts, time)

@@ -15,7 +15,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    pub(super) fn new(what: String, place: &str, remedy: &str) -> Self {
+    pub(crate) fn new(what: String, place: &str, remedy: &str) -> Self {
         Self {
             what,
             place: place.into(),

@@ -1,0 +1,247 @@
+"""The monitor: alarms about any change of a stream, as rare without one as its user tolerates."""
+
+import json
+from typing import Any, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rga import _core
+from rga.detection.alarm import Alarm, explain
+from rga.detection.calibration import Calibration, calibration, memory_of
+from rga.detection.reference import Reference, checked
+from rga.detection.statistic import STATISTICS
+from rga.errors import InputError
+from rga.model.parameter import FloatArray
+
+#: latest rows that an alarm is explained by
+ROWS_KEPT = 2048
+#: rows between false alarms, at least
+LEAST = 100.0
+#: a baseline that chance makes so changeable less often is doubted
+DOUBTED = 0.01
+CHANGEABLE = (
+    "the baseline changes by itself more than its memory explains: false alarms will come more "
+    "often; take a longer one, or one during which nothing changes"
+)
+#: lengths of a baseline grow by this factor from one calibration to the next
+LENGTHS = 1.25
+
+SECONDS = {"hour": 3600.0, "day": 86_400.0, "week": 604_800.0, "month": 2_629_800.0,
+           "year": 31_557_600.0}  # fmt: skip
+
+
+class SyncMonitor:
+    """Watches residuals, or readings, of several sensors for any change of what they are like.
+
+    Learned from a baseline during which nothing changed: level, memory (autoregression), the
+    distribution of each sensor's readings, heavy tails included, and what sensors have in common.
+    Statistics for steps in one, several or all sensors, for drifts and for changes of variance, on
+    scales from a quarter of a standard deviation up, are each held against a threshold. Thresholds
+    come from simulated streams, whose references are learned from baselines as long as the user's,
+    so that an alarm without a change comes once in `arl0` rows on average.
+
+    An alarm stands until `begin_again`. NaN is a missing reading.
+
+    Args:
+        baseline: float[rows, n_sensors], NaN where missing. The longer, the smaller the changes
+            that can be told from what the baseline leaves open.
+        arl0: rows between false alarms (average run length without a change), 100 at least;
+            `rows_between` counts them from alarms per month.
+        seed: of the simulation of thresholds.
+
+    Raises:
+        InputError: the baseline is no table of numbers, has fewer than 30 readings of a sensor or
+            readings all alike; an infinite number; `arl0` below 100.
+
+    Examples:
+        >>> import numpy as np
+        >>> generator = np.random.default_rng(0)
+        >>> monitor = SyncMonitor(generator.normal(size=(500, 3)), arl0=2000)
+        >>> stream = generator.normal(size=(400, 3))
+        >>> stream[300:, 1] += 2.0
+        >>> int(np.argmax(monitor.update_many(stream))), monitor.alarm.sensors, monitor.alarm.kind
+        (307, (1,), 'step')
+    """
+
+    def __init__(self, baseline: ArrayLike, *, arl0: float = 10_000.0, seed: int = 0) -> None:
+        rows = _table(baseline, "the baseline")
+        checked(rows)
+        reference = Reference.learn(rows)
+        weights, length = memory_of(reference.weights), _rounded(len(rows))
+        simulated = calibration(rows.shape[1], length, weights, _arl0(arl0), seed)
+        self._begin(reference, simulated, arl0, seed)
+        self._look_back(rows, simulated)
+
+    @classmethod
+    def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:
+        """A monitor of readings that are independent and standard normal without a change.
+
+        Args:
+            n_sensors: 1 or more.
+            arl0: rows between false alarms.
+            seed: of the simulation of thresholds.
+
+        Raises:
+            InputError: no sensor, or `arl0` below 100.
+        """
+        if n_sensors < 1:
+            raise InputError(f"{n_sensors} sensors", "n_sensors", "give 1 or more")
+        monitor = cls.__new__(cls)
+        simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), seed)
+        monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
+        return monitor
+
+    def update(self, row: ArrayLike) -> bool:
+        """Whether an alarm stands after a row, float[n_sensors].
+
+        Raises:
+            InputError: another shape, or an infinite number; the row has then not entered.
+        """
+        return bool(self._statistics.update_many(_row(row))[0])
+
+    def update_many(self, rows: ArrayLike) -> NDArray[np.bool_]:
+        """Whether an alarm stands after each of the rows float[n, n_sensors]: bool[n].
+
+        Raises:
+            InputError: another shape, or an infinite number; no row has then entered.
+        """
+        return self._statistics.update_many(_table(rows, "rows"))
+
+    @property
+    def alarm(self) -> Alarm | None:
+        """The alarm that stands, explained by the rows so far."""
+        raised = self._statistics.alarm
+        if raised is None:
+            return None
+        row, statistic = raised
+        scores = self._statistics.recent().astype(float)
+        first = self._statistics.rows - len(scores)
+        return explain(scores, first, row, str(STATISTICS[statistic]), self._sizes)
+
+    @property
+    def rows(self) -> int:
+        """Rows seen."""
+        return self._statistics.rows
+
+    @property
+    def arl0(self) -> float:
+        """Rows between false alarms."""
+        return self._arl0
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Reasons why false alarms may come more often than they should."""
+        return self._doubts
+
+    def begin_again(self) -> None:
+        """Forget the alarm and all evidence; what the baseline told stays."""
+        self._statistics.begin_again()
+
+    def to_bytes(self) -> bytes:
+        """The whole state: what `from_bytes` makes of it goes on with the same bits."""
+        head = {
+            "arl0": self._arl0,
+            "seed": self._seed,
+            "doubts": self._doubts,
+            "sizes": self._sizes.tolist(),
+        }
+        return json.dumps(head).encode() + b"\n" + self._statistics.to_bytes()
+
+    @classmethod
+    def from_bytes(cls, state: bytes) -> Self:
+        """The monitor that `to_bytes` stored.
+
+        Raises:
+            InputError: other bytes.
+        """
+        head, _, rest = state.partition(b"\n")
+        monitor = cls.__new__(cls)
+        monitor._statistics = _core.ChangeStatistics.from_bytes(rest)
+        try:
+            told = json.loads(head)
+            monitor._arl0, monitor._seed = float(told["arl0"]), int(told["seed"])
+            monitor._doubts = tuple(told["doubts"])
+            monitor._sizes = np.array(told["sizes"], dtype=float)
+        except (ValueError, KeyError, TypeError):
+            remedy = "give the bytes that to_bytes() returned"
+            raise InputError("the bytes are no such state", "from_bytes", remedy) from None
+        return monitor
+
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]:
+        return type(self).from_bytes, (self.to_bytes(),)
+
+    def _begin(self, reference: Reference, simulated: Calibration, arl0: float, seed: int) -> None:
+        self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
+        self._arl0, self._seed = float(arl0), seed
+        self._sizes = reference.sizes
+        self._doubts: tuple[str, ...] = ()
+
+    def _look_back(self, baseline: FloatArray, simulated: Calibration) -> None:
+        """Doubt a baseline that changed more than chance lets it."""
+        again = _core.ChangeStatistics.from_bytes(self._statistics.to_bytes())
+        again.update_many(baseline)
+        chance = simulated.chance(np.asarray(again.take_peaks(), dtype=float), len(baseline))
+        if chance < DOUBTED:
+            self._doubts = (CHANGEABLE,)
+
+
+def rows_between(
+    alarms: float, *, per: Literal["hour", "day", "week", "month", "year"], rate: float
+) -> float:
+    """Rows between false alarms, from how many are tolerated in a time.
+
+    Args:
+        alarms: in that time.
+        per: the time.
+        rate: rows per second [Hz].
+
+    Raises:
+        InputError: a number that is not above 0, or no such time.
+
+    Examples:
+        >>> rows_between(1, per="month", rate=1.0)
+        2629800.0
+    """
+    if per not in SECONDS:
+        raise InputError(f"there is no time {per!r}", "per", f"give one of {', '.join(SECONDS)}")
+    for name, value in (("alarms", alarms), ("rate", rate)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{name} is {value}", name, "give a number above 0")
+    return SECONDS[per] * rate / alarms
+
+
+def _arl0(value: float) -> float:
+    if not (np.isfinite(value) and value >= LEAST):
+        remedy = f"give {LEAST:g} rows or more between false alarms"
+        raise InputError(f"arl0 is {value}", "arl0", remedy)
+    return float(value)
+
+
+def _rounded(rows: int) -> int:
+    """Down to lengths that thresholds are simulated for: a shorter baseline says less."""
+    return int(np.ceil(LENGTHS ** np.floor(np.log(rows) / np.log(LENGTHS))))
+
+
+def _table(values: ArrayLike, name: str) -> FloatArray:
+    try:
+        table = np.ascontiguousarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        remedy = "give an array of numbers, with NaN for a missing reading"
+        raise InputError(str(error), name, remedy) from None
+    if table.ndim != 2 or table.shape[1] == 0:
+        raise InputError(
+            f"the array has shape {list(table.shape)}", name, "its shape must be [n, sensors]"
+        )
+    return table
+
+
+def _row(values: ArrayLike) -> FloatArray:
+    try:
+        row = np.ascontiguousarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        remedy = "give an array of numbers, with NaN for a missing reading"
+        raise InputError(str(error), "row", remedy) from None
+    if row.ndim != 1:
+        raise InputError(f"the array has shape {list(row.shape)}", "row", "give one row")
+    return row[None]

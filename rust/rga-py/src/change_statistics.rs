@@ -1,0 +1,104 @@
+//! The class `ChangeStatistics`.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+use rga_core::{Reference, ReferenceArrays, Refusal, STATISTICS};
+
+use crate::arrays::Held;
+
+pyo3::import_exception!(rga.errors, InputError);
+
+/// What `SyncMonitor` is made of.
+#[pyclass(module = "rga._core")]
+pub struct ChangeStatistics(rga_core::ChangeStatistics);
+
+#[pymethods]
+impl ChangeStatistics {
+    #[new]
+    fn new(
+        reference: &Bound<'_, PyDict>,
+        largest: f64,
+        thresholds: Vec<f32>,
+        rows_kept: usize,
+    ) -> PyResult<Self> {
+        let entry = |key| Held::<f64>::entry(reference, "reference", key);
+        let reference = Reference::new(ReferenceArrays {
+            level: entry("level")?.view(),
+            weights: entry("weights")?.view(),
+            units: entry("units")?.view(),
+            offset: entry("offset")?.view(),
+            slope: entry("slope")?.view(),
+            knots: entry("knots")?.view(),
+            bends: entry("bends")?.view(),
+            mixing: entry("mixing")?.view(),
+            signature: entry("signature")?.view(),
+            largest,
+        })
+        .map_err(refused)?;
+        let thresholds: [f32; STATISTICS] = thresholds.try_into().map_err(|_| {
+            InputError::new_err((
+                "a wrong number of thresholds",
+                "thresholds",
+                "one a statistic",
+            ))
+        })?;
+        Ok(Self(rga_core::ChangeStatistics::new(
+            reference, thresholds, rows_kept,
+        )))
+    }
+
+    fn update_many<'py>(
+        &mut self,
+        rows: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let py = rows.py();
+        let held = Held::new(rows, "rows")?;
+        let view = held.view();
+        let alarms = py.detach(|| self.0.update_many(view)).map_err(refused)?;
+        Ok(PyArray1::from_vec(py, alarms))
+    }
+
+    fn take_peaks<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.0.take_peaks())
+    }
+
+    fn recent<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let values = self.0.recent();
+        let rows = values.len() / self.0.sensors();
+        PyArray1::from_vec(py, values).reshape([rows, self.0.sensors()])
+    }
+
+    fn begin_again(&mut self) {
+        self.0.begin_again();
+    }
+
+    #[getter]
+    fn rows(&self) -> u64 {
+        self.0.rows()
+    }
+
+    /// Row of the stream, from 0 on, that raised the alarm that stands, and the number of the
+    /// statistic that did.
+    #[getter]
+    fn alarm(&self) -> Option<(u64, usize)> {
+        self.0.alarm().map(|alarm| (alarm.row, alarm.statistic))
+    }
+
+    /// The whole state: what `from_bytes` makes of it goes on with the same bits.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.to_bytes())
+    }
+
+    /// The statistics that `to_bytes` stored; InputError for other bytes.
+    #[classmethod]
+    fn from_bytes(_cls: &Bound<'_, PyType>, state: &[u8]) -> PyResult<Self> {
+        rga_core::ChangeStatistics::from_bytes(state)
+            .map(Self)
+            .map_err(refused)
+    }
+}
+
+fn refused(refusal: Refusal) -> PyErr {
+    InputError::new_err((refusal.what, refusal.place, refusal.remedy))
+}

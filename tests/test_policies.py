@@ -1,0 +1,251 @@
+"""The policies of synchronisation: when each recalibrates, after a kill too, and what it costs."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from rga.benchmark.policies import run, setting
+from rga.benchmark.policies.play import Played
+from rga.benchmark.policies.play import play as play_task
+from rga.benchmark.policies.setting import STREAMS, Setting
+from rga.inference import TrainingSettings
+from rga.model import load_model
+from rga.records import load_record
+from rga.twin import Settings
+from rga.twin.history import History
+from rga.twin.policy import Policy
+from rga.twin.running import taken_up
+from rga.twin.settings import Pace
+from rga.twin.standing import Standing
+
+Stream = Callable[..., Path]
+POLICIES = ("event", "time", "hybrid", "adaptive")
+
+
+def policy(name: str, **more: Any) -> Policy:
+    settings = Settings.model_validate({"policy": name} | more)
+    return Policy.of(settings, Pace(calibration_rows=40, packet=10, settle=12, interval=30))
+
+
+def after(rows: int, alarm: int | None = None, interval: int = 30) -> Standing:
+    """So many rows after a calibration on 100 rows."""
+    since = None if alarm is None else alarm - 3
+    return Standing(row=100 + rows, synchronised=100, interval=interval, alarm=alarm, since=since)
+
+
+@pytest.mark.parametrize(
+    ("name", "standing", "last", "expected"),
+    [
+        ("event", after(500), True, None),
+        ("event", after(31, alarm=120), False, None),
+        ("event", after(32, alarm=120), False, 117),
+        ("event", after(21, alarm=120), True, 117),
+        ("time", after(29), True, None),
+        ("time", after(30), False, 100),
+        ("time", after(29, alarm=101), True, None),
+        ("time", after(30, alarm=101), False, 100),
+        ("hybrid", after(29), False, None),
+        ("hybrid", after(30), False, 100),
+        ("hybrid", after(20, alarm=104), False, 101),
+        # The clock does not wait for the rows of an alarm, which waits for its own.
+        ("hybrid", after(29, alarm=120), False, None),
+        ("hybrid", after(31, alarm=120), False, 100),
+        ("hybrid", after(32, alarm=120), False, 117),
+        ("adaptive", after(30, interval=60), False, None),
+        ("adaptive", after(60, interval=60), False, 100),
+        ("adaptive", after(20, alarm=104, interval=60), False, 101),
+        # Never on fewer rows than a recalibration needs.
+        ("time", after(5, interval=5), False, 93),
+    ],
+)
+def test_when_a_recalibration_is_due(
+    name: str, standing: Standing, last: bool, expected: int | None
+) -> None:
+    assert policy(name).due(standing, last) == expected
+
+
+@pytest.mark.parametrize("name", POLICIES)
+def test_level_a_never_recalibrates(name: str) -> None:
+    assert policy(name, level="A").due(after(500, alarm=120), True) is None
+
+
+def test_an_interval_follows_what_recalibrations_were_worth() -> None:
+    adaptive = policy("adaptive", recovered=2.0)
+    assert adaptive.next_interval(30, 1.0) == 30
+    # A gap that grew to four times what is allowed has had twice the time.
+    assert adaptive.next_interval(30, 4.0) == 15
+    assert adaptive.next_interval(30, 100.0) == 15
+    for gain in (0.0, -1.0, float("nan")):
+        assert adaptive.next_interval(30, gain) == 60
+    assert adaptive.next_interval(120, 0.0) == 120
+    assert adaptive.next_interval(8, 100.0) == 8
+    assert policy("hybrid").next_interval(30, 100.0) == 30
+
+
+def test_an_interval_that_nothing_would_use_is_refused() -> None:
+    with pytest.raises(ValidationError, match="policy 'event' has no interval"):
+        Settings(interval=10)
+    with pytest.raises(ValidationError):
+        Settings(policy="time", interval=0)
+
+
+def play(folder: Path, place: Path, *, steps: int | None = None, **settings: Any) -> History:
+    """The stages of a run before its closing diagnosis, at most so many of them at a time."""
+    model = load_model(folder / "model.json")
+    record = load_record(folder / "record.csv", model)
+    wanted = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+    chosen = Settings.model_validate(wanted | settings)
+    place.mkdir(exist_ok=True)
+    while True:
+        with taken_up(model, record, place, chosen, 0) as running:
+            done = 0
+            while running.stage != "close" and (steps is None or done < steps):
+                running.step()
+                done += 1
+            if running.stage == "close":
+                return running.history()
+
+
+def rows(history: History, kind: str) -> list[int]:
+    return [event.row for event in history.events if event.kind == kind]
+
+
+@pytest.fixture(scope="module")
+def null(small_stream: Stream) -> Path:
+    """Nothing drifts, and nothing is hidden."""
+    return small_stream(drifts=False, sinks=False)
+
+
+@pytest.fixture(scope="module")
+def changed(small_stream: Stream) -> Path:
+    """A heavy load comes and goes in rows 60 to 89, and from row 105 on a bearing is lower."""
+    return small_stream()
+
+
+def test_the_clock_recalibrates_where_nothing_happens(null: Path, tmp_path: Path) -> None:
+    by_policy = {
+        name: play(null, tmp_path / name, policy=name, **more)
+        for name, more in {
+            "event": {},
+            "time": {"interval": 30},
+            "hybrid": {"interval": 30},
+            "adaptive": {"interval": 30},
+        }.items()
+    }
+    found = {name: rows(history, "recalibration") for name, history in by_policy.items()}
+    assert found["event"] == []
+    assert found["time"] == found["hybrid"] == [69, 99, 129]
+    # Nothing is gained, and the next one is later.
+    assert found["adaptive"] == [69, 129]
+    for history in by_policy.values():
+        assert not rows(history, "alarm")
+        assert len(history.versions) == 1
+
+
+@pytest.fixture(scope="module")
+def lived(changed: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, History]:
+    """What twins of each policy lived through where the structure changed."""
+    place = tmp_path_factory.mktemp("lived")
+    return {
+        name: play(changed, place / name, policy=name, interval=None if name == "event" else 30)
+        for name in POLICIES
+    }
+
+
+def test_an_alarm_recalibrates_where_it_is_listened_to(lived: dict[str, History]) -> None:
+    (alarm,) = rows(lived["event"], "alarm")
+    assert 105 <= alarm < 115
+    # The alarm comes in the packet up to row 109, and has 12 rows with the packet up to row 119.
+    assert rows(lived["event"], "recalibration") == [119]
+    # Here it is told, and the clock goes on as before.
+    assert rows(lived["time"], "alarm") == [alarm]
+    assert rows(lived["time"], "recalibration") == [69, 99, 129]
+    # Both: the clock begins anew with the recalibration of the alarm.
+    assert rows(lived["hybrid"], "alarm") == [alarm]
+    assert rows(lived["hybrid"], "recalibration") == [69, 99, 119, 149]
+    # Nothing was gained at row 69, and the clock would wait up to row 129.
+    assert rows(lived["adaptive"], "alarm") == [alarm]
+    assert rows(lived["adaptive"], "recalibration")[:2] == [69, 119]
+
+
+def test_every_policy_finds_that_the_model_is_wrong(lived: dict[str, History]) -> None:
+    for history in lived.values():
+        assert len(history.versions) == 2
+        assert "support settlement" in history.versions[1].causes[0]
+
+
+def test_interrupted_after_every_step_it_ends_the_same(
+    changed: Path, lived: dict[str, History], tmp_path: Path
+) -> None:
+    """An interval that adapts is all that any policy has to remember, and an alarm besides."""
+    again = play(changed, tmp_path, steps=1, policy="adaptive", interval=30)
+    assert again.events == lived["adaptive"].events
+    np.testing.assert_array_equal(again.gaps, lived["adaptive"].gaps)
+    np.testing.assert_array_equal(again.inferred, lived["adaptive"].inferred)
+
+
+#: as little as can be played
+TRAINING = TrainingSettings(
+    steps=40, fine_steps=10, reduced_steps=40, width=24, features=8, reduced_width=24
+)
+LITTLE = Setting(
+    streams=1,
+    rows=72,
+    clocks=(6,),
+    settings=Settings(packet=12, design_rows=128, training=TRAINING),
+)
+
+
+def test_the_comparison(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(setting, "shorter", lambda seed: replace(LITTLE, seed=seed))
+    folder, file = tmp_path / "out", tmp_path / "played.json"
+    given = ("--quick", "--seed", "3", "--workers", "1", "-o", folder, "--json", file)
+    ran = rga("benchmark", "policies", *given)
+    assert ran.code == 0, ran.err
+    assert "hybrid, 12 rows" in ran.out
+    assert {path.name for path in folder.iterdir()} == {"policies.md", "policies.png"}
+    page = (folder / "policies.md").read_text(encoding="utf-8")
+    content = json.loads(file.read_text(encoding="utf-8"))
+    assert content["command"] == "rga benchmark policies --quick --seed 3"
+    assert content["command"] in page
+    found = {(one["stream"], one["policy"]): one for one in content["played"]}
+    assert len(found) == len(content["played"]) == 3 * 4
+    for stream in STREAMS:
+        assert f"| **{stream}** |" in page
+        # Rows 24 to 71 are watched: the clock has room for four.
+        assert found[stream, "time, 12 rows"]["recalibrations"] == 4
+        assert found[stream, "time, 12 rows"]["steps"] == 4 * TRAINING.fine_steps
+    for one in found.values():
+        assert one["steps"] == one["recalibrations"] * TRAINING.fine_steps
+        assert one["gap"] > 0
+        assert 0 <= one["out_of_sync"] <= 1
+    # The same seed gives the same, whatever was played before.
+    for task in replace(LITTLE, seed=3).tasks()[-2:]:
+        assert play_task(task) == Played(**found[task.stream, task.policy])
+
+
+def test_a_comparison_that_cannot_be_written_is_not_begun(
+    rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "compare", None)
+    taken = tmp_path / "file"
+    taken.touch()
+    ran = rga("benchmark", "policies", "-o", taken)
+    assert ran.code == 2
+    assert "the output is a file" in ran.err
+
+
+def test_means_are_those_of_a_policy_on_a_sort_of_stream() -> None:
+    def played(stream: str, seed: int, gap: float) -> Played:
+        return Played(stream, seed, "event", 1, 0, 0, 120, 0, gap, 0.5, 0.1, 3.0)
+
+    found = run.means([played("a", 0, 1.0), played("b", 0, 9.0), played("a", 1, 2.0)])
+    assert list(found) == [("a", "event"), ("b", "event")]
+    assert found["a", "event"]["gap"] == 1.5
+    assert found["b", "event"]["gap"] == 9.0
