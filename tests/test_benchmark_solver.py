@@ -15,9 +15,9 @@ from rga import _core
 from rga.benchmark.box_bridge import box_bridge, samples
 from rga.benchmark.data_set import data_set_cost
 from rga.benchmark.double_layer_grid import double_layer_grid
+from rga.benchmark.figure import Figure
 from rga.benchmark.solver import cores, large, refactored, run, table
 from rga.benchmark.solver.anew import Anew
-from rga.benchmark.solver.figure import Figure
 from rga.benchmark.solver.peers.cholmod import Cholmod, least_operations
 from rga.benchmark.solver.peers.linear_system import LinearSystem
 from rga.benchmark.solver.peers.pynite import PyNite

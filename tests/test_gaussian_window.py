@@ -158,6 +158,19 @@ def test_a_missing_value_takes_no_place() -> None:
     assert window.rows == 6
 
 
+def test_a_confidence_is_a_quantile() -> None:
+    """Of the standard normal distribution, whose 0.975 quantile every table has."""
+    rows = np.random.default_rng(8).normal(size=(30, 2))
+    bounds = []
+    for given in ({"confidence": 0.975}, {"z": 1.959963984540054}, {"confidence": 0.5}, {"z": 0.0}):
+        window = GaussianWindow(2, 30, **given)
+        window.update_many(rows)
+        assert np.array_equal(pickle.loads(pickle.dumps(window)).bound, window.bound)
+        bounds.append(window.bound)
+    assert bounds[0] == pytest.approx(bounds[1], rel=1e-14)
+    assert np.array_equal(bounds[2], bounds[3])
+
+
 def test_alarms_persist() -> None:
     quiet = [[0.0], [1.0]] * 4
     stream = np.array([*quiet, [9.0], [0.5], [9.0], [MISSING], [9.0], [0.5], [0.5]])
@@ -223,6 +236,10 @@ def test_any_layout_is_read() -> None:
         ({"z": MISSING}, "z is NaN"),
         ({"z": -1.0}, "z is -1"),
         ({"z": math.inf}, "z is inf"),
+        ({"confidence": 0.4}, "confidence is 0.4"),
+        ({"confidence": 1.0}, "confidence is 1"),
+        ({"confidence": MISSING}, "confidence is NaN"),
+        ({"confidence": 0.9, "z": 3.0}, "z and a confidence are given"),
         ({"persistence": (2, 1)}, r"persistence is \(2, 1\)"),
         ({"persistence": (0, 1)}, r"persistence is \(0, 1\)"),
         ({"persistence": (1, 65)}, r"persistence is \(1, 65\)"),
@@ -246,6 +263,19 @@ def test_infinite_values_are_refused_and_leave_no_trace(value: float) -> None:
     with pytest.raises(InputError, match="row 2 of the stream, sensor 1"):
         window.update(rows[3])
     assert window.to_bytes() == before
+
+
+def test_a_long_call_that_is_refused_leaves_no_trace() -> None:
+    rows = np.random.default_rng(9).normal(size=(5000, 3))
+    window, other = GaussianWindow(3, 4), GaussianWindow(3, 4)
+    window.update_many(rows[:100])
+    other.update_many(rows[:100])
+    bad = rows.copy()
+    bad[4711, 2] = math.inf
+    with pytest.raises(InputError, match="row 4811 of the stream, sensor 2"):
+        window.update_many(bad)
+    assert window.to_bytes() == other.to_bytes()
+    assert np.array_equal(window.update_many(rows), other.update_many(rows))
 
 
 @pytest.mark.parametrize("rows", [1.0, [1.0, 2.0], [[1.0, 2.0, 3.0]], np.ones((1, 1, 2))])

@@ -13,11 +13,22 @@
 //! have shrunk (an outlier has left). S and Q are summed anew from the window
 //! before that can turn a decision, and every `LAPS` windows in any case.
 
+mod block;
 mod bytes;
+mod careful;
+mod moments;
+mod pass;
 mod rule;
+mod tile;
+
+use pulp::Arch;
 
 use crate::input::Array;
+use crate::instructions::instructions_named;
+use block::Block;
+use pass::Pass;
 pub use rule::{Refusal, WindowRule};
+use tile::{Eight, WIDTH};
 
 /// Part of the largest M Q below which M Q - S^2 has lost too many digits.
 const DIGITS_LEFT: f64 = 1e-6;
@@ -28,56 +39,48 @@ const LAPS: u64 = 64;
 /// Beyond this, squares of squares overflow.
 const LARGEST: f64 = 1e60;
 
-/// One column a sensor in every array.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct GaussianWindow {
     rule: WindowRule,
-    sensors: usize,
-    /// M
-    earlier: usize,
+    arch: Arch,
     rows: u64,
-    /// Where the next value goes, 0..M.
-    slot: Vec<u64>,
-    /// How often the window has been filled.
-    laps: Vec<u64>,
-    /// Bits of the last tested values, newest lowest: it exceeded.
-    recent: Vec<u64>,
-    shift: Vec<f64>,
-    /// S
-    sum: Vec<f64>,
-    /// Q
-    square: Vec<f64>,
-    /// Largest Q since S and Q were summed.
-    peak: Vec<f64>,
-    /// `[M, sensors]`
-    ring: Vec<f64>,
+    /// Where the next row goes, 0..M.
+    slot: usize,
+    /// Lanes behind the last sensor hold that sensor again.
+    blocks: Vec<Block>,
+    /// `[M, blocks]`
+    ring: Vec<Eight>,
 }
 
 impl GaussianWindow {
     pub fn new(rule: WindowRule) -> Result<Self, Refusal> {
         rule.check()?;
-        let (sensors, earlier) = (rule.sensors as usize, rule.earlier());
+        let blocks = rule.sensors().div_ceil(WIDTH);
         let mut ring = Vec::new();
-        let cells = sensors.saturating_mul(earlier);
+        let cells = blocks.saturating_mul(rule.earlier());
         ring.try_reserve_exact(cells).map_err(|_| {
-            let what = format!("{sensors} sensors times {earlier} values do not fit in memory");
+            let what = format!(
+                "{} sensors times {} values do not fit in memory",
+                rule.sensors,
+                rule.earlier()
+            );
             Refusal::new(what, "n_sensors and window", "make one of them smaller")
         })?;
-        ring.resize(cells, 0.0);
+        ring.resize(cells, Eight::ZERO);
         Ok(Self {
             rule,
-            sensors,
-            earlier,
+            arch: Arch::new(),
             rows: 0,
-            slot: vec![0; sensors],
-            laps: vec![0; sensors],
-            recent: vec![0; sensors],
-            shift: vec![0.0; sensors],
-            sum: vec![0.0; sensors],
-            square: vec![0.0; sensors],
-            peak: vec![0.0; sensors],
+            slot: 0,
+            blocks: vec![Block::new(rule.earlier()); blocks],
             ring,
         })
+    }
+
+    /// The same on one of `instructions()`; nothing names the best. Results do not depend on it.
+    pub fn with_instructions(self, name: Option<&str>) -> crate::Result<Self> {
+        let arch = instructions_named(name)?;
+        Ok(Self { arch, ..self })
     }
 
     /// Rows seen.
@@ -85,132 +88,82 @@ impl GaussianWindow {
         self.rows
     }
 
-    /// Alarms `[sensors]` of one row `[sensors]`; NaN is missing.
-    pub fn update(&mut self, row: Array<f64>) -> Result<Vec<bool>, Refusal> {
-        if row.shape != [self.sensors] {
-            return Err(self.misshapen("row", row.shape, format!("[{}]", self.sensors)));
+    /// Writes the alarms `[sensors]` of one row `[sensors]`; NaN is missing.
+    pub fn update(&mut self, row: Array<f64>, alarms: &mut [bool]) -> Result<(), Refusal> {
+        let sensors = self.rule.sensors();
+        if row.shape != [sensors] {
+            return Err(misshapen("row", row.shape, &format!("[{sensors}]")));
         }
-        self.advance(row.values)
+        self.advance(row.values, alarms)
     }
 
-    /// Alarms `[n, sensors]` of rows `[n, sensors]`; NaN is missing.
-    pub fn update_many(&mut self, rows: Array<f64>) -> Result<Vec<bool>, Refusal> {
-        if rows.shape != [rows.len(), self.sensors] {
-            return Err(self.misshapen("rows", rows.shape, format!("[n, {}]", self.sensors)));
+    /// Writes the alarms `[n, sensors]` of rows `[n, sensors]`; NaN is missing.
+    pub fn update_many(&mut self, rows: Array<f64>, alarms: &mut [bool]) -> Result<(), Refusal> {
+        let sensors = self.rule.sensors();
+        if rows.shape != [rows.len(), sensors] {
+            return Err(misshapen("rows", rows.shape, &format!("[n, {sensors}]")));
         }
-        self.advance(rows.values)
+        self.advance(rows.values, alarms)
     }
 
     /// `[sensors]` what the next value must exceed; NaN while the window fills.
     pub fn bound(&self) -> Vec<f64> {
         let (own, others) = self.rule.weights();
-        (0..self.sensors)
-            .map(|sensor| match self.laps[sensor] {
-                0 => f64::NAN,
-                _ if own <= 0.0 => f64::INFINITY,
-                _ => {
-                    let reach = (others / own * self.spread(sensor)).sqrt();
-                    self.shift[sensor] + (self.sum[sensor] + reach) / self.earlier as f64
+        (0..self.rule.sensors())
+            .map(|sensor| {
+                let at = sensor / WIDTH;
+                let (block, lane) = (&self.blocks[at], sensor - self.rule.first(at));
+                let moments = &block.moments;
+                if block.lacking[lane] > 0 {
+                    f64::NAN
+                } else if own <= 0.0 {
+                    f64::INFINITY
+                } else {
+                    let reach = (others / own * moments.spread.0[lane]).sqrt();
+                    let sum = moments.sum.0[lane] + reach;
+                    moments.shift.0[lane] + sum / self.rule.earlier() as f64
                 }
             })
             .collect()
     }
 
-    fn misshapen(&self, place: &str, shape: &[usize], right: String) -> Refusal {
-        let what = format!("the array has shape {shape:?}");
-        Refusal::new(what, place, &format!("its shape must be {right}"))
+    fn advance(&mut self, values: &[f64], alarms: &mut [bool]) -> Result<(), Refusal> {
+        if alarms.len() != values.len() {
+            let right = format!("[{}], as many as there are values", values.len());
+            return Err(misshapen("alarms", &[alarms.len()], &right));
+        }
+        // A call of more rows than a window has is read only once, beside a copy of the windows.
+        let kept = (values.len() > WIDTH * self.ring.len()).then(|| self.clone());
+        let pass = Pass {
+            checked: kept.is_none(),
+            values,
+            alarms,
+            window: self,
+        };
+        if pass.window.arch.dispatch(pass) {
+            return Ok(());
+        }
+        if let Some(kept) = kept {
+            *self = kept;
+        }
+        Err(self.infinite(values))
     }
 
-    fn advance(&mut self, values: &[f64]) -> Result<Vec<bool>, Refusal> {
-        // Before anything changes; NaN is not above.
-        if let Some(at) = values.iter().position(|value| value.abs() > LARGEST) {
-            let row = self.rows + (at / self.sensors) as u64;
-            return Err(Refusal::new(
-                format!("the value is {:?}", values[at]),
-                &format!("row {row} of the stream, sensor {}", at % self.sensors),
-                &format!("give numbers within {LARGEST:e} in size, and NaN for a missing value"),
-            ));
-        }
-        let mut alarms = vec![false; values.len()];
-        let rows = values.chunks_exact(self.sensors);
-        for (row, alarms) in rows.zip(alarms.chunks_exact_mut(self.sensors)) {
-            for (sensor, (&value, alarm)) in row.iter().zip(alarms).enumerate() {
-                *alarm = !value.is_nan() && self.take(sensor, value);
-            }
-            self.rows += 1;
-        }
-        Ok(alarms)
+    fn infinite(&self, values: &[f64]) -> Refusal {
+        let mut numbered = values.iter().enumerate();
+        let beyond = numbered.find(|(_, value)| value.abs() > LARGEST);
+        let (at, value) = beyond.unwrap_or((0, &f64::INFINITY));
+        let sensors = self.rule.sensors();
+        let row = self.rows + (at / sensors) as u64;
+        Refusal::new(
+            format!("the value is {value:?}"),
+            &format!("row {row} of the stream, sensor {}", at % sensors),
+            &format!("give numbers within {LARGEST:e} in size, and NaN for a missing value"),
+        )
     }
+}
 
-    /// Tests a value, lets it into the window, and tells whether the sensor alarms.
-    fn take(&mut self, sensor: usize, value: f64) -> bool {
-        if self.laps[sensor] == 0 {
-            self.enter(sensor, value);
-            return false;
-        }
-        let exceeds = self.exceeds(sensor, value);
-        if !(exceeds && self.rule.frozen) {
-            self.enter(sensor, value);
-        }
-        let (k, n) = self.rule.persistence;
-        let tested = (self.recent[sensor] << 1 | u64::from(exceeds)) & (u64::MAX >> (64 - n));
-        self.recent[sensor] = tested;
-        i64::from(tested.count_ones()) >= k
-    }
-
-    fn exceeds(&self, sensor: usize, value: f64) -> bool {
-        let (own, others) = self.rule.weights();
-        let reach = self.earlier as f64 * (value - self.shift[sensor]) - self.sum[sensor];
-        reach > 0.0 && own * (reach * reach) > others * self.spread(sensor)
-    }
-
-    /// M Q - S^2
-    fn spread(&self, sensor: usize) -> f64 {
-        let sum = self.sum[sensor];
-        (self.earlier as f64 * self.square[sensor] - sum * sum).max(0.0)
-    }
-
-    fn enter(&mut self, sensor: usize, value: f64) {
-        let cell = self.slot[sensor] as usize * self.sensors + sensor;
-        let oldest = std::mem::replace(&mut self.ring[cell], value);
-        self.slot[sensor] += 1;
-        let filled = self.slot[sensor] == self.earlier as u64;
-        if filled {
-            self.slot[sensor] = 0;
-            self.laps[sensor] += 1;
-        }
-        if self.laps[sensor] == 0 {
-            return;
-        }
-        let (gained, lost) = (value - self.shift[sensor], oldest - self.shift[sensor]);
-        self.sum[sensor] += gained - lost;
-        self.square[sensor] += gained * gained - lost * lost;
-        self.peak[sensor] = self.peak[sensor].max(self.square[sensor]);
-        let most = self.earlier as f64 * self.peak[sensor];
-        let due = filled && self.laps[sensor] % LAPS == 1;
-        if due || self.spread(sensor) < DIGITS_LEFT * most {
-            self.sum_anew(sensor);
-        }
-    }
-
-    /// The shift is the value nearest to the mean: values that are alike leave
-    /// no rounding, and M Q - S^2 is then at least half of M Q.
-    fn sum_anew(&mut self, sensor: usize) {
-        let values = || self.ring[sensor..].iter().step_by(self.sensors).copied();
-        let first = self.ring[sensor];
-        let mean = first + values().map(|value| value - first).sum::<f64>() / self.earlier as f64;
-        let shift = values().fold(first, |nearest, value| {
-            if (value - mean).abs() < (nearest - mean).abs() {
-                value
-            } else {
-                nearest
-            }
-        });
-        let sum = values().map(|value| value - shift).sum();
-        let square = values().map(|value| (value - shift).powi(2)).sum();
-        self.shift[sensor] = shift;
-        self.sum[sensor] = sum;
-        self.square[sensor] = square;
-        self.peak[sensor] = square;
-    }
+fn misshapen(place: &str, shape: &[usize], right: &str) -> Refusal {
+    let what = format!("the array has shape {shape:?}");
+    Refusal::new(what, place, &format!("its shape must be {right}"))
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use pulp::bytemuck::{cast_slice, cast_slice_mut};
+use pulp::bytemuck::{cast, cast_slice, cast_slice_mut};
 use pulp::{NullaryFnOnce, Scalar, Simd};
 
 /// What is done with a number of each sample. Products are added without rounding in between, on
@@ -38,7 +38,10 @@ pub trait Lanes: Copy + Send + Sync {
     fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn all(self, mask: Self::Mask) -> bool;
+    fn any(self, mask: Self::Mask) -> bool;
     fn select(self, mask: Self::Mask, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    /// Bits of the lanes that are marked, that of the first lowest.
+    fn bits(self, mask: Self::Mask) -> u64;
 
     /// The same, lane by lane.
     fn flat(numbers: &[Self::Numbers]) -> &[f64];
@@ -46,6 +49,19 @@ pub trait Lanes: Copy + Send + Sync {
 
     /// Runs a function compiled for the instructions of these lanes.
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output;
+
+    /// One number a lane.
+    #[inline(always)]
+    fn load(self, numbers: &[f64]) -> Self::Numbers {
+        let mut loaded = [self.splat(0.0)];
+        Self::flat_mut(&mut loaded).copy_from_slice(numbers);
+        loaded[0]
+    }
+
+    #[inline(always)]
+    fn store(self, numbers: Self::Numbers, places: &mut [f64]) {
+        places.copy_from_slice(Self::flat(&[numbers]));
+    }
 
     /// Columns of rows of numbers into lanes; lanes behind the last row hold the last row again.
     #[inline(always)]
@@ -303,12 +319,37 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
     }
 
     #[inline(always)]
+    fn any(self, mask: Self::Mask) -> bool {
+        let first = |mask| self.0.first_true_m64s(mask);
+        mask.into_iter().any(|mask| first(mask) < S::F64_LANES)
+    }
+
+    #[inline(always)]
     fn select(self, mask: Self::Mask, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         let mut found = a;
         for at in 0..P {
             found[at] = self.0.select_f64s(mask[at], a[at], b[at]);
         }
         found
+    }
+
+    #[inline(always)]
+    fn bits(self, mask: Self::Mask) -> u64 {
+        let mut bits = 0;
+        for (at, mask) in mask.into_iter().enumerate() {
+            bits |= if const { size_of::<S::m64s>() == 1 } {
+                u64::from(cast::<_, u8>(mask)) << (at * S::F64_LANES)
+            } else {
+                let lanes = [cast::<_, S::u64s>(mask)];
+                let lanes = cast_slice::<_, u64>(&lanes);
+                let mut own = 0;
+                for lane in 0..S::F64_LANES {
+                    own |= (lanes[lane] & 1) << (at * S::F64_LANES + lane);
+                }
+                own
+            };
+        }
+        bits
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! The class `GaussianWindow`.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyType};
 use rga_core::{Refusal, WindowRule};
@@ -25,7 +25,9 @@ pyo3::import_exception!(rga.errors, InputError);
 /// ----------
 /// n_sensors : sensors in a row, 1 or more
 /// window : values in the window, 2 or more
-/// z : bound in standard deviations, 0 or more
+/// z : bound in standard deviations, 0 or more; 3 if neither it nor the confidence is given
+/// confidence : in place of z, the share of a Gaussian's values that stay below the bound: 0.5 or
+///     more, below 1
 /// inclusive : the window holds the value under test and the window - 1 before it, and counts as
 ///     full with it. No value then lies more than sqrt(window - 1) standard deviations above the
 ///     mean, so that a z from there on never alarms.
@@ -56,15 +58,19 @@ impl GaussianWindow {
     #[new]
     #[pyo3(
         signature = (
-            n_sensors, window, z=3.0, *, inclusive=false, persistence=(1, 1), frozen=false
+            n_sensors, window, z=None, *, confidence=None, inclusive=false, persistence=(1, 1),
+            frozen=false
         ),
-        text_signature = "(n_sensors, window, z=3.0, *, inclusive=False, persistence=(1, 1), \
-                          frozen=False)"
+        text_signature = "(n_sensors, window, z=None, *, confidence=None, inclusive=False, \
+                          persistence=(1, 1), frozen=False)"
     )]
+    #[allow(clippy::too_many_arguments)]
     fn new(
+        py: Python<'_>,
         n_sensors: i64,
         window: i64,
-        z: f64,
+        z: Option<f64>,
+        confidence: Option<f64>,
         inclusive: bool,
         persistence: (i64, i64),
         frozen: bool,
@@ -72,7 +78,7 @@ impl GaussianWindow {
         let rule = WindowRule {
             sensors: n_sensors,
             window,
-            z,
+            z: bound(py, z, confidence)?,
             inclusive,
             persistence,
             frozen,
@@ -83,22 +89,31 @@ impl GaussianWindow {
     }
 
     /// Alarms bool[n_sensors] of one row float[n_sensors].
-    fn update<'py>(&mut self, row: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    fn update<'py>(&mut self, row: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let held = floats(row, "row")?;
-        let alarms = self.0.update(held.view()).map_err(refused)?;
-        Ok(PyArray1::from_vec(row.py(), alarms))
+        let view = held.view();
+        let alarms = PyArrayDyn::zeros(row.py(), view.shape, false);
+        self.0
+            .update(view, alarms.try_readwrite()?.as_slice_mut()?)
+            .map_err(refused)?;
+        Ok(alarms)
     }
 
     /// Alarms bool[n, n_sensors] of rows float[n, n_sensors], bit for bit those of `update`.
     fn update_many<'py>(
         &mut self,
         rows: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<bool>>> {
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let py = rows.py();
         let held = floats(rows, "rows")?;
         let view = held.view();
-        let alarms = py.detach(|| self.0.update_many(view)).map_err(refused)?;
-        PyArray1::from_vec(py, alarms).reshape([view.shape[0], view.shape[1]])
+        let alarms = PyArrayDyn::zeros(py, view.shape, false);
+        let mut written = alarms.try_readwrite()?;
+        let marks = written.as_slice_mut()?;
+        py.detach(|| self.0.update_many(view, marks))
+            .map_err(refused)?;
+        drop(written);
+        Ok(alarms)
     }
 
     /// What the next row must exceed, float[n_sensors] in the unit of the values: gamma, and with
@@ -136,8 +151,33 @@ impl GaussianWindow {
     }
 }
 
+/// z itself, or the quantile of the standard normal distribution.
+fn bound(py: Python<'_>, z: Option<f64>, confidence: Option<f64>) -> PyResult<f64> {
+    let Some(confidence) = confidence else {
+        return Ok(z.unwrap_or(3.0));
+    };
+    if z.is_some() {
+        let remedy = "give one of them";
+        return Err(InputError::new_err((
+            "z and a confidence are given",
+            "confidence",
+            remedy,
+        )));
+    }
+    if !(0.5..1.0).contains(&confidence) {
+        let remedy = "give a share from 0.5 on and below 1, such as 0.999";
+        let what = format!("the confidence is {confidence}");
+        return Err(InputError::new_err((what, "confidence", remedy)));
+    }
+    let normal = py.import("statistics")?.getattr("NormalDist")?.call0()?;
+    normal.call_method1("inv_cdf", (confidence,))?.extract()
+}
+
 /// Anything that NumPy makes an array of numbers of.
 fn floats<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Held<'py, f64>> {
+    if value.cast::<PyArrayDyn<f64>>().is_ok() {
+        return Held::new(value, name);
+    }
     let py = value.py();
     let array = py
         .import("numpy")?

@@ -18,7 +18,7 @@ from rga.benchmark.detector.setting import BASELINE, EXAMPLE, Setting
 from rga.benchmark.detector.targets import targets
 from rga.benchmark.detector.tasks import Job, Progress, courses_of
 from rga.benchmark.detector.watch import Course, World
-from rga.benchmark.solver.machine import machine, versions
+from rga.benchmark.machine import machine, versions
 
 #: shares of the time that limits and the optimum take, roughly
 LIMITS, OPTIMA = 0.1, 0.2

@@ -4,12 +4,12 @@ import numpy as np
 
 from rga import _core
 from rga.benchmark.box_bridge import box_bridge
+from rga.benchmark.figure import Figure
 from rga.benchmark.solver.agreement import agree
 from rga.benchmark.solver.anew import Anew, whole_factors
-from rga.benchmark.solver.figure import Figure
 from rga.benchmark.solver.roofs import Roofs
 from rga.benchmark.solver.setting import Setting
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 from rga.model.parameter import FloatArray
 from rga.simulation.condensation import Condensation
 

@@ -8,10 +8,10 @@ from threadpoolctl import threadpool_limits
 
 from rga import _core
 from rga.benchmark.box_bridge import box_bridge, samples
-from rga.benchmark.solver.figure import Figure
+from rga.benchmark.figure import Figure
 from rga.benchmark.solver.roofs import Roofs
 from rga.benchmark.solver.setting import Setting
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 
 #: of the product
 SIZE = 1536

@@ -8,15 +8,15 @@ import numpy as np
 
 from rga import _core
 from rga.benchmark.double_layer_grid import double_layer_grid
+from rga.benchmark.figure import Figure
+from rga.benchmark.installed import present
 from rga.benchmark.solver.agreement import agree
 from rga.benchmark.solver.anew import Anew
-from rga.benchmark.solver.figure import Figure
-from rga.benchmark.solver.peers import present
 from rga.benchmark.solver.peers.cholmod import Cholmod
 from rga.benchmark.solver.peers.linear_system import LinearSystem
 from rga.benchmark.solver.roofs import Roofs
 from rga.benchmark.solver.setting import Setting
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 from rga.model.parameter import FloatArray
 
 #: orderings of CHOLMOD that are tried; supernodal is its best mode by far

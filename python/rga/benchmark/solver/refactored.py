@@ -5,18 +5,19 @@ from functools import partial
 
 from rga import _core
 from rga.benchmark.box_bridge import Bridge, box_bridge, samples
+from rga.benchmark.figure import Figure
+from rga.benchmark.installed import present
 from rga.benchmark.solver.agreement import agree
 from rga.benchmark.solver.anew import Anew
-from rga.benchmark.solver.figure import Figure
 from rga.benchmark.solver.lanes import Lanes
-from rga.benchmark.solver.peers import Peer, present
+from rga.benchmark.solver.peers import Peer
 from rga.benchmark.solver.peers.cholmod import Cholmod, fastest_cholmod, least_operations
 from rga.benchmark.solver.peers.linear_system import LinearSystem
 from rga.benchmark.solver.peers.pynite import PyNite
 from rga.benchmark.solver.peers.superlu import SuperLU
 from rga.benchmark.solver.roofs import Roofs
 from rga.benchmark.solver.setting import Setting
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 
 #: samples that are compared before anything is timed
 COMPARED = 8

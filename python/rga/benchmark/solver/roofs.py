@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.benchmark.solver.setting import Setting
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 
 SIZES = (512, 768, 1024, 1536)
 #: of the arrays that bandwidth is measured with: beyond the caches

@@ -8,9 +8,9 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
+from rga.benchmark.figure import Figure
+from rga.benchmark.machine import machine, versions
 from rga.benchmark.solver import condensed, cores, derivatives, large, refactored, whole
-from rga.benchmark.solver.figure import Figure
-from rga.benchmark.solver.machine import machine, versions
 from rga.benchmark.solver.roofs import Roofs, measure_roofs
 from rga.benchmark.solver.setting import Setting
 

@@ -5,7 +5,7 @@ from itertools import groupby
 from rich.table import Table
 from rich.text import Text
 
-from rga.benchmark.solver.figure import Figure
+from rga.benchmark.figure import Figure
 from rga.benchmark.solver.run import Result
 
 HEADINGS = ("what", "measured", "beside", "there", "times as good", "at least")

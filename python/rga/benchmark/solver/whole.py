@@ -5,10 +5,10 @@ import numpy as np
 from rga import _core
 from rga.benchmark.box_bridge import box_bridge
 from rga.benchmark.data_set import data_set_cost
-from rga.benchmark.solver.figure import Figure
+from rga.benchmark.figure import Figure
 from rga.benchmark.solver.roofs import Roofs
 from rga.benchmark.solver.setting import Setting
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 from rga.benchmark.truth.case_study import case_study_bridge
 from rga.model import Model
 from rga.simulation import Simulator

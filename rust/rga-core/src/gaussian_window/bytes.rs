@@ -1,14 +1,20 @@
 //! The state of a window as bytes: words of eight, little-endian, all of it.
 
+use super::block::{Block, Pace};
+use super::moments::Moments;
+use super::tile::{Eight, WIDTH};
 use super::{GaussianWindow, Refusal, WindowRule};
 
 /// What the bytes are, and the version of their layout.
-const MARK: u64 = u64::from_le_bytes(*b"rgawin01");
+const MARK: u64 = u64::from_le_bytes(*b"rgawin02");
 
 const HEADER: usize = 9;
 
-/// Arrays with one word a sensor.
-const COLUMNS: usize = 7;
+/// One word a lane.
+type Line = [u64; WIDTH];
+
+/// Lines of a block beside its windows.
+const LINES: usize = 8;
 
 impl GaussianWindow {
     pub fn to_bytes(&self) -> Vec<u8> {
@@ -24,11 +30,9 @@ impl GaussianWindow {
             u64::from(rule.frozen),
             self.rows,
         ];
-        let counts = [&self.slot, &self.laps, &self.recent];
-        let sums = [&self.shift, &self.sum, &self.square, &self.peak, &self.ring];
-        let counts = counts.into_iter().flatten().copied();
-        let sums = sums.into_iter().flatten().map(|value| value.to_bits());
-        let words = header.into_iter().chain(counts).chain(sums);
+        let blocks = self.blocks.iter().flat_map(Block::lines);
+        let lines = blocks.chain(self.ring.iter().map(Eight::to_bits));
+        let words = header.into_iter().chain(lines.flatten());
         words.flat_map(u64::to_le_bytes).collect()
     }
 
@@ -50,33 +54,72 @@ impl GaussianWindow {
             frozen: frozen != 0,
         };
         rule.check()?;
-        let columns = (rule.earlier() as u128 + COLUMNS as u128) * u128::from(sensors);
-        if bytes.len() as u128 / 8 != HEADER as u128 + columns {
+        let blocks = rule.sensors().div_ceil(WIDTH) as u128;
+        let lines = (rule.earlier() + LINES) as u128 * blocks;
+        if bytes.len() as u128 / 8 != HEADER as u128 + lines * WIDTH as u128 {
             return Err(foreign("have another length than their header says"));
         }
         let mut window = Self::new(rule)?;
         window.rows = rows;
-        for counts in [&mut window.slot, &mut window.laps, &mut window.recent] {
-            for (count, word) in counts.iter_mut().zip(&mut words) {
-                *count = word;
-            }
+        window.slot = (rows % rule.earlier() as u64) as usize;
+        let mut line = || -> Line { std::array::from_fn(|_| words.next().unwrap_or_default()) };
+        for block in &mut window.blocks {
+            *block = Block::from_lines(std::array::from_fn(|_| line()));
         }
-        for sums in [
-            &mut window.shift,
-            &mut window.sum,
-            &mut window.square,
-            &mut window.peak,
-            &mut window.ring,
-        ] {
-            for (value, word) in sums.iter_mut().zip(&mut words) {
-                *value = f64::from_bits(word);
-            }
+        for cell in &mut window.ring {
+            *cell = Eight::from_bits(line());
         }
-        let end = window.earlier as u64;
-        if window.slot.iter().any(|&slot| slot >= end) {
+        let end = rule.earlier() as u64;
+        let mut lags = window.blocks.iter().flat_map(|block| block.lag);
+        if lags.any(|lag| lag >= end) {
             return Err(foreign("name a place outside the window"));
         }
         Ok(window)
+    }
+}
+
+impl Block {
+    fn lines(&self) -> [Line; LINES] {
+        let Moments {
+            shift,
+            sum,
+            square,
+            peak,
+            spread,
+        } = &self.moments;
+        let sums = [shift, sum, square, peak, spread];
+        let [shift, sum, square, peak, spread] = sums.map(Eight::to_bits);
+        let counts = [self.lag, self.lacking, self.recent];
+        let [lag, lacking, recent] = counts;
+        [lag, lacking, recent, shift, sum, square, peak, spread]
+    }
+
+    fn from_lines(lines: [Line; LINES]) -> Self {
+        let [lag, lacking, recent, sums @ ..] = lines;
+        let [shift, sum, square, peak, spread] = sums.map(Eight::from_bits);
+        Self {
+            lag,
+            lacking,
+            recent,
+            pace: Pace::of(&lag, &lacking),
+            moments: Moments {
+                shift,
+                sum,
+                square,
+                peak,
+                spread,
+            },
+        }
+    }
+}
+
+impl Eight {
+    fn to_bits(&self) -> Line {
+        self.0.map(f64::to_bits)
+    }
+
+    fn from_bits(line: Line) -> Self {
+        Self(line.map(f64::from_bits))
     }
 }
 

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::LARGEST;
+use super::tile::WIDTH;
 
 /// Input that cannot be used: what is wrong, where, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -60,6 +61,15 @@ impl WindowRule {
             return Err(Refusal::new(what, "persistence", remedy));
         }
         Ok(())
+    }
+
+    pub(super) fn sensors(&self) -> usize {
+        self.sensors as usize
+    }
+
+    /// The first sensor of a block: the last block overlaps another, so that its lanes are full.
+    pub(super) fn first(&self, block: usize) -> usize {
+        (block * WIDTH).min(self.sensors().saturating_sub(WIDTH))
     }
 
     /// M, the number of values before the one under test.

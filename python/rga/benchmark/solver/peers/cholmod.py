@@ -6,9 +6,9 @@ from itertools import product
 import numpy as np
 from scipy import sparse
 
-from rga.benchmark.solver.peers import NotInstalledError
+from rga.benchmark.installed import NotInstalledError
 from rga.benchmark.solver.peers.linear_system import BATCH, LinearSystem
-from rga.benchmark.solver.timing import shortest
+from rga.benchmark.timing import shortest
 from rga.model.parameter import FloatArray
 
 ORDERINGS = ("natural", "amd", "metis", "nesdis", "colamd", "default", "best")

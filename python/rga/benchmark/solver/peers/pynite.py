@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.benchmark.solver.peers import NotInstalledError
+from rga.benchmark.installed import NotInstalledError
 from rga.benchmark.solver.peers.linear_system import LinearSystem
 from rga.benchmark.space_truss import SpaceTruss
 from rga.model.parameter import FloatArray

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_info
 
 from rga import _core
 
-PACKAGES = ("rga", "numpy", "scipy", "scikit-sparse", "PyNiteFEA")
+PACKAGES = ("rga", "numpy", "scipy", "scikit-sparse", "PyNiteFEA", "river", "bottleneck")
 
 
 def machine() -> dict[str, Any]:

@@ -1,0 +1,60 @@
+//! The window detector: 84 sensors, a window of 200 values, one core.
+//!
+//! The roof is a sum over as many bytes as the rows of `update_many` have; shares of it are what
+//! its bytes per second divide.
+
+use std::hint::black_box;
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use rga_core::{Array, GaussianWindow, WindowRule};
+
+const SENSORS: usize = 84;
+const ROWS: usize = 200_000;
+
+const RULE: WindowRule = WindowRule {
+    sensors: SENSORS as i64,
+    window: 200,
+    z: 3.0,
+    inclusive: false,
+    persistence: (1, 1),
+    frozen: false,
+};
+
+/// Numbers that are spread evenly and repeat in every run.
+fn spread(count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|at| ((at as f64 + 1.0) * 0.754_877_666).fract() - 0.5)
+        .collect()
+}
+
+fn bench(criterion: &mut Criterion) {
+    let rows = spread(ROWS * SENSORS);
+    let mut alarms = vec![false; rows.len()];
+    let mut group = criterion.benchmark_group("gaussian window");
+    group.throughput(Throughput::Bytes(8 * rows.len() as u64));
+    group.bench_function("read", |bencher| {
+        bencher.iter(|| {
+            let (lanes, _) = black_box(rows.as_slice()).as_chunks::<64>();
+            lanes.iter().fold([0u64; 64], |sums, lane| {
+                std::array::from_fn(|at| sums[at] ^ lane[at].to_bits())
+            })
+        });
+    });
+    let mut window = GaussianWindow::new(RULE).expect("the rule is sound");
+    group.bench_function("update_many", |bencher| {
+        bencher.iter(|| window.update_many(Array::new(&rows, &[ROWS, SENSORS]), &mut alarms));
+    });
+    group.bench_function("update", |bencher| {
+        bencher.iter(|| {
+            for (row, alarms) in rows.chunks(SENSORS).zip(alarms.chunks_mut(SENSORS)) {
+                window
+                    .update(Array::new(row, &[SENSORS]), alarms)
+                    .expect("finite");
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, bench);
+criterion_main!(benches);
