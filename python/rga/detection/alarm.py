@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
+from scipy.special import expit, logsumexp, softmax
 
 from rga.model.parameter import FloatArray
 
@@ -13,10 +13,12 @@ Kind = Literal["step", "drift", "variance"]
 
 #: parts of the sensors that may have changed, equally likely
 PARTS = (0.02, 0.1, 0.5, 0.95)
-#: standard deviation of a step before it is known, in standard deviations of a score
+#: standard deviation of a step before it is known, in those of a score
 STEP = 1.0
-#: standard deviations of a drift over the rows since its onset, likewise
+#: the same of a drift by the last row
 DRIFT = 2.0
+#: rows that a drift takes to become so large, at least
+SLOW = 50.0
 #: factors on the standard deviation, equally likely
 SPREADS = (0.25, 0.5, 0.7, 1.4, 2.0, 4.0)
 #: named in a sentence
@@ -72,12 +74,20 @@ class Alarm:
         return f"{self.looks} in {where} since row {self.since} ({first} to {last}){alone}"
 
 
-def explain(scores: FloatArray, first: int, row: int, raised_by: str, sizes: FloatArray) -> Alarm:
+def explain(
+    scores: FloatArray,
+    first: int,
+    row: int,
+    raised_by: str,
+    sizes: FloatArray,
+    signature: FloatArray,
+) -> Alarm:
     """Explain an alarm.
 
     A change of each kind from each row on has a likelihood ratio for each sensor, averaged over
     sizes that are as likely as not; a mixture over which sensors have changed (Xie and Siegmund,
-    Annals of Statistics 41, 2013) puts them together. All kinds and onsets are equally likely.
+    Annals of Statistics 41, 2013) puts them together, or all have changed alike. All kinds and
+    onsets are equally likely, and the interval of the onset holds for all kinds together.
 
     Args:
         scores: of the latest rows, float[rows, sensors], NaN where missing.
@@ -85,24 +95,29 @@ def explain(scores: FloatArray, first: int, row: int, raised_by: str, sizes: Flo
         row: that raised the alarm.
         raised_by: statistic that did.
         sizes: readings per score, float[sensors].
+        signature: how scores change, with norm 1, when all readings rise alike, float[sensors].
     """
     missing = ~np.isfinite(scores)
     known = np.where(missing, 0.0, scores)
     there = (~missing).astype(float)
-    ratios: dict[Kind, FloatArray] = {
-        "step": step_ratio(known, there),
-        "drift": drift_ratio(known, there),
-        "variance": spread_ratio(known, there),
-    }
+    rising = known @ signature[:, None], there @ signature[:, None] ** 2
     onsets = min(len(scores), row - first + 1)
-    mixtures = {kind: mixture(ratio[:onsets]) for kind, ratio in ratios.items()}
-    weight = {kind: float(logsumexp(of_kind)) for kind, of_kind in mixtures.items()}
-    kind = max(weight, key=lambda one: weight[one])
-    by_onset = logsumexp(mixtures[kind], axis=0)
-    share = np.exp(by_onset - logsumexp(by_onset))
-    low, high = np.searchsorted(np.cumsum(share), (0.05, 0.95))
-    onset = int(np.argmax(share))
+    ratios: dict[Kind, FloatArray] = {
+        "step": step_ratio(known, there)[:onsets],
+        "drift": drift_ratio(known, there)[:onsets],
+        "variance": spread_ratio(known, there)[:onsets],
+    }
+    mixtures = {kind: mixture(ratio) for kind, ratio in ratios.items()}
+    alike: dict[Kind, FloatArray] = {"step": step_ratio(*rising), "drift": drift_ratio(*rising)}
+    for kind, ratio in alike.items():
+        mixtures[kind] = np.vstack([mixtures[kind], ratio[:onsets].T])
+    by_onset = {kind: logsumexp(of_kind, axis=0) for kind, of_kind in mixtures.items()}
+    kind = max(by_onset, key=lambda one: float(logsumexp(by_onset[one])))
+    onset = int(np.argmax(by_onset[kind]))
+    share = np.cumsum(softmax(logsumexp(list(by_onset.values()), axis=0)))
+    low, high = np.searchsorted(share, (0.05, 0.95))
     chance = probability(ratios[kind][onset], mixtures[kind][:, onset])
+    chance = chance * there[onset:].any(axis=0)
     found = np.flatnonzero(chance > 0.5)
     if not len(found):
         found = np.array([int(np.argmax(chance))])
@@ -118,7 +133,7 @@ def explain(scores: FloatArray, first: int, row: int, raised_by: str, sizes: Flo
         tuple(chance[found].tolist()),
         tuple(change.tolist()),
         first + onset,
-        (first + int(low), first + min(int(high), onsets - 1)),
+        (first + min(int(low), onset), first + min(max(int(high), onset), onsets - 1)),
     )
 
 
@@ -128,14 +143,13 @@ def since(values: FloatArray) -> FloatArray:
 
 
 def step_ratio(scores: FloatArray, there: FloatArray) -> FloatArray:
-    """Log-likelihood ratio of a normal step from each row on, float[rows, sensors]."""
+    """Log-likelihood ratio of a step from each row on, float[rows, sensors]."""
     count, total = since(there), since(scores)
-    gained = 1.0 + count * STEP**2
-    return np.asarray(total**2 * STEP**2 / (2.0 * gained) - np.log(gained) / 2.0)
+    return normal_ratio(total, count, STEP)
 
 
 def drift_ratio(scores: FloatArray, there: FloatArray) -> FloatArray:
-    """The same of a ramp from 0 at the onset; its rate is normal, about `DRIFT` over all rows."""
+    """The same of a ramp from 0 at the onset."""
     rows = len(scores)
     number = np.arange(1.0, rows + 1.0)[:, None]
     before = number - 1.0
@@ -144,9 +158,19 @@ def drift_ratio(scores: FloatArray, there: FloatArray) -> FloatArray:
     energy = (
         since(number**2 * there) - 2.0 * before * since(number * there) + before**2 * since(there)
     )
-    rate = DRIFT / (rows - before)
-    gained = 1.0 + energy * rate**2
-    return np.asarray(total**2 * rate**2 / (2.0 * gained) - np.log(gained) / 2.0)
+    return normal_ratio(total, energy, DRIFT / np.maximum(rows - before, SLOW))
+
+
+def normal_ratio(total: FloatArray, energy: FloatArray, size: FloatArray | float) -> FloatArray:
+    """Log-likelihood ratio of a shape whose factor is normal with mean 0.
+
+    Args:
+        total: sum of the products of shape and scores.
+        energy: sum of the squares of the shape.
+        size: standard deviation of the factor.
+    """
+    gained = 1.0 + energy * size**2
+    return np.asarray(total**2 * size**2 / (2.0 * gained) - np.log(gained) / 2.0)
 
 
 def spread_ratio(scores: FloatArray, there: FloatArray) -> FloatArray:
@@ -175,11 +199,11 @@ def probability(ratios: FloatArray, mixtures: FloatArray) -> FloatArray:
 
     Args:
         ratios: logs, float[sensors].
-        mixtures: of an onset, float[parts].
+        mixtures: of an onset, float[parts], and that of all alike if there is one.
     """
     weights = np.exp(mixtures - logsumexp(mixtures))
-    odds = np.array([np.log(part / (1.0 - part)) + ratios for part in PARTS])
-    return np.asarray(weights @ (1.0 / (1.0 + np.exp(-np.clip(odds, -700, 700)))))
+    chances = expit([np.log(part / (1.0 - part)) + ratios for part in PARTS])
+    return np.asarray(weights[: len(PARTS)] @ chances + weights[len(PARTS) :].sum())
 
 
 def changes(kind: Kind, scores: FloatArray, there: NDArray[np.float64]) -> FloatArray:

@@ -18,35 +18,40 @@ def independence(scores: FloatArray) -> FloatArray:
     Args:
         scores: float[rows, sensors], NaN where missing.
     """
-    whole = np.where(np.isfinite(scores), scores, 0.0)
-    chance, correlation = drawn_in(whole)
-    sensors = scores.shape[1]
+    correlation, chance = correlations(scores)
     if chance > CHANCE:
-        return np.eye(sensors)
+        return np.eye(len(correlation))
     # Half the rows tell by how much the other half's matrix leaves their variance too large;
     # from all rows the excess is half of that.
-    parts = whole[::2], whole[1::2]
-    others = [inverse_root(drawn_in(part)[1]) for part in parts]
+    parts = [correlations(scores[first::2]) for first in (0, 1)]
+    others = [inverse_root(drawn_in(*part)) for part in parts[::-1]]
     variance = np.mean(
-        [((part @ other) ** 2).mean() for part, other in zip(parts, others[::-1], strict=True)]
+        [np.diag(root @ part @ root) for root, (part, _) in zip(others, parts, strict=True)]
     )
-    return np.asarray(inverse_root(correlation) / np.sqrt((1.0 + variance) / 2.0))
+    return np.asarray(inverse_root(drawn_in(correlation, chance)) / np.sqrt((1.0 + variance) / 2.0))
 
 
-def drawn_in(scores: FloatArray) -> tuple[float, FloatArray]:
-    """The part of the scatter of a correlation that is due to chance, and what is left of it."""
-    rows, sensors = scores.shape
-    scale = np.sqrt(np.maximum((scores**2).mean(axis=0), 1e-12))
-    scaled = scores / scale
-    correlation = scaled.T @ scaled / rows
-    off = correlation - np.eye(sensors)
-    spread = float((off**2).sum())
-    # Variance of the products of the scores of two sensors, summed over pairs, over rows.
-    squares = scaled**2
-    noise = float((squares.T @ squares).sum() / rows - (correlation**2).sum())
-    diagonal = float(((squares**2).mean(axis=0) - 1.0).sum())
-    chance = min(1.0, (noise - diagonal) / rows / spread) if spread > 0 else 1.0
-    return chance, np.eye(sensors) + (1.0 - chance) * off
+def correlations(scores: FloatArray) -> tuple[FloatArray, float]:
+    """Of each two sensors over the rows that have both, and the part of their scatter by chance."""
+    there = np.isfinite(scores).astype(float)
+    whole = np.where(there > 0, scores, 0.0)
+    squares = whole**2
+    pairs = np.maximum(there.T @ there, 1.0)
+    sizes = np.maximum(squares.T @ there, 1e-12)
+    scale = np.sqrt(sizes * sizes.T) / pairs
+    found = whole.T @ whole / pairs / scale
+    others = ~np.eye(len(found), dtype=bool)
+    # Variance of the products of the scores of two sensors, over rows.
+    noise = (squares.T @ squares / pairs / scale**2 - found**2) / pairs
+    spread = float((found[others] ** 2).sum())
+    chance = min(1.0, float(noise[others].sum()) / spread) if spread > 0 else 1.0
+    return np.where(others, found, 1.0), chance
+
+
+def drawn_in(correlation: FloatArray, chance: float) -> FloatArray:
+    """A correlation without the part that is due to chance."""
+    identity = np.eye(len(correlation))
+    return np.asarray(identity + (1.0 - chance) * (correlation - identity))
 
 
 def inverse_root(correlation: FloatArray) -> FloatArray:

@@ -117,7 +117,8 @@ class SyncMonitor:
         row, statistic = raised
         scores = self._statistics.recent().astype(float)
         first = self._statistics.rows - len(scores)
-        return explain(scores, first, row, str(STATISTICS[statistic]), self._sizes)
+        raised_by = str(STATISTICS[statistic])
+        return explain(scores, first, row, raised_by, self._sizes, self._signature)
 
     @property
     def rows(self) -> int:
@@ -145,6 +146,7 @@ class SyncMonitor:
             "seed": self._seed,
             "doubts": self._doubts,
             "sizes": self._sizes.tolist(),
+            "signature": self._signature.tolist(),
         }
         return json.dumps(head).encode() + b"\n" + self._statistics.to_bytes()
 
@@ -163,7 +165,8 @@ class SyncMonitor:
             monitor._arl0, monitor._seed = float(told["arl0"]), int(told["seed"])
             monitor._doubts = tuple(told["doubts"])
             monitor._sizes = np.array(told["sizes"], dtype=float)
-        except (ValueError, KeyError, TypeError):
+            monitor._signature = np.array(told["signature"], dtype=float)
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             remedy = "give the bytes that to_bytes() returned"
             raise InputError("the bytes are no such state", "from_bytes", remedy) from None
         return monitor
@@ -174,7 +177,7 @@ class SyncMonitor:
     def _begin(self, reference: Reference, simulated: Calibration, arl0: float, seed: int) -> None:
         self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
         self._arl0, self._seed = float(arl0), seed
-        self._sizes = reference.sizes
+        self._sizes, self._signature = reference.sizes, reference.signature
         self._doubts: tuple[str, ...] = ()
 
     def _look_back(self, baseline: FloatArray, simulated: Calibration) -> None:
