@@ -10,7 +10,7 @@ from matplotlib.figure import Figure as Canvas
 from rga.benchmark.detector.detectors import WINDOW_RULE, Z
 from rga.benchmark.detector.optimum import OPTIMUM
 from rga.benchmark.detector.result import Result
-from rga.benchmark.solver.table import digits
+from rga.benchmark.figure import digits
 
 #: as published: samples from a change to the alarm
 PUBLISHED = (49.0, 70.0)

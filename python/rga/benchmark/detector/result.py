@@ -8,6 +8,7 @@ from rga.benchmark.detector.faults import Fault
 from rga.benchmark.detector.rates import Arl0, Delay, Share, arl0, delay, share
 from rga.benchmark.detector.setting import Setting
 from rga.benchmark.detector.watch import Course, World
+from rga.benchmark.figure import Figure
 
 #: None: none
 Bounds = tuple[float | None, float | None]
@@ -156,6 +157,7 @@ class Result:
         delays: of every change.
         points: a detector at other limits.
         judged: what is held against what is asked.
+        throughput: what detectors cost, on one core.
     """
 
     machine: dict[str, Any]
@@ -166,3 +168,4 @@ class Result:
     delays: list[Seen]
     points: list[Point]
     judged: list[Judged]
+    throughput: list[Figure]

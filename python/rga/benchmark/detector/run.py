@@ -17,6 +17,7 @@ from rga.benchmark.detector.result import Alarms, Result, Seen
 from rga.benchmark.detector.setting import BASELINE, EXAMPLE, Setting
 from rga.benchmark.detector.targets import targets
 from rga.benchmark.detector.tasks import Job, Progress, courses_of
+from rga.benchmark.detector.throughput import throughput
 from rga.benchmark.detector.watch import Course, World
 from rga.benchmark.machine import machine, versions
 
@@ -40,6 +41,7 @@ def measure(
         progress: told the share that is done.
     """
     with threadpool_limits(1):
+        costs = throughput(setting.seconds, setting.seed)
         limited, undisturbed = _limited(setting, workers, _part(progress, 0.0, LIMITS))
         delays, points = optima(setting, workers, _part(progress, LIMITS, LIMITS + OPTIMA))
         methods = [*limited, *ready(setting.sensors, setting.arl0), *others]
@@ -59,8 +61,10 @@ def measure(
             if case.fault == EXAMPLE and own is not None and not world.baseline:
                 points += curve(method.name, own, courses, setting.arl0)
     judged = targets(setting.arl0, alarms, delays) if setting.judged else []
+    if not setting.judged:
+        costs = [replace(one, least=None) for one in costs]
     day = date.today().isoformat()
-    return Result(machine(), versions(), day, setting, alarms, delays, points, judged)
+    return Result(machine(), versions(), day, setting, alarms, delays, points, judged, costs)
 
 
 def _limited(

@@ -29,6 +29,7 @@ class Setting:
         sensors: in a row.
         sizes: of steps [sd]; 1 is among them.
         counts: of sensors that change; 1 is among them.
+        seconds: that what a detector costs is measured for, a figure.
         judged: whether what is found is held against what is asked.
     """
 
@@ -42,6 +43,7 @@ class Setting:
     sensors: int = 84
     sizes: tuple[float, ...] = (0.25, 0.5, 1.0, 2.0)
     counts: tuple[int, ...] = (1, 5, 84)
+    seconds: float = 2.0
     judged: bool = True
 
     @property
@@ -87,5 +89,6 @@ def shorter(seed: int) -> Setting:
         each=2,
         onset=150,
         sizes=(1.0, 2.0),
+        seconds=0.2,
         judged=False,
     )

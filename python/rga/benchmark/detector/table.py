@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from rich.console import Group
 from rich.table import Table
@@ -11,7 +12,7 @@ from rga.benchmark.detector.optimum import OPTIMUM
 from rga.benchmark.detector.rates import Arl0, Delay, Share
 from rga.benchmark.detector.result import Bounds, Judged, Result, Seen
 from rga.benchmark.detector.setting import BASELINE
-from rga.benchmark.solver.table import digits
+from rga.benchmark.figure import HEADINGS, digits
 
 NOTES = """\
 Rows between alarms: watched rows over alarms, without a change. Quiet: share of streams without an
@@ -88,7 +89,11 @@ def sheets(result: Result) -> list[Sheet]:
             result, "Delay, baseline estimated", [one for one in result.delays if not one.known]
         ),
     ]
-    return [*found, _judged(result.judged)] if result.judged else found
+    if result.judged:
+        found.append(_judged(result.judged))
+    for case, figures in groupby(result.throughput, lambda one: one.case):
+        found.append(Sheet(case, list(HEADINGS), [one.cells() for one in figures]))
+    return found
 
 
 def _alarms(result: Result) -> Sheet:

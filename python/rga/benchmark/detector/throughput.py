@@ -1,4 +1,4 @@
-"""What the paper's rule costs: rows a second, beside memory and beside other packages.
+"""What the paper's rule and the monitor cost: rows a second, beside memory and other packages.
 
 What a row costs from Rust, `cargo bench -p rga-core --bench gaussian_window` tells: `update` beside
 `read`.
@@ -9,12 +9,16 @@ from functools import partial
 from itertools import cycle
 
 import numpy as np
+from scipy.signal import lfilter
 
 from rga.benchmark.detector.windows import Bottleneck, River
 from rga.benchmark.figure import Figure
 from rga.benchmark.installed import present
 from rga.benchmark.timing import shortest
 from rga.detection import GaussianWindow
+from rga.detection.monitor import ROWS_KEPT
+from rga.detection.reference import Reference
+from rga.detection.statistic import STATISTICS
 from rga.model.parameter import FloatArray
 
 SENSORS, WINDOW, Z = 84, 200, 3.0
@@ -26,6 +30,9 @@ CALL = 8192
 FEW = 50
 #: seconds that a row may take from Python, beside reading it
 MOST = 1e-6
+#: of a monitor
+BASELINE = 2000
+MONITOR = f"Monitor, {SENSORS} sensors"
 CASE = f"Gaussian window, {SENSORS} sensors, W = {WINDOW}"
 
 
@@ -60,12 +67,48 @@ def throughput(seconds: float, seed: int = 0, size: int = BYTES) -> list[Figure]
     beyond = one / CALL - 8 * SENSORS / bandwidth
     rate = Figure(CASE, "update_many", SENSORS * CALL / many, "/s")
     return [
+        *monitor(rows, bandwidth, seconds, draw),
         Figure(CASE, "update_many, rows read", taken / 1e9, "GB/s").beside(
             "NumPy, scalar product", bandwidth / 1e9, 0.4
         ),
         Figure(CASE, "update of a row, beyond reading it", beyond, "s").beside("most", MOST, 1.0),
         rate.beside("river GaussianScorer", river(rows[: WINDOW + FEW], seconds), 1000.0),
         rate.beside("bottleneck move_mean, move_std", bottleneck(rows, seconds), 8.0),
+    ]
+
+
+def monitor(
+    rows: FloatArray, bandwidth: float, seconds: float, draw: np.random.Generator
+) -> list[Figure]:
+    """Rows that the monitor reads in a second, beside memory [bytes/s].
+
+    Its reference is learned from white noise, and from noise that remembers and that sensors
+    share, which takes a product with a matrix for each row.
+
+    Args:
+        rows: float[n, SENSORS].
+        bandwidth: bytes read by a scalar product [1/s].
+        seconds: that a figure is measured for.
+        draw: of the baselines.
+    """
+    white = draw.standard_normal((BASELINE, SENSORS))
+    shared = lfilter([1.0], [1.0, -0.5], white + draw.standard_normal((BASELINE, 1)), axis=0)
+    never = np.full(len(STATISTICS), np.inf)
+    plain, mixing = (
+        Reference.learn(baseline).statistics(never, ROWS_KEPT) for baseline in (white, shared)
+    )
+    parts = cycle(np.split(rows, len(rows) // CALL))
+    taken = shortest(
+        [lambda: plain.update_many(next(parts)), lambda: mixing.update_many(next(parts))],
+        2.0 * seconds,
+    )
+    rates = [8 * SENSORS * CALL / one / 1e9 for one in taken]
+    peer = ("NumPy, scalar product", bandwidth / 1e9)
+    return [
+        Figure(MONITOR, "update_many, white noise", rates[0], "GB/s").beside(*peer, 0.1),
+        Figure(MONITOR, "update_many, noise with memory and in common", rates[1], "GB/s").beside(
+            *peer
+        ),
     ]
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure as Canvas
 
+from rga.benchmark.figure import digits
 from rga.benchmark.solver.run import Result
-from rga.benchmark.solver.table import digits
 
 
 def plot(result: Result, path: Path) -> None:
