@@ -14,8 +14,9 @@ from rga.twin.hardware import HardwareInterface, Station
 from rga.twin.integration import novel, spacing
 from rga.twin.ledger import Ledger
 from rga.twin.messages import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
+from rga.twin.noise import noise_of
 from rga.twin.settings import Settings
-from rga.twin.synchrony import Synchrony, noise_of
+from rga.twin.window_rule import WindowRule
 
 
 def record(model: dict[str, Any], rows: int = 5, **more: Any) -> Record:
@@ -223,15 +224,15 @@ def test_the_window_survives_a_restart() -> None:
     residuals = np.random.default_rng(2).random((300, 3))
     residuals[200:, 1] -= 6
     channels, settings = ("D1", "D2", "D3"), Settings(window=50)
-    whole = Synchrony(channels, settings)
-    whole.begin_again(residuals[:50])
-    split = Synchrony(channels, settings)
-    split.begin_again(residuals[:50])
-    assert split.alarm(50, residuals[50:202]) is None
-    resumed = Synchrony(channels, settings)
+    whole = WindowRule(channels, settings)
+    whole.begin_again(0, residuals[:50])
+    split = WindowRule(channels, settings)
+    split.begin_again(0, residuals[:50])
+    assert split.alarm(50, residuals[:202]) is None
+    resumed = WindowRule(channels, settings)
     resumed.restore(split.to_bytes())
-    found = resumed.alarm(202, residuals[202:])
+    found = resumed.alarm(202, residuals)
     assert found is not None
-    assert found == whole.alarm(50, residuals[50:])
+    assert found == whole.alarm(50, residuals)
     assert (found.row, found.since, found.sensors) == (204, 199, ("D2",))
     assert resumed.to_bytes() == whole.to_bytes()

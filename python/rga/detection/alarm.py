@@ -55,6 +55,11 @@ class Alarm:
         """Whether it looks like one bad sensor: no other has changed."""
         return len(self.sensors) == 1
 
+    @property
+    def looks(self) -> str:
+        """The kind in words."""
+        return "a change of variance" if self.kind == "variance" else f"a {self.kind}"
+
     def sentence(self, names: tuple[str, ...] | None = None) -> str:
         """The same in words.
 
@@ -66,8 +71,7 @@ class Alarm:
         first, last = self.since_ci90
         where = f"{', '.join(told[:SHOWN])}{more}"
         alone = "; one bad sensor would look like this" if self.single else ""
-        what = "a change of variance" if self.kind == "variance" else f"a {self.kind}"
-        return f"{what} in {where} since row {self.since} ({first} to {last}){alone}"
+        return f"{self.looks} in {where} since row {self.since} ({first} to {last}){alone}"
 
 
 def explain(

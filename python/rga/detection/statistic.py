@@ -35,8 +35,8 @@ _MEMORIES = [f"a change within the last {rows} rows" for rows in (2, 4, 8, 16, 3
 #: in the order of the core
 STATISTICS = (
     *_group("one sensor", 0.45, _STEPS),
-    *_group("all sensors alike", 0.12, _STEPS),
-    *_group("all sensors", 0.05, [f"{step} of the mean square" for step in _STEPS]),
     *_group("one sensor", 0.08, _SPREADS),
     *_group("several sensors", 0.30, _MEMORIES),
+    *_group("all sensors alike", 0.12, _STEPS),
+    *_group("all sensors", 0.05, [f"{step} of the mean square" for step in _STEPS]),
 )

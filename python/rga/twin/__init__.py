@@ -1,7 +1,7 @@
 """The twin that keeps itself true: architecture, queries and responses, and the loop."""
 
 from rga.twin.history import Event, History, Version
-from rga.twin.running import Outcome, run
+from rga.twin.outcome import Outcome, run
 from rga.twin.settings import Settings
 from rga.twin.twin import Twin, rollback
 

@@ -22,7 +22,7 @@ from rga.twin.messages import Q1, R1
 from rga.twin.policy import Policy
 from rga.twin.settings import Pace, Settings
 from rga.twin.standing import Standing
-from rga.twin.synchrony import Synchrony
+from rga.twin.synchrony import synchrony
 
 Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version
@@ -53,7 +53,7 @@ class RealityGapAnalysis:
         label: Callable[[int], str | float],
     ) -> None:
         self.standing = Standing()
-        self.synchrony = Synchrony(station.channels, settings)
+        self.synchrony = synchrony(station.channels, settings)
         self._exchange, self._archive, self._station = exchange, archive, station
         self._calibration, self._settings = calibration, settings
         self._pace, self._label = pace, label
@@ -85,10 +85,11 @@ class RealityGapAnalysis:
         calibration.estimate_noise()
         calibration.learn([(0, standing.row)], afresh=True)
         calibration.follow(0, standing.row)
-        self._begin_again()
+        self._begin_again(0)
         standing.interval = self._policy.interval
         standing.share = calibration.scatter_share(0, standing.row)
         words = f"calibrated on {standing.row} rows, scatter of the model {standing.share:.1%}"
+        words = "; ".join([words, *self.synchrony.doubts])
         self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
         standing.stage = "watch"
 
@@ -142,7 +143,7 @@ class RealityGapAnalysis:
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
         if settings.level == "C" and recovered and not open_alarm:
             self._integrate(*recent)
-        self._begin_again()
+        self._begin_again(None)
         standing.doubted = standing.doubted or not recovered
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
@@ -177,7 +178,7 @@ class RealityGapAnalysis:
             standing.stage = "report"
 
     def _detect(self, first: int, end: int) -> None:
-        alarm = self.synchrony.alarm(first, self._calibration.ledger.residuals[first:end])
+        alarm = self.synchrony.alarm(first, self._calibration.ledger.residuals[:end])
         if alarm is None or self.standing.alarm is not None:
             return
         self.standing.alarm, self.standing.since = alarm.row, alarm.since
@@ -248,7 +249,7 @@ class RealityGapAnalysis:
             calibration.send(*recent)
             words = f"the gap rose: version {old} is in force again"
             self._event("rollback", standing.row - 1, words, before=after, after=before)
-        self._begin_again()
+        self._begin_again(recent[0])
 
     def _under_the_same(self, effects: Effects) -> int:
         """First of the latest rows that stand under the structure that is in force now."""
@@ -270,8 +271,9 @@ class RealityGapAnalysis:
         channels, measured = self._station.channels, self._station.measured
         return self._exchange.ask(Q1(row=row, channels=channels, measured=measured, **change))
 
-    def _begin_again(self) -> None:
-        self.synchrony.begin_again(self._calibration.ledger.residuals)
+    def _begin_again(self, first: int | None) -> None:
+        if self._settings.level != "A":
+            self.synchrony.begin_again(first, self._calibration.ledger.residuals)
         self.standing.synchronised = self.standing.row
 
     def _go_on(self, last: bool, open_alarm: bool = False) -> None:

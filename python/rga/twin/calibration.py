@@ -14,9 +14,9 @@ from rga.twin.expectation import against_expected, scatter_share
 from rga.twin.hardware import Packet, Station
 from rga.twin.ledger import Ledger
 from rga.twin.messages import Q2, Q3, Q4, Q5, Box, sha256
+from rga.twin.noise import noise_of
 from rga.twin.settings import Settings
 from rga.twin.standing import Standing
-from rga.twin.synchrony import noise_of
 
 Progress = Callable[[str, float], None]
 

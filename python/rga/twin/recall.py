@@ -14,10 +14,10 @@ from rga.twin.hardware import Station
 from rga.twin.history import Event, History, Version
 from rga.twin.ledger import Ledger
 from rga.twin.messages import R5, Query, Response, read_message, sha256
+from rga.twin.noise import noise_of
 from rga.twin.repository import View
 from rga.twin.settings import Settings
 from rga.twin.standing import Standing
-from rga.twin.synchrony import noise_of
 
 
 def replay(view: View, channels: tuple[str, ...]) -> State:

@@ -20,8 +20,11 @@ class Settings(BaseModel):
             stores novel contexts (T2).
         calibration_rows: rows of the first calibration; None: a third of the record, 200 at most.
         packet: rows that arrive together; None: a 24th of the record.
-        window, z, persistence: the Gaussian window of T1: rows, width of its bound in standard
-            deviations, and how many of the last rows must exceed it.
+        detector: of T1: `monitor`, whose false alarms come as rarely as `arl0` asks, or `window`,
+            the paper's rule.
+        arl0: rows between false alarms of the monitor, on average.
+        window, z, persistence: the Gaussian window of the paper's rule: rows, width of its bound in
+            standard deviations, and how many of the last rows must exceed it.
         policy: when levels B and C recalibrate: on an alarm (`event`), after every `interval`
             (`time`), on an alarm and after an interval without a recalibration (`hybrid`), or so
             with an interval that follows what recalibrations were worth (`adaptive`).
@@ -43,6 +46,8 @@ class Settings(BaseModel):
     level: Level = "C"
     calibration_rows: Count | None = None
     packet: Count | None = None
+    detector: Literal["monitor", "window"] = "monitor"
+    arl0: Annotated[float, Field(ge=100, allow_inf_nan=False)] = 10_000.0
     window: Annotated[int, Field(ge=2)] = 100
     z: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 4.0
     persistence: tuple[Count, Count] = (4, 6)

@@ -17,8 +17,8 @@ use pulp::Arch;
 
 use crate::gaussian_window::Refusal;
 use crate::input::Array;
-use banks::Banks;
 pub use banks::STATISTICS;
+use banks::{Banks, Found, places};
 use recent::Recent;
 use reference::Work;
 pub use reference::{Reference, ReferenceArrays};
@@ -39,26 +39,30 @@ pub struct Alarm {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChangeStatistics {
     reference: Reference,
-    /// One a statistic; infinite: it raises no alarm.
-    thresholds: [f32; STATISTICS],
+    /// Infinite: it raises no alarm.
+    thresholds: Found,
     banks: Banks,
     recent: Recent,
     rows: u64,
     alarm: Option<Alarm>,
     /// Largest values since they were last taken.
-    peaks: [f32; STATISTICS],
+    peaks: Found,
 }
 
 impl ChangeStatistics {
     pub fn new(reference: Reference, thresholds: [f32; STATISTICS], rows_kept: usize) -> Self {
+        let mut placed = [f32::INFINITY; _];
+        for (place, threshold) in places().zip(thresholds) {
+            placed[place] = threshold;
+        }
         Self {
             banks: Banks::new(reference.sensors()),
             recent: Recent::new(reference.sensors(), rows_kept),
             reference,
-            thresholds,
+            thresholds: placed,
             rows: 0,
             alarm: None,
-            peaks: [0.0; STATISTICS],
+            peaks: [0.0; _],
         }
     }
 
@@ -82,7 +86,12 @@ impl ChangeStatistics {
 
     /// Largest value of each statistic since this was last asked.
     pub fn take_peaks(&mut self) -> [f32; STATISTICS] {
-        std::mem::replace(&mut self.peaks, [0.0; STATISTICS])
+        let peaks = std::mem::replace(&mut self.peaks, [0.0; _]);
+        let mut found = [0.0; STATISTICS];
+        for (found, place) in found.iter_mut().zip(places()) {
+            *found = peaks[place];
+        }
+        found
     }
 
     /// Forgets the alarm and all evidence; what the next readings are expected to be stays.
@@ -90,7 +99,7 @@ impl ChangeStatistics {
         self.banks = Banks::new(self.reference.sensors());
         self.recent.clear();
         self.alarm = None;
-        self.peaks = [0.0; STATISTICS];
+        self.peaks = [0.0; _];
     }
 
     /// Whether an alarm stands after each of the rows `[n, sensors]`; NaN is missing.
@@ -109,7 +118,13 @@ impl ChangeStatistics {
             ));
         }
         // Before anything changes; NaN is not above.
-        if let Some(at) = rows.values.iter().position(|value| value.abs() > LARGEST) {
+        let beyond = |value: &f64| value.abs() > LARGEST;
+        if rows
+            .values
+            .iter()
+            .fold(false, |any, value| any | beyond(value))
+        {
+            let at = rows.values.iter().position(beyond).unwrap_or_default();
             let row = self.rows + (at / sensors) as u64;
             return Err(Refusal::new(
                 format!("the value is {:?}", rows.values[at]),
@@ -147,19 +162,28 @@ impl OnSixteen for Advance<'_> {
             own.recent.push(&work.scores[..sensors]);
             let signature = own.reference.signature();
             let found = own.banks.advance(lanes, &work.scores, signature, gaps);
-            let (mut highest, mut statistic) = (0.0, None);
-            let limits = own.peaks.iter_mut().zip(&own.thresholds);
-            for (number, (value, (peak, threshold))) in found.iter().zip(limits).enumerate() {
-                *peak = peak.max(*value);
-                if *value >= *threshold && *value / threshold > highest {
-                    (highest, statistic) = (*value / threshold, Some(number));
-                }
+            let peaks = L::vectors_mut(&mut own.peaks).iter_mut();
+            let limits = L::vectors(&own.thresholds);
+            let mut raised = false;
+            for ((peak, value), limit) in peaks.zip(L::vectors(&found)).zip(limits) {
+                *peak = lanes.max(*peak, *value);
+                raised |= lanes.any_reaches(*value, *limit);
             }
-            let row = own.rows;
-            let raised = statistic.map(|statistic| Alarm { row, statistic });
-            own.alarm = own.alarm.or(raised);
+            if raised && own.alarm.is_none() {
+                own.alarm = Some(Alarm {
+                    row: own.rows,
+                    statistic: farthest(&found, &own.thresholds),
+                });
+            }
             *alarm = own.alarm.is_some();
             own.rows += 1;
         }
     }
+}
+
+/// The statistic that is farthest above its threshold.
+fn farthest(found: &Found, thresholds: &Found) -> usize {
+    let heights = places().map(|place| found[place] / thresholds[place]);
+    let by_height = heights.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    by_height.map_or(0, |(statistic, _)| statistic)
 }

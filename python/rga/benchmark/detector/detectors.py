@@ -13,7 +13,7 @@ WINDOW_RULE, MEWMA, MONITOR = "window rule", "MEWMA", "monitor"
 #: rows of the window, and the bound of the paper [sd]
 WINDOW, Z = 100, 3.0
 #: of a row in the average of `Mewma`
-WEIGHT = 0.1
+WEIGHT = 0.05
 #: relative, of a standard deviation that comes from running sums
 ROUNDING = 1e-6
 

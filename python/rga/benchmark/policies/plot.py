@@ -17,19 +17,18 @@ def plot(played: Sequence[Played], path: Path) -> None:
     streams = list(dict.fromkeys(stream for stream, _ in known))
     policies = list(dict.fromkeys(policy for _, policy in known))
     canvas = Canvas(figsize=(4.2 * len(streams), 4.6), layout="constrained")
-    panels = canvas.subplots(1, len(streams), squeeze=False)[0]
+    panels = canvas.subplots(1, len(streams), sharex=True, squeeze=False)[0]
     for axes, stream in zip(panels, streams, strict=True):
         for number, policy in enumerate(policies):
-            mean = known[stream, policy]
-            look = {"marker": MARKS[policy.partition(",")[0]], "color": f"C{number}", "ls": ""}
-            single = [one for one in played if (one.stream, one.policy) == (stream, policy)]
-            if len(single) > 1:
-                cost, gap = [one.steps for one in single], [one.gap for one in single]
-                axes.plot(cost, gap, **look, ms=4, alpha=0.3)
-            axes.plot([mean["steps"]], [mean["gap"]], **look, ms=9, mec="black", label=policy)
+            mean, mark = known[stream, policy], MARKS[policy.partition(",")[0]]
+            axes.plot(
+                [mean["steps"]], [mean["gap"]], mark, color=f"C{number}", mec="0.2", ms=9,
+                alpha=0.8, label=policy, clip_on=False, zorder=3,
+            )  # fmt: skip
         axes.set(title=stream, xlabel="optimiser steps after the first calibration")
-        axes.set_yscale("log")
-        axes.grid(which="both", alpha=0.2)
+        axes.set_xlim(0.0, 1.05 * max(one["steps"] for one in known.values()) + 1.0)
+        axes.set_ylim(0.0, 1.1 * max(known[stream, policy]["gap"] for policy in policies))
+        axes.grid(alpha=0.2)
     panels[0].set_ylabel("mean squared gap over noise variance")
     handles, labels = panels[0].get_legend_handles_labels()
     canvas.legend(handles, labels, loc="outside lower center", ncols=3)

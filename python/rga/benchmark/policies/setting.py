@@ -9,7 +9,7 @@ from rga.twin.settings import Settings
 #: streams by their name, as `draw_stream` draws them: nothing but contexts ever changes
 STREAMS: dict[str, dict[str, Any]] = {
     "null twin": {"drift": False},
-    "event": {},
+    "sudden drift": {},
     "slow drift": {"slow": True},
 }
 

@@ -3,7 +3,7 @@
 use super::banks::Banks;
 use super::recent::Recent;
 use super::reference::{Reference, ReferenceArrays};
-use super::{Alarm, ChangeStatistics, STATISTICS};
+use super::{Alarm, ChangeStatistics};
 use crate::gaussian_window::Refusal;
 use crate::input::Array;
 
@@ -103,7 +103,7 @@ impl ChangeStatistics {
         banks.rows = beats;
         let mut recent = Recent::new(sensors, kept);
         (recent.next, recent.filled) = (next as usize, filled as usize);
-        let (mut thresholds, mut peaks) = ([0.0; STATISTICS], [0.0; STATISTICS]);
+        let (mut thresholds, mut peaks) = ([0.0; _], [0.0; _]);
         for singles in [
             &mut thresholds[..],
             &mut peaks,

@@ -209,10 +209,7 @@ impl Reference {
         for (score, (innovation, units)) in scores.iter_mut().zip(innovations) {
             *score = (innovation * units) as f32;
         }
-        let gaps = work
-            .innovations
-            .iter()
-            .any(|innovation| innovation.is_nan());
+        let gaps = any_missing(&work.innovations);
         self.bend(lanes, scores);
         if !self.derived.columns.is_empty() {
             if gaps {
@@ -237,9 +234,8 @@ impl Reference {
         if order == 0 {
             return;
         }
-        let missing = found.iter().any(|deviation| deviation.is_nan());
-        let settled = self.unsettled.iter().all(|rows| *rows == 0);
-        if missing || !settled {
+        let unsettled = self.unsettled.iter().fold(0, |any, rows| any | rows);
+        if unsettled > 0 || any_missing(found) {
             self.innovations_with_gaps(found);
             return;
         }
@@ -412,6 +408,19 @@ impl Work {
             mixed: vec![0.0; padded],
         }
     }
+}
+
+/// A number less itself is 0, and what is none stays none: eight sums of that, side by side.
+#[inline(always)]
+fn any_missing(values: &[f64]) -> bool {
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for eight in eights {
+        for (sum, value) in sums.iter_mut().zip(eight) {
+            *sum += value - value;
+        }
+    }
+    sums.iter().chain(rest).any(|value| value.is_nan())
 }
 
 /// Single precision, filled up to sixteen with zeros.

@@ -32,35 +32,13 @@ pub trait Lanes: Copy {
     fn flat(numbers: &Self::Numbers) -> &[f32];
 
     /// Halves are added until one number is left.
-    #[inline(always)]
-    fn sum(self, numbers: Self::Numbers) -> f32 {
-        fold(
-            Self::flat(&numbers),
-            #[inline(always)]
-            |a, b| a + b,
-        )
-    }
-
-    #[inline(always)]
-    fn product(self, numbers: Self::Numbers) -> f32 {
-        fold(
-            Self::flat(&numbers),
-            #[inline(always)]
-            |a, b| a * b,
-        )
-    }
-}
-
-#[inline(always)]
-fn fold(flat: &[f32], with: impl Fn(f32, f32) -> f32) -> f32 {
-    let mut numbers = [0.0; SIXTEEN];
-    numbers.copy_from_slice(flat);
-    for half in [8, 4, 2, 1] {
-        for at in 0..half {
-            numbers[at] = with(numbers[at], numbers[at + half]);
-        }
-    }
-    numbers[0]
+    fn sum(self, numbers: Self::Numbers) -> f32;
+    /// Halves are multiplied until one number is left.
+    fn product(self, numbers: Self::Numbers) -> f32;
+    /// Number n and number n + 8 added, for n below 8; the others mean nothing.
+    fn halves(self, numbers: Self::Numbers) -> Self::Numbers;
+    /// Whether some number of `a` is that of `b` or more.
+    fn any_reaches(self, a: Self::Numbers, b: Self::Numbers) -> bool;
 }
 
 /// Work that is done sixteen numbers at a time.
@@ -107,6 +85,25 @@ impl<S: Simd, const P: usize> Sixteen<S, P> {
         }
         found
     }
+
+    /// Joins halves until one number is left.
+    #[inline(always)]
+    fn fold(self, numbers: [S::f32s; P], with: impl Fn(S::f32s, S::f32s) -> S::f32s) -> f32 {
+        let mut rest = numbers;
+        let mut vectors = P;
+        while vectors > 1 {
+            vectors /= 2;
+            for at in 0..vectors {
+                rest[at] = with(rest[at], rest[at + vectors]);
+            }
+        }
+        let mut numbers = S::F32_LANES;
+        while numbers > 1 {
+            numbers /= 2;
+            rest[0] = with(rest[0], self.0.rotate_right_f32s(rest[0], numbers));
+        }
+        cast_slice(&rest[..1])[0]
+    }
 }
 
 macro_rules! each {
@@ -134,6 +131,49 @@ impl<S: Simd, const P: usize> Lanes for Sixteen<S, P> {
         min => min_f32s,
         max => max_f32s
     );
+
+    #[inline(always)]
+    fn sum(self, numbers: Self::Numbers) -> f32 {
+        self.fold(
+            numbers,
+            #[inline(always)]
+            |a, b| self.0.add_f32s(a, b),
+        )
+    }
+
+    #[inline(always)]
+    fn product(self, numbers: Self::Numbers) -> f32 {
+        self.fold(
+            numbers,
+            #[inline(always)]
+            |a, b| self.0.mul_f32s(a, b),
+        )
+    }
+
+    #[inline(always)]
+    fn halves(self, numbers: Self::Numbers) -> Self::Numbers {
+        let mut found = numbers;
+        for at in 0..P.div_ceil(2) {
+            let other = if P == 1 {
+                self.0.rotate_right_f32s(numbers[0], SIXTEEN / 2)
+            } else {
+                numbers[at + P / 2]
+            };
+            found[at] = self.0.add_f32s(numbers[at], other);
+        }
+        found
+    }
+
+    #[inline(always)]
+    fn any_reaches(self, a: Self::Numbers, b: Self::Numbers) -> bool {
+        (0..P).any(
+            #[inline(always)]
+            |at| {
+                let reaches = self.0.greater_than_or_equal_f32s(a[at], b[at]);
+                self.0.first_true_m32s(reaches) < S::F32_LANES
+            },
+        )
+    }
 
     #[inline(always)]
     fn splat(self, value: f32) -> Self::Numbers {
