@@ -24,6 +24,8 @@ ROWS = 10_000
 CHUNK = 2_000
 #: correlations with the row before for which streams are simulated
 MEMORIES = (0.0, 0.3, 0.6, 0.8, 0.9, 0.95)
+#: that stand for readings whose memory is larger by so much at most
+WITHIN = 0.05
 
 
 @dataclass(frozen=True)
@@ -138,10 +140,14 @@ class Noise:
 
 
 def memory_of(weights: FloatArray) -> float:
-    """The memory that streams are simulated with for readings of such memory.
+    """How much a reading goes with the ones before, in most sensors.
 
     Args:
         weights: that predict a reading from the ones before, float[order, sensors].
     """
-    most = float(np.quantile(weights.sum(axis=0), 0.9))
-    return next((memory for memory in MEMORIES if most <= memory + 0.05), MEMORIES[-1])
+    return float(np.quantile(weights.sum(axis=0), 0.9))
+
+
+def simulated_memory(memory: float) -> float:
+    """The memory that streams are simulated with for readings of such memory."""
+    return next((one for one in MEMORIES if memory <= one + WITHIN), MEMORIES[-1])

@@ -9,6 +9,8 @@ from rga.model.parameter import FloatArray
 ORDER = 4
 #: rows for each weight, at least
 ROWS = 20
+#: readings with all that predict them, at least
+PREDICTED = 30
 
 
 def predictors(deviations: FloatArray) -> FloatArray:
@@ -41,7 +43,10 @@ def predictors(deviations: FloatArray) -> FloatArray:
     error = covariance[0].copy()
     count = there.sum(axis=0)
     least = count * np.log(error)
+    predicted = there.copy()
     for order in range(1, most + 1):
+        predicted[:order] = 0.0
+        predicted[order:] *= there[:-order]
         left = covariance[order] - sum(
             (weights[lag] * covariance[order - 1 - lag] for lag in range(order - 1)),
             start=np.zeros(sensors),
@@ -51,7 +56,7 @@ def predictors(deviations: FloatArray) -> FloatArray:
         weights[order - 1] = reflection
         error = error * (1.0 - reflection**2)
         criterion = count * np.log(error) + order * np.log(count)
-        better = criterion < least
+        better = (criterion < least) & (predicted.sum(axis=0) >= PREDICTED)
         best[:, better] = weights[:, better]
         least = np.minimum(least, criterion)
     order = int((np.abs(best).sum(axis=1) > 0).nonzero()[0].max(initial=-1)) + 1

@@ -45,7 +45,11 @@ def correlations(scores: FloatArray) -> tuple[FloatArray, float]:
     noise = (squares.T @ squares / pairs / scale**2 - found**2) / pairs
     spread = float((found[others] ** 2).sum())
     chance = min(1.0, float(noise[others].sum()) / spread) if spread > 0 else 1.0
-    return np.where(others, found, 1.0), chance
+    # Pairs from different rows may contradict each other.
+    values, vectors = np.linalg.eigh(np.where(others, found, 1.0))
+    found = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    own = np.sqrt(np.diag(found))
+    return np.asarray(found / np.outer(own, own)), chance
 
 
 def drawn_in(correlation: FloatArray, chance: float) -> FloatArray:

@@ -8,7 +8,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from rga import _core
 from rga.detection.alarm import Alarm, explain
-from rga.detection.calibration import Calibration, calibration, memory_of
+from rga.detection.calibration import (
+    MEMORIES,
+    WITHIN,
+    Calibration,
+    calibration,
+    memory_of,
+    simulated_memory,
+)
+from rga.detection.lookback import changed
 from rga.detection.reference import Reference, checked
 from rga.detection.statistic import STATISTICS
 from rga.errors import InputError
@@ -16,13 +24,17 @@ from rga.model.parameter import FloatArray
 
 #: latest rows that an alarm is explained by
 ROWS_KEPT = 2048
-#: rows between false alarms, at least
-LEAST = 100.0
+#: rows between false alarms, at least and at most
+LEAST, MOST = 100.0, 1e12
 #: a baseline that chance makes so changeable less often is doubted
 DOUBTED = 0.01
 CHANGEABLE = (
     "the baseline changes by itself more than its memory explains: false alarms will come more "
     "often; take a longer one, or one during which nothing changes"
+)
+WANDERING = (
+    "the readings wander: they go with the ones before almost entirely, more than thresholds allow "
+    "for; watch what they differ by from one row to the next"
 )
 #: lengths of a baseline grow by this factor from one calibration to the next
 LENGTHS = 1.25
@@ -46,13 +58,14 @@ class SyncMonitor:
     Args:
         baseline: float[rows, n_sensors], NaN where missing. The longer, the smaller the changes
             that can be told from what the baseline leaves open.
-        arl0: rows between false alarms (average run length without a change), 100 at least;
+        arl0: rows between false alarms (average run length without a change), 100 to 1e12;
             `rows_between` counts them from alarms per month.
         seed: of the simulation of thresholds.
 
     Raises:
         InputError: the baseline is no table of numbers, has fewer than 30 readings of a sensor or
-            readings all alike; an infinite number; `arl0` below 100.
+            readings all alike; a number beyond 1e60 in size; `arl0` below 100 or above 1e12; a seed
+            below 0.
 
     Examples:
         >>> import numpy as np
@@ -68,10 +81,15 @@ class SyncMonitor:
         rows = _table(baseline, "the baseline")
         checked(rows)
         reference = Reference.learn(rows)
-        weights, length = memory_of(reference.weights), _rounded(len(rows))
-        simulated = calibration(rows.shape[1], length, weights, _arl0(arl0), seed)
+        memory, length = memory_of(reference.weights), _rounded(len(rows))
+        simulated = calibration(
+            rows.shape[1], length, simulated_memory(memory), _arl0(arl0), _seed(seed)
+        )
         self._begin(reference, simulated, arl0, seed)
-        self._look_back(rows, simulated)
+        if memory > MEMORIES[-1] + WITHIN:
+            self._doubts += (WANDERING,)
+        if changed(reference, rows, simulated) < DOUBTED:
+            self._doubts += (CHANGEABLE,)
 
     @classmethod
     def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:
@@ -83,12 +101,12 @@ class SyncMonitor:
             seed: of the simulation of thresholds.
 
         Raises:
-            InputError: no sensor, or `arl0` below 100.
+            InputError: no sensor; `arl0` below 100 or above 1e12; a seed below 0.
         """
         if n_sensors < 1:
             raise InputError(f"{n_sensors} sensors", "n_sensors", "give 1 or more")
         monitor = cls.__new__(cls)
-        simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), seed)
+        simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), _seed(seed))
         monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
         return monitor
 
@@ -166,6 +184,9 @@ class SyncMonitor:
             monitor._doubts = tuple(told["doubts"])
             monitor._sizes = np.array(told["sizes"], dtype=float)
             monitor._signature = np.array(told["signature"], dtype=float)
+            sensors = monitor._statistics.recent().shape[1:]
+            if not (monitor._sizes.shape == monitor._signature.shape == sensors):
+                raise ValueError
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             remedy = "give the bytes that to_bytes() returned"
             raise InputError("the bytes are no such state", "from_bytes", remedy) from None
@@ -179,14 +200,6 @@ class SyncMonitor:
         self._arl0, self._seed = float(arl0), seed
         self._sizes, self._signature = reference.sizes, reference.signature
         self._doubts: tuple[str, ...] = ()
-
-    def _look_back(self, baseline: FloatArray, simulated: Calibration) -> None:
-        """Doubt a baseline that changed more than chance lets it."""
-        again = _core.ChangeStatistics.from_bytes(self._statistics.to_bytes())
-        again.update_many(baseline)
-        chance = simulated.chance(np.asarray(again.take_peaks(), dtype=float), len(baseline))
-        if chance < DOUBTED:
-            self._doubts = (CHANGEABLE,)
 
 
 def rows_between(
@@ -215,10 +228,16 @@ def rows_between(
 
 
 def _arl0(value: float) -> float:
-    if not (np.isfinite(value) and value >= LEAST):
-        remedy = f"give {LEAST:g} rows or more between false alarms"
+    if not LEAST <= value <= MOST:
+        remedy = f"give {LEAST:g} to {MOST:g} rows between false alarms"
         raise InputError(f"arl0 is {value}", "arl0", remedy)
     return float(value)
+
+
+def _seed(value: int) -> int:
+    if value < 0:
+        raise InputError(f"the seed is {value}", "seed", "give 0 or more")
+    return value
 
 
 def _rounded(rows: int) -> int:

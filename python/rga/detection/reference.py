@@ -13,6 +13,8 @@ from rga.model.parameter import FloatArray
 
 #: rows that a sensor must have been read in
 FEWEST = 30
+#: readings beyond this are faults of their source
+MOST = 1e60
 #: scores between which the distribution of a reading is followed, and knots there
 FOLLOWED = 2.5
 KNOTS = 9
@@ -222,13 +224,14 @@ def checked(baseline: FloatArray) -> None:
     """Refuse a baseline that says too little.
 
     Raises:
-        InputError: an infinite number; a sensor has fewer than 30 readings, or its readings are
-            all alike.
+        InputError: a number beyond 1e60 in size; a sensor has fewer than 30 readings, or its
+            readings are all alike.
     """
-    if np.isinf(baseline).any():
-        row, sensor = np.argwhere(np.isinf(baseline))[0]
+    if (np.abs(baseline) > MOST).any():
+        row, sensor = np.argwhere(np.abs(baseline) > MOST)[0]
         place = f"row {row} of the baseline, sensor {sensor}"
-        raise InputError("the value is infinite", place, "give NaN for a missing reading")
+        remedy = f"give numbers within {MOST:g} in size, and NaN for a missing reading"
+        raise InputError(f"the value is {baseline[row, sensor]:g}", place, remedy)
     remedy = "give a longer baseline, or leave the sensor out"
     count = np.isfinite(baseline).sum(axis=0)
     for sensor in np.flatnonzero(count < FEWEST):
