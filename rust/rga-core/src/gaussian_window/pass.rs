@@ -8,8 +8,6 @@ use super::tile::{Part, TILE, Tile, WIDTH};
 use super::{GaussianWindow, LAPS, LARGEST};
 use crate::lanes::{Lanes, Packs};
 
-/// Rows that stay in the nearest cache while one block after the other takes them.
-
 /// Tests rows and lets them into the windows. False: some have, and a value is infinite.
 pub struct Pass<'a> {
     pub window: &'a mut GaussianWindow,
@@ -129,9 +127,9 @@ impl Broad {
 /// Whether no value is too large; NaN is not.
 #[inline(always)]
 fn within(values: &[f64]) -> bool {
-    let mut within = true;
+    let mut beyond = false;
     for value in values {
-        within &= !(value.abs() > LARGEST);
+        beyond |= value.abs() > LARGEST;
     }
-    within
+    !beyond
 }

@@ -89,7 +89,7 @@ const MARKS: [[bool; WIDTH]; 1 << WIDTH] = {
     let mut marks = [[false; WIDTH]; 1 << WIDTH];
     let mut at = 0;
     while at < WIDTH << WIDTH {
-        marks[at / WIDTH][at % WIDTH] = at / WIDTH >> (at % WIDTH) & 1 == 1;
+        marks[at / WIDTH][at % WIDTH] = (at / WIDTH) >> (at % WIDTH) & 1 == 1;
         at += 1;
     }
     marks
