@@ -341,10 +341,9 @@ impl<S: Simd, const P: usize> Lanes for Packs<S, P> {
                 u64::from(cast::<_, u8>(mask)) << (at * S::F64_LANES)
             } else {
                 let lanes = [cast::<_, S::u64s>(mask)];
-                let lanes = cast_slice::<_, u64>(&lanes);
                 let mut own = 0;
-                for lane in 0..S::F64_LANES {
-                    own |= (lanes[lane] & 1) << (at * S::F64_LANES + lane);
+                for (lane, marked) in cast_slice::<_, u64>(&lanes).iter().enumerate() {
+                    own |= (marked & 1) << (at * S::F64_LANES + lane);
                 }
                 own
             };

@@ -2,8 +2,14 @@
 
 use super::LARGEST;
 use super::moments::{Moments, Weights};
-use super::tile::{Eight, Part, Tile, WIDTH};
+use super::tile::{Eight, Part, TILE, Tile, WIDTH, mark, prefetch};
 use crate::lanes::Lanes;
+
+/// Sensors and blocks that no window has.
+const MANY: usize = u32::MAX as usize;
+
+/// Values of this size are far from the largest, and so are their differences.
+const USUAL: f64 = 1e-2 * LARGEST;
 
 #[derive(Debug, Clone)]
 pub struct Block {
@@ -52,21 +58,29 @@ impl Block {
     #[inline(always)]
     pub fn take<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
         let mut row = 0;
-        while row < tile.rows {
-            if self.pace == Pace::Together && task.persistence.1 == 1 {
+        loop {
+            if self.walks(task) {
                 match self.walk(task, tile, part, row) {
                     Some(next) => row = next,
                     None => return false,
                 }
             }
-            if row < tile.rows {
-                match self.careful(task, tile, part, row) {
-                    Some(next) => row = next,
-                    None => return false,
-                }
+            if row >= tile.rows {
+                return true;
+            }
+            // Copies, so that what is copied stays in registers.
+            let task = *task;
+            match self.careful(&task, &mut tile.again(), part, row) {
+                Some(next) => row = next,
+                None => return false,
             }
         }
-        true
+    }
+
+    /// Whether `walk` can take rows.
+    #[inline(always)]
+    pub fn walks<L: Lanes>(&self, task: &Task<L>) -> bool {
+        self.pace == Pace::Together && task.persistence.1 == 1
     }
 
     /// Takes rows while all their values enter windows that are full and together, and leave
@@ -79,39 +93,46 @@ impl Block {
         part: Part,
         from: usize,
     ) -> Option<usize> {
-        let Task { lanes, weights, .. } = *task;
+        let Task {
+            lanes,
+            weights,
+            frozen,
+            ..
+        } = *task;
+        let place = tile.place(from, self.lag[0]);
+        let until = tile.rows.min(from + tile.places - place);
+        let ahead = tile.rows * tile.sensors;
+        // With these bounds a compiler sees that products do not wrap, and need not divide lengths.
+        let count = until.saturating_sub(from).min(TILE);
+        let (sensors, blocks) = (tile.sensors.min(MANY), tile.blocks.min(MANY));
+        let values = tile.values[from * sensors..][..count * sensors].chunks_exact(sensors);
+        let alarms = tile.alarms[from * sensors..][..count * sensors].chunks_exact_mut(sensors);
+        let cells = tile.windows[place * blocks..][..count * blocks].chunks_exact_mut(blocks);
+        let own = part.first..part.first + WIDTH;
         let mut moments = Moments::load(lanes, &self.moments);
-        let mut largest = lanes.splat(0.0);
-        let mut cell = tile.cell(part, from, self.lag[0]);
         let mut row = from;
-        while row < tile.rows {
-            tile.prefetch(part, row + tile.rows);
-            let value = lanes.load(tile.values(part, row));
-            let Some(place) = tile.windows.get_mut(cell) else {
-                break;
-            };
-            let moved = moments.moved(lanes, &weights, value, lanes.load(&place.0));
-            if !lanes.all(moved.sound(lanes, &weights)) {
+        for ((values, alarms), cells) in values.zip(alarms).zip(cells) {
+            let (values, alarms) = (&values[own.clone()], &mut alarms[own.clone()]);
+            let cell = &mut cells[part.block].0;
+            prefetch(values, ahead);
+            let value = lanes.load(values);
+            let moved = moments.moved(lanes, &weights, value, lanes.load(cell));
+            let exceeds = lanes.bits(moments.exceeded(lanes, &weights, value));
+            if !lanes.all(moved.sound(lanes, &weights)) || frozen && exceeds != 0 {
                 break;
             }
-            let exceeds = moments.exceeded(lanes, &weights, value);
-            let mut alarms = 0;
-            if lanes.any(exceeds) {
-                if task.frozen {
-                    break;
-                }
-                alarms = lanes.bits(exceeds);
-            }
-            largest = lanes.max(largest, lanes.abs(value));
-            lanes.store(value, &mut place.0);
-            tile.alarm(part, row, alarms);
+            lanes.store(value, cell);
+            mark(alarms, exceeds);
             moments = moved;
-            cell += tile.blocks;
             row += 1;
         }
         moments.store(lanes, &mut self.moments);
-        let within = lanes.at_most(largest, lanes.splat(LARGEST));
-        lanes.all(within).then_some(row)
+        // What is too large has left a trace, unless the shift is as large.
+        let usual = lanes.splat(USUAL);
+        let near = lanes.at_most(lanes.abs(moments.shift), usual);
+        let small = lanes.at_most(moments.peak, lanes.mul(usual, usual));
+        let within = lanes.all(lanes.and(near, small)) || tile.within(part, from..row);
+        within.then_some(row)
     }
 
     /// Sums full windows of lanes, given by their bits, from what they hold.
@@ -153,7 +174,7 @@ impl Block {
                 moments.sum.0[lane] = sum[lane];
                 moments.square.0[lane] = square[lane];
                 moments.peak.0[lane] = square[lane];
-                let spread = count * square[lane] - sum[lane] * sum[lane];
+                let spread = (-sum[lane]).mul_add(sum[lane], count * square[lane]);
                 moments.spread.0[lane] = spread.max(0.0);
             }
         }

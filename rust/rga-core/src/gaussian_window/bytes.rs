@@ -31,7 +31,7 @@ impl GaussianWindow {
             self.rows,
         ];
         let blocks = self.blocks.iter().flat_map(Block::lines);
-        let lines = blocks.chain(self.ring.iter().map(Eight::to_bits));
+        let lines = blocks.chain(self.ring.iter().copied().map(Eight::to_bits));
         let words = header.into_iter().chain(lines.flatten());
         words.flat_map(u64::to_le_bytes).collect()
     }
@@ -86,7 +86,7 @@ impl Block {
             square,
             peak,
             spread,
-        } = &self.moments;
+        } = self.moments;
         let sums = [shift, sum, square, peak, spread];
         let [shift, sum, square, peak, spread] = sums.map(Eight::to_bits);
         let counts = [self.lag, self.lacking, self.recent];
@@ -114,7 +114,7 @@ impl Block {
 }
 
 impl Eight {
-    fn to_bits(&self) -> Line {
+    fn to_bits(self) -> Line {
         self.0.map(f64::to_bits)
     }
 

@@ -5,11 +5,15 @@ use pulp::NullaryFnOnce;
 use super::LARGEST;
 use super::block::{Block, Pace, Task};
 use super::moments::Moments;
-use super::tile::{Part, Tile, WIDTH};
+use super::tile::{Part, Tile, WIDTH, mark, prefetch};
 use crate::lanes::Lanes;
 
+/// Bits of all lanes.
+const ALL: u64 = (1 << WIDTH) - 1;
+
 impl Block {
-    /// Takes a row or more, and tells the first that is left. None: a value is infinite.
+    /// Takes a row and those behind it until `walk` can go on; tells the first that is left. None:
+    /// a value is infinite.
     ///
     /// A function of its own: the registers of those that call it are theirs.
     #[inline(never)]
@@ -42,117 +46,68 @@ impl<L: Lanes> NullaryFnOnce for Careful<'_, '_, L> {
     type Output = Option<usize>;
 
     #[inline(always)]
-    fn call(mut self) -> Option<usize> {
-        let next = match self.block.pace {
-            Pace::Filling => self.row,
-            Pace::Apart | Pace::Together => self.walk(),
-        };
-        if next > self.row {
-            Some(next)
-        } else {
-            self.sift()
-        }
-    }
-}
-
-impl<L: Lanes> Careful<'_, '_, L> {
-    /// Takes rows while all their values are within reach and enter full windows, and leave enough
-    /// digits.
-    #[inline(always)]
-    fn walk(&mut self) -> usize {
+    fn call(self) -> Option<usize> {
         let Self {
             block,
             task,
             tile,
             part,
-            ..
-        } = self;
-        let (part, from) = (*part, self.row);
-        let Task { lanes, weights, .. } = **task;
-        let mut moments = Moments::load(lanes, &block.moments);
-        let largest = lanes.splat(LARGEST);
-        let mut row = from;
-        while row < tile.rows {
-            tile.prefetch(part, row + tile.rows);
-            let value = lanes.load(tile.values(part, row));
-            let (mut cells, mut oldest) = ([0; WIDTH], [0.0; WIDTH]);
-            for lane in 0..WIDTH {
-                cells[lane] = tile.cell(part, row, block.lag[lane]);
-            }
-            for lane in 0..WIDTH {
-                oldest[lane] = tile.windows[cells[lane]].0[lane];
-            }
-            let moved = moments.moved(lanes, &weights, value, lanes.load(&oldest));
-            let within = lanes.at_most(lanes.abs(value), largest);
-            let exceeds = lanes.bits(moments.exceeded(lanes, &weights, value));
-            let enter = lanes.all(lanes.and(within, moved.sound(lanes, &weights)));
-            if !enter || task.frozen && exceeds != 0 {
-                break;
-            }
-            let mut own = [0.0; WIDTH];
-            lanes.store(value, &mut own);
-            for lane in 0..WIDTH {
-                tile.windows[cells[lane]].0[lane] = own[lane];
-            }
-            let alarms = block.persist(task.persistence, exceeds, u64::MAX);
-            tile.alarm(part, row, alarms);
-            moments = moved;
-            row += 1;
-        }
-        moments.store(lanes, &mut block.moments);
-        row
-    }
-
-    /// Takes a row.
-    #[inline(always)]
-    fn sift(self) -> Option<usize> {
-        let Self {
-            block,
-            task,
-            tile,
-            part,
-            row,
+            mut row,
         } = self;
         let Task { lanes, weights, .. } = *task;
-        let mut values = [0.0; WIDTH];
-        values.copy_from_slice(tile.values(part, row));
-        for value in values {
-            if value.abs() > LARGEST {
+        let ahead = tile.rows * tile.sensors;
+        let largest = lanes.splat(LARGEST);
+        let infinite = lanes.splat(f64::INFINITY);
+        let missing = lanes.splat(f64::NAN);
+        let mut moments = Moments::load(lanes, &block.moments);
+        while row < tile.rows {
+            let at = tile.at(part, row);
+            let values = &tile.values[at..][..WIDTH];
+            prefetch(values, ahead);
+            let value = lanes.load(values);
+            if lanes.any(lanes.above(lanes.abs(value), largest)) {
                 return None;
             }
-        }
-        let value = lanes.load(&values);
-        let moments = Moments::load(lanes, &block.moments);
-        let exceeds = moments.exceeded(lanes, &weights, value);
-        let entering = if task.frozen {
-            lanes.select(exceeds, lanes.splat(f64::NAN), value)
-        } else {
-            value
-        };
-        let enters = lanes.equal(entering, entering);
-        let full = lanes.above(lanes.splat(f64::INFINITY), moments.spread);
-        let tested = lanes.bits(lanes.and(lanes.equal(value, value), full));
-        let entered = lanes.bits(enters);
-        let mut oldest = [0.0; WIDTH];
-        for lane in 0..WIDTH {
-            let cell = tile.cell(part, row, block.lag[lane]);
-            let cell = &mut tile.windows[cell].0[lane];
-            oldest[lane] = *cell;
-            if entered >> lane & 1 == 1 {
-                *cell = values[lane];
+            let exceeds = moments.exceeded(lanes, &weights, value);
+            let entering = if task.frozen {
+                lanes.select(exceeds, missing, value)
+            } else {
+                value
+            };
+            let enter = lanes.equal(entering, entering);
+            let full = lanes.above(infinite, moments.spread);
+            let entered = lanes.bits(enter);
+            let mut oldest = [0.0; WIDTH];
+            for lane in 0..WIDTH {
+                let cell = tile.place(row, block.lag[lane]) * tile.blocks + part.block;
+                let place = &mut tile.windows[cell].0[lane];
+                oldest[lane] = *place;
+                if entered >> lane & 1 == 1 {
+                    *place = values[lane];
+                }
+            }
+            let moved = moments.moved(lanes, &weights, value, lanes.load(&oldest));
+            moments = moved.select(lanes, lanes.and(enter, full), &moments);
+
+            let tested = lanes.bits(lanes.and(lanes.equal(value, value), full));
+            let alarms = block.persist(task.persistence, lanes.bits(exceeds), tested);
+            mark(&mut tile.alarms[at..][..WIDTH], alarms);
+            let mut due = ALL & !lanes.bits(moments.sound(lanes, &weights));
+            if entered != ALL || block.pace == Pace::Filling {
+                due |= block.count(tile.places as u64, entered);
+            }
+            if due != 0 {
+                moments.store(lanes, &mut block.moments);
+                block.sum_anew(tile, part, due);
+                moments = Moments::load(lanes, &block.moments);
+            }
+            row += 1;
+            if block.walks(task) {
+                break;
             }
         }
-        let moved = moments.moved(lanes, &weights, value, lanes.load(&oldest));
-        let moved = moved.select(lanes, lanes.and(enters, full), &moments);
-        moved.store(lanes, &mut block.moments);
-        let filled = block.count(tile.places as u64, entered);
-        let lost = !lanes.bits(moved.sound(lanes, &weights)) & 0xff;
-        if filled | lost != 0 {
-            block.sum_anew(tile, part, filled | lost);
-        }
-        let alarms = block.persist(task.persistence, lanes.bits(exceeds), tested);
-        tile.alarm(part, row, alarms);
-        Some(row + 1)
+        moments.store(lanes, &mut block.moments);
+        Some(row)
     }
 }
 
@@ -163,7 +118,8 @@ impl Block {
         let mut filled = 0;
         for lane in 0..WIDTH {
             if entered >> lane & 1 == 0 {
-                self.lag[lane] = (self.lag[lane] + 1) % places;
+                let lag = self.lag[lane] + 1;
+                self.lag[lane] = if lag == places { 0 } else { lag };
             } else if self.lacking[lane] > 0 {
                 self.lacking[lane] -= 1;
                 filled |= u64::from(self.lacking[lane] == 0) << lane;

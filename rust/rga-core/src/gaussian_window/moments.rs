@@ -39,6 +39,7 @@ pub struct Weights<N> {
     others: N,
     /// Of the largest Q: what M Q - S^2 must not fall below.
     digits: N,
+    zero: N,
 }
 
 impl<N: Copy> Weights<N> {
@@ -51,6 +52,7 @@ impl<N: Copy> Weights<N> {
             own: lanes.splat(own.max(0.0)),
             others: lanes.splat(others),
             digits: lanes.splat(DIGITS_LEFT * count),
+            zero: lanes.splat(0.0),
         }
     }
 }
@@ -85,9 +87,11 @@ impl<N: Copy> Moments<N> {
         value: N,
     ) -> L::Mask {
         let gained = lanes.sub(value, self.shift);
-        let reach = lanes.sub(lanes.mul(weights.count, gained), self.sum);
-        let own = lanes.mul(weights.own, lanes.mul(reach, lanes.abs(reach)));
-        lanes.above(own, lanes.mul(weights.others, self.spread))
+        // -r, and the sign of r^2 for that of r.
+        let short = lanes.take_product(weights.count, gained, self.sum);
+        let own = lanes.mul(weights.own, short);
+        let others = lanes.mul(weights.others, self.spread);
+        lanes.above(weights.zero, lanes.mul_add(own, lanes.abs(short), others))
     }
 
     /// With a value in place of the oldest.
@@ -103,13 +107,13 @@ impl<N: Copy> Moments<N> {
         let lost = lanes.sub(oldest, self.shift);
         let change = lanes.sub(gained, lost);
         let sum = lanes.add(self.sum, change);
-        let square = lanes.add(self.square, lanes.mul(change, lanes.add(gained, lost)));
+        let square = lanes.mul_add(change, lanes.add(gained, lost), self.square);
         Self {
             shift: self.shift,
             sum,
             square,
             peak: lanes.max(self.peak, square),
-            spread: lanes.sub(lanes.mul(weights.count, square), lanes.mul(sum, sum)),
+            spread: lanes.take_product(sum, sum, lanes.mul(weights.count, square)),
         }
     }
 

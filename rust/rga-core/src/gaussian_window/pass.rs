@@ -4,12 +4,9 @@ use pulp::{Simd, WithSimd};
 
 use super::block::Task;
 use super::moments::Weights;
-use super::tile::{Part, Tile, WIDTH};
+use super::tile::{Part, TILE, Tile, WIDTH};
 use super::{GaussianWindow, LAPS, LARGEST};
 use crate::lanes::{Lanes, Packs};
-
-/// Rows that stay in the nearest cache while one block after the other takes them.
-const TILE: usize = 8;
 
 /// Tests rows and lets them into the windows. False: some have, and a value is infinite.
 pub struct Pass<'a> {
@@ -59,28 +56,20 @@ impl Pass<'_> {
             block,
             first: rule.first(block),
         };
-        let mut broad = Broad::default();
+        let mut broad = (sensors < WIDTH).then(Broad::default);
         let (mut values, mut alarms) = (self.values, self.alarms);
         while !values.is_empty() {
             let rows = TILE.min(places - *next).min(values.len() / sensors);
             let (own, marks);
             (own, values) = values.split_at(rows * sensors);
             (marks, alarms) = alarms.split_at_mut(rows * sensors);
-            let narrow = sensors < WIDTH;
-            if narrow {
-                broad.widen(own, sensors);
-            }
+            let (values, alarms) = match &mut broad {
+                Some(broad) => broad.widen(own, sensors),
+                None => (own, &mut *marks),
+            };
             let mut tile = Tile {
-                values: if narrow {
-                    broad.values.as_flattened()
-                } else {
-                    own
-                },
-                alarms: if narrow {
-                    broad.alarms.as_flattened_mut()
-                } else {
-                    &mut *marks
-                },
+                values,
+                alarms,
                 rows,
                 sensors: sensors.max(WIDTH),
                 windows: &mut *windows,
@@ -103,7 +92,7 @@ impl Pass<'_> {
                     }
                 }
             }
-            if narrow {
+            if let Some(broad) = &broad {
                 broad.narrow(marks, sensors);
             }
         }
@@ -119,12 +108,13 @@ struct Broad {
 }
 
 impl Broad {
-    fn widen(&mut self, values: &[f64], sensors: usize) {
+    fn widen(&mut self, values: &[f64], sensors: usize) -> (&[f64], &mut [bool]) {
         for (row, own) in self.values.iter_mut().zip(values.chunks_exact(sensors)) {
             for (lane, value) in row.iter_mut().enumerate() {
                 *value = own[lane.min(sensors - 1)];
             }
         }
+        (self.values.as_flattened(), self.alarms.as_flattened_mut())
     }
 
     fn narrow(&self, alarms: &mut [bool], sensors: usize) {
@@ -137,9 +127,9 @@ impl Broad {
 /// Whether no value is too large; NaN is not.
 #[inline(always)]
 fn within(values: &[f64]) -> bool {
-    let mut within = true;
+    let mut beyond = false;
     for value in values {
-        within &= !(value.abs() > LARGEST);
+        beyond |= value.abs() > LARGEST;
     }
-    within
+    !beyond
 }

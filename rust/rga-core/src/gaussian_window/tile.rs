@@ -1,7 +1,15 @@
 //! A few rows, and the windows of all sensors that they go into.
 
+use std::ops::Range;
+
+use super::LARGEST;
+
 /// Sensors of a block.
 pub const WIDTH: usize = 8;
+
+/// Rows of a tile at most: they stay in the nearest cache while one block after the other takes
+/// them.
+pub const TILE: usize = 32;
 
 /// A number of each sensor of a block, in one line of the cache.
 #[derive(Debug, Clone, Copy)]
@@ -38,39 +46,42 @@ pub struct Part {
 }
 
 impl Tile<'_> {
+    /// The same, borrowed once more.
     #[inline(always)]
-    pub fn values(&self, part: Part, row: usize) -> &[f64] {
-        &self.values[row * self.sensors + part.first..][..WIDTH]
-    }
-
-    /// Alarms of lanes, given by their bits.
-    #[inline(always)]
-    pub fn alarm(&mut self, part: Part, row: usize, bits: u64) {
-        let own = &mut self.alarms[row * self.sensors + part.first..][..WIDTH];
-        own.copy_from_slice(&MARKS[bits as usize]);
-    }
-
-    /// Asks for the values of a row, which may lie behind the last one, to be brought to the cache.
-    ///
-    /// Blocks read rows with strides, which processors do not foresee.
-    #[inline(always)]
-    pub fn prefetch(&self, part: Part, row: usize) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let at = row * self.sensors + part.first;
-            // SAFETY: a hint that may name any address.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.values.as_ptr().wrapping_add(at).cast()) };
+    pub fn again(&mut self) -> Tile<'_> {
+        Tile {
+            alarms: &mut *self.alarms,
+            windows: &mut *self.windows,
+            ..*self
         }
     }
 
-    /// The cell that a row goes into, in a lane that is some places behind.
+    /// Index of the first value of a block in a row.
     #[inline(always)]
-    pub fn cell(&self, part: Part, row: usize, lag: u64) -> usize {
+    pub fn at(&self, part: Part, row: usize) -> usize {
+        row * self.sensors + part.first
+    }
+
+    /// Where a row goes in a lane that is some places behind.
+    #[inline(always)]
+    pub fn place(&self, row: usize, lag: u64) -> usize {
         let (slot, lag) = (self.slot + row, lag as usize);
         let around = if lag > slot { self.places } else { 0 };
-        (slot + around - lag) * self.blocks + part.block
+        slot + around - lag
     }
+
+    /// Whether no value of a block in rows is too large.
+    #[inline(never)]
+    pub fn within(&self, part: Part, rows: Range<usize>) -> bool {
+        let mut values = rows.flat_map(|row| &self.values[self.at(part, row)..][..WIDTH]);
+        values.all(|value| value.abs() <= LARGEST)
+    }
+}
+
+/// Writes the alarms of lanes, given by their bits.
+#[inline(always)]
+pub fn mark(alarms: &mut [bool], bits: u64) {
+    alarms.copy_from_slice(&MARKS[bits as usize]);
 }
 
 /// Marks of lanes by their bits.
@@ -78,8 +89,21 @@ const MARKS: [[bool; WIDTH]; 1 << WIDTH] = {
     let mut marks = [[false; WIDTH]; 1 << WIDTH];
     let mut at = 0;
     while at < WIDTH << WIDTH {
-        marks[at / WIDTH][at % WIDTH] = at / WIDTH >> (at % WIDTH) & 1 == 1;
+        marks[at / WIDTH][at % WIDTH] = (at / WIDTH) >> (at % WIDTH) & 1 == 1;
         at += 1;
     }
     marks
 };
+
+/// Asks for what stands ahead of values, maybe behind all of them, to be brought to the cache.
+///
+/// Blocks read rows with strides, which processors do not foresee.
+#[inline(always)]
+pub fn prefetch(values: &[f64], ahead: usize) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint that may name any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(values.as_ptr().wrapping_add(ahead).cast()) };
+    }
+}
