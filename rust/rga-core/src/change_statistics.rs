@@ -18,7 +18,7 @@ use pulp::Arch;
 use crate::gaussian_window::Refusal;
 use crate::input::Array;
 pub use banks::STATISTICS;
-use banks::{Banks, Found, places};
+use banks::{Banks, Found};
 use recent::Recent;
 use reference::Work;
 pub use reference::{Reference, ReferenceArrays};
@@ -52,9 +52,7 @@ pub struct ChangeStatistics {
 impl ChangeStatistics {
     pub fn new(reference: Reference, thresholds: [f32; STATISTICS], rows_kept: usize) -> Self {
         let mut placed = [f32::INFINITY; _];
-        for (place, threshold) in places().zip(thresholds) {
-            placed[place] = threshold;
-        }
+        placed[..STATISTICS].copy_from_slice(&thresholds);
         Self {
             banks: Banks::new(reference.sensors()),
             recent: Recent::new(reference.sensors(), rows_kept),
@@ -88,9 +86,7 @@ impl ChangeStatistics {
     pub fn take_peaks(&mut self) -> [f32; STATISTICS] {
         let peaks = std::mem::replace(&mut self.peaks, [0.0; _]);
         let mut found = [0.0; STATISTICS];
-        for (found, place) in found.iter_mut().zip(places()) {
-            *found = peaks[place];
-        }
+        found.copy_from_slice(&peaks[..STATISTICS]);
         found
     }
 
@@ -183,7 +179,8 @@ impl OnSixteen for Advance<'_> {
 
 /// The statistic that is farthest above its threshold.
 fn farthest(found: &Found, thresholds: &Found) -> usize {
-    let heights = places().map(|place| found[place] / thresholds[place]);
+    let limits = found.iter().zip(thresholds).take(STATISTICS);
+    let heights = limits.map(|(value, threshold)| value / threshold);
     let by_height = heights.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     by_height.map_or(0, |(statistic, _)| statistic)
 }

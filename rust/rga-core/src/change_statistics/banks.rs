@@ -31,7 +31,7 @@ const ROW_STEPS: [f32; 3] = [1.0, 2.0, 4.0];
 const BEAT_STEP: f32 = 0.5;
 const BAR_STEP: f32 = 0.25;
 /// Steps in sums.
-const SUM_STEPS: [f32; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+const SUM_STEPS: [f32; 4] = [0.5, 1.0, 2.0, 4.0];
 /// Sums that are watched: of all that rise alike, and of the squares of all.
 const SUMS: usize = 2;
 /// Factors on the standard deviation: sqrt(2), 2, 1/2.
@@ -53,16 +53,10 @@ pub const STATISTICS: usize = SIXTEEN + SUMS * SUM_STEPS.len();
 const STEPS: usize = 2 + ROW_STEPS.len();
 const AVERAGES: usize = ROW_AVERAGES.len() + BEAT_AVERAGES.len();
 const _: () = assert!(STEPS + SPREADS + AVERAGES == SIXTEEN);
+const _: () = assert!(2 * SUMS * SUM_STEPS.len() == SIXTEEN);
 
-/// Statistics in sixteens: of sensors, and of each of the sums, whose sixteens are filled up with
-/// what means nothing.
-pub type Found = [f32; SIXTEEN * (1 + SUMS)];
-
-/// Where statistics stand among those that are found.
-pub fn places() -> impl Iterator<Item = usize> {
-    let of_sums = (1..=SUMS).flat_map(|sum| (0..SUM_STEPS.len()).map(move |n| sum * SIXTEEN + n));
-    (0..SIXTEEN).chain(of_sums)
-}
+/// Two sixteens; what is behind the last statistic means nothing.
+pub type Found = [f32; 2 * SIXTEEN];
 
 /// Vectors of sixteen sensors: what every row changes, and what beats change.
 const QUICK: usize = 3 + ROW_AVERAGES.len() + 2 * ROW_STEPS.len();
@@ -75,7 +69,7 @@ pub struct Banks {
     pub(super) quick: Vec<f32>,
     /// `[sixteens, SLOW, 16]`
     pub(super) slow: Vec<f32>,
-    /// `[SUMS, 16]`: steps that rise, then steps that fall
+    /// `[2, SUMS, SUM_STEPS]`: steps that rise, then steps that fall
     pub(super) sums: Vec<f32>,
     pub(super) rows: u64,
 }
@@ -87,7 +81,7 @@ impl Banks {
             sensors,
             quick: vec![0.0; width * QUICK],
             slow: vec![0.0; width * SLOW],
-            sums: vec![0.0; SUMS * SIXTEEN],
+            sums: vec![0.0; SIXTEEN],
             rows: 0,
         }
     }
@@ -103,14 +97,14 @@ impl Banks {
         gaps: bool,
     ) -> Found {
         self.rows += 1;
-        let mut found = [0.0; SIXTEEN * (1 + SUMS)];
+        let mut found = [0.0; 2 * SIXTEEN];
         let (of_sensors, of_sums) = found.split_at_mut(SIXTEEN);
         let (steps, rest) = of_sensors.split_at_mut(STEPS);
         let (spreads, averages) = rest.split_at_mut(SPREADS);
         let (quick_averages, slow_averages) = averages.split_at_mut(ROW_AVERAGES.len());
         let rows = &mut steps[2..];
         let totals = self.each_row(lanes, scores, signature, gaps, rows, quick_averages);
-        self.watch_sums(lanes, totals, L::vectors_mut(of_sums));
+        L::vectors_mut(of_sums)[0] = self.watch_sums(lanes, totals);
         if self.rows.is_multiple_of(BEAT) {
             self.each_beat(lanes, &mut steps[..2], spreads, slow_averages);
         }

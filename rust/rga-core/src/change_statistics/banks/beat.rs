@@ -1,10 +1,16 @@
 //! What every beat of rows changes.
 
-use super::likelihood::{Several, grown, replaced, spread_ratios};
+use super::likelihood::{LARGEST, Several, grown, replaced, spread_ratios};
 use super::row::LARGEST_PRODUCT;
-use super::{BAR, BAR_STEP, BEAT, BEAT_AVERAGES, BEAT_STEP, Banks, QUICK, SLOW, SPREADS};
+use super::{
+    BAR, BAR_STEP, BEAT, BEAT_AVERAGES, BEAT_STEP, Banks, QUICK, ROW_AVERAGES, ROW_STEPS, SLOW,
+    SPREADS,
+};
 use crate::change_statistics::powers::powers;
 use crate::change_statistics::sixteen::Lanes;
+
+/// Keeps the statistics of steps in rows finite until the next beat.
+const LARGEST_STEPS: [f32; ROW_STEPS.len()] = [LARGEST, LARGEST, 1e10];
 
 impl Banks {
     #[inline(always)]
@@ -25,12 +31,15 @@ impl Banks {
         let quick = L::vectors_mut(&mut self.quick).chunks_exact_mut(QUICK);
         let slow = L::vectors_mut(&mut self.slow).chunks_exact_mut(SLOW);
         for (quick, slow) in quick.zip(slow) {
-            let [row_sum, square_sum, seen, ..] = quick else {
-                continue;
-            };
-            let (sum, squares) = (*row_sum, *square_sum);
-            let missing = lanes.equal(*seen, zero);
-            (*row_sum, *square_sum, *seen) = (zero, zero, zero);
+            let (sum, squares) = (quick[0], quick[1]);
+            let missing = lanes.equal(quick[2], lanes.splat(BEAT as f32));
+            quick[..3].fill(zero);
+            let stepping = quick[3 + ROW_AVERAGES.len()..].chunks_exact_mut(2);
+            for (states, largest) in stepping.zip(LARGEST_STEPS) {
+                for state in states {
+                    *state = lanes.min(*state, lanes.splat(largest));
+                }
+            }
             let (whole, rest) = slow.split_at_mut(1);
             let (in_beats, rest) = rest.split_at_mut(2);
             let (in_bars, rest) = rest.split_at_mut(2);
@@ -40,6 +49,7 @@ impl Banks {
             let (up, down) = powers(lanes, sized, 5);
             for (state, power) in in_beats.iter_mut().zip([up, down]) {
                 let next = grown(lanes, *state, power, BEAT_STEP, BEAT as f32);
+                let next = lanes.min(next, lanes.splat(LARGEST));
                 *state = lanes.select(missing, *state, next);
                 beat_sum = lanes.add(beat_sum, *state);
             }
@@ -50,6 +60,7 @@ impl Banks {
                 let rows = (BEAT * BAR) as f32;
                 for (state, power) in in_bars.iter_mut().zip([up, down]) {
                     let next = grown(lanes, *state, power, BAR_STEP, rows);
+                    let next = lanes.min(next, lanes.splat(LARGEST));
                     *state = lanes.select(missing, *state, next);
                     bar_sum = lanes.add(bar_sum, *state);
                 }
@@ -58,6 +69,7 @@ impl Banks {
             let ratios = spread_ratios(lanes, squares);
             for ((state, ratio), sum) in spreading.iter_mut().zip(ratios).zip(&mut spread_sums) {
                 let next = replaced(lanes, *state, ratio, BEAT as f32);
+                let next = lanes.min(next, lanes.splat(LARGEST));
                 *state = lanes.select(missing, *state, next);
                 *sum = lanes.add(*sum, *state);
             }

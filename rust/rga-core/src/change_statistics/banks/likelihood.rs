@@ -12,7 +12,7 @@ const FLAT: f32 = 5.2;
 /// Largest factor of one sensor in the product: one sensor is not several.
 const LARGEST_FACTOR: f32 = 1e3;
 /// Keeps statistics finite after a change.
-const LARGEST: f32 = 1e20;
+pub const LARGEST: f32 = 1e20;
 
 /// (rows + R) L of a step: L = power exp(-d^2 rows / 2).
 #[inline(always)]
@@ -30,8 +30,7 @@ pub fn grown<L: Lanes>(
 /// (rows + R) L
 #[inline(always)]
 pub fn replaced<L: Lanes>(lanes: L, state: L::Numbers, ratio: L::Numbers, rows: f32) -> L::Numbers {
-    let next = lanes.mul(lanes.add(state, lanes.splat(rows)), ratio);
-    lanes.min(next, lanes.splat(LARGEST))
+    lanes.mul(lanes.add(state, lanes.splat(rows)), ratio)
 }
 
 /// Likelihood ratios of a standard deviation sqrt(2), 2 and 1/2 times what it was, from the sum T

@@ -93,16 +93,16 @@ impl<L: Lanes> Row<L> {
         let lanes = self.lanes;
         let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
         let present = lanes.equal(given, given);
-        let (mut score, mut seen) = (given, one);
+        let mut score = given;
         if !WHOLE {
             score = lanes.select(present, given, zero);
-            seen = lanes.select(present, one, zero);
-            self.missing = lanes.add(self.missing, lanes.sub(one, seen));
+            let missing = lanes.select(present, zero, one);
+            self.missing = lanes.add(self.missing, missing);
+            state[2] = lanes.add(state[2], missing);
         }
         let square = lanes.mul(score, score);
         state[0] = lanes.add(state[0], score);
         state[1] = lanes.add(state[1], square);
-        state[2] = lanes.add(state[2], seen);
 
         for (number, (forget, _)) in ROW_AVERAGES.into_iter().enumerate() {
             let old = state[3 + number];

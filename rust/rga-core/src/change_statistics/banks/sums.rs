@@ -1,42 +1,45 @@
 //! Steps in sums over all sensors.
 
-use super::likelihood::replaced;
+use super::likelihood::{LARGEST, replaced};
 use super::{Banks, SUM_STEPS, SUMS};
 use crate::change_statistics::powers::powers;
 use crate::change_statistics::reference::LARGEST_SCORE;
 use crate::change_statistics::sixteen::{Lanes, SIXTEEN};
 
-/// Lanes of the steps that fall: behind those that rise.
-const FALLING: usize = SIXTEEN / 2;
-
 impl Banks {
+    /// Takes the two sums of a row, and gives the statistics of the steps of one, then of the
+    /// other.
     #[inline(always)]
-    pub(super) fn watch_sums<L: Lanes>(
-        &mut self,
-        lanes: L,
-        sums: [f32; SUMS],
-        found: &mut [L::Numbers],
-    ) {
-        let (sizes, scales) = sum_steps();
-        let (sizes, scales) = (L::vectors(&sizes)[0], L::vectors(&scales)[0]);
-        let states = L::vectors_mut(&mut self.sums).iter_mut();
-        for ((state, sum), found) in states.zip(sums).zip(found) {
-            let sum = sum.clamp(-LARGEST_SCORE, LARGEST_SCORE);
-            let (power, _) = powers(lanes, lanes.mul(sizes, lanes.splat(sum)), 6);
-            *state = replaced(lanes, *state, lanes.mul(power, scales), 1.0);
-            *found = lanes.mul(lanes.halves(*state), lanes.splat(0.5));
+    pub(super) fn watch_sums<L: Lanes>(&mut self, lanes: L, sums: [f32; SUMS]) -> L::Numbers {
+        let mut sized = lanes.splat(0.0);
+        for (number, sum) in sums.into_iter().enumerate() {
+            let sum = lanes.splat(sum.clamp(-LARGEST_SCORE, LARGEST_SCORE));
+            let sizes = by_lane(number, |size, sign| sign * size);
+            sized = lanes.add(sized, lanes.mul(L::vectors(&sizes)[0], sum));
         }
+        let (power, _) = powers(lanes, sized, 6);
+        let mut scales = [0.0; SIXTEEN];
+        for number in 0..SUMS {
+            let own = by_lane(number, |size, _| (-size * size / 2.0).exp());
+            for (scale, own) in scales.iter_mut().zip(own) {
+                *scale += own;
+            }
+        }
+        let ratio = lanes.mul(power, L::vectors(&scales)[0]);
+        let state = &mut L::vectors_mut(&mut self.sums)[0];
+        *state = lanes.min(replaced(lanes, *state, ratio, 1.0), lanes.splat(LARGEST));
+        lanes.mul(lanes.halves(*state), lanes.splat(0.5))
     }
 }
 
-/// Sizes of the steps of a sum, lane by lane, with what exp(d z) is scaled by.
+/// What belongs to the steps of a sum, in their lanes: those that rise, and those that fall.
 #[inline(always)]
-fn sum_steps() -> ([f32; SIXTEEN], [f32; SIXTEEN]) {
-    let (mut sizes, mut scales) = ([0.0; SIXTEEN], [0.0; SIXTEEN]);
-    for (lane, size) in SUM_STEPS.into_iter().enumerate() {
-        (sizes[lane], sizes[FALLING + lane]) = (size, -size);
-        let scale = (-size * size / 2.0).exp();
-        (scales[lane], scales[FALLING + lane]) = (scale, scale);
+fn by_lane(sum: usize, what: impl Fn(f32, f32) -> f32) -> [f32; SIXTEEN] {
+    let mut lanes = [0.0; SIXTEEN];
+    for (number, size) in SUM_STEPS.into_iter().enumerate() {
+        let lane = sum * SUM_STEPS.len() + number;
+        lanes[lane] = what(size, 1.0);
+        lanes[SIXTEEN / 2 + lane] = what(size, -1.0);
     }
-    (sizes, scales)
+    lanes
 }
