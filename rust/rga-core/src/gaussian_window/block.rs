@@ -101,7 +101,7 @@ impl Block {
         } = *task;
         let place = tile.place(from, self.lag[0]);
         let until = tile.rows.min(from + tile.places - place);
-        let ahead = tile.rows * tile.sensors;
+        let ahead = TILE * tile.sensors;
         // With these bounds a compiler sees that products do not wrap, and need not divide lengths.
         let count = until.saturating_sub(from).min(TILE);
         let (sensors, blocks) = (tile.sensors.min(MANY), tile.blocks.min(MANY));

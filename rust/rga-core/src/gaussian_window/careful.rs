@@ -5,7 +5,7 @@ use pulp::NullaryFnOnce;
 use super::LARGEST;
 use super::block::{Block, Pace, Task};
 use super::moments::Moments;
-use super::tile::{Part, Tile, WIDTH, mark, prefetch};
+use super::tile::{Part, TILE, Tile, WIDTH, mark, prefetch};
 use crate::lanes::Lanes;
 
 /// Bits of all lanes.
@@ -55,7 +55,7 @@ impl<L: Lanes> NullaryFnOnce for Careful<'_, '_, L> {
             mut row,
         } = self;
         let Task { lanes, weights, .. } = *task;
-        let ahead = tile.rows * tile.sensors;
+        let ahead = TILE * tile.sensors;
         let largest = lanes.splat(LARGEST);
         let infinite = lanes.splat(f64::INFINITY);
         let missing = lanes.splat(f64::NAN);
