@@ -1,19 +1,23 @@
 """Did the baseline itself change?"""
 
 import numpy as np
-from scipy.stats import kstwobign
+from scipy.stats import kstwobign, norm
 
 from rga.detection.calibration import Calibration
 from rga.detection.reference import Reference
 from rga.detection.statistic import STATISTICS
 from rga.model.parameter import FloatArray
 
+#: equal parts of a baseline that are held against each other
+PARTS = 16
+
 
 def changed(reference: Reference, baseline: FloatArray, simulated: Calibration) -> float:
     """Probability that chance makes a baseline as changeable as this one.
 
-    It is looked at twice: by the statistics, which find what comes suddenly, and by how far sums of
-    scores, and of their squares, wander between its ends, which finds what changes slowly.
+    It is looked at by the statistics, which find what comes suddenly; by how far sums of scores,
+    and of their squares, wander between its ends, which finds what changes slowly; and by its
+    parts, which find what changes so much that it was learned for memory.
 
     Args:
         reference: that was learned from the baseline.
@@ -25,8 +29,8 @@ def changed(reference: Reference, baseline: FloatArray, simulated: Calibration) 
     statistics.update_many(baseline)
     sudden = simulated.chance(np.asarray(statistics.take_peaks(), dtype=float), len(baseline))
     scores = statistics.recent().astype(float)
-    slow = 2.0 * min(wandering(scores), wandering(scores**2))
-    return min(1.0, 2.0 * min(sudden, slow))
+    looks = sudden, wandering(scores), wandering(scores**2), alike_neighbours(baseline)
+    return min(1.0, len(looks) * min(looks))
 
 
 def wandering(values: FloatArray) -> float:
@@ -44,3 +48,25 @@ def wandering(values: FloatArray) -> float:
     size = np.maximum(np.sqrt((less**2).sum(axis=0) / count), 1e-12)
     distance = np.abs(np.cumsum(less, axis=0)).max(axis=0) / size / np.sqrt(count)
     return float(min(1.0, values.shape[1] * kstwobign.sf(distance.max())))
+
+
+def alike_neighbours(baseline: FloatArray) -> float:
+    """Probability that neighbouring parts of a stationary sensor's readings are so much alike.
+
+    The squared differences of the medians of neighbours, over those from the mean of all (von
+    Neumann, Annals of Mathematical Statistics 12, 1941).
+
+    Args:
+        baseline: float[rows, sensors], NaN where missing.
+    """
+    rows = len(baseline) // PARTS * PARTS
+    parts = baseline[:rows].reshape(PARTS, -1, baseline.shape[1])
+    read = np.isfinite(parts).any(axis=1).all(axis=0)
+    if not rows or not read.any():
+        return 1.0
+    medians = np.nanmedian(parts[:, :, read], axis=1)
+    all_in_all = ((medians - medians.mean(axis=0)) ** 2).sum(axis=0)
+    between = (np.diff(medians, axis=0) ** 2).sum(axis=0)
+    ratio = np.divide(between, all_in_all, out=np.full_like(between, 2.0), where=all_in_all > 0)
+    height = (1.0 - ratio / 2.0) * np.sqrt((PARTS**2 - 1) / (PARTS - 2))
+    return float(min(1.0, len(height) * norm.sf(height.max())))

@@ -1,0 +1,102 @@
+"""What an alarm tells: how often its kind, its sensors and its interval are right."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from rga.detection import Alarm, SyncMonitor
+
+SENSORS, ONSET = 20, 150
+
+
+def alarms(kind: str, sensors: list[int], draws: int, later: int) -> list[Alarm]:
+    """Explained so many rows after they were raised."""
+    found = []
+    for draw in range(draws):
+        generator = np.random.default_rng(draw)
+        rows = generator.normal(size=(1000 + ONSET + 500, SENSORS))
+        stream = rows[1000:]
+        if kind == "step":
+            stream[ONSET:, sensors] += 1.0
+        elif kind == "drift":
+            stream[ONSET:, sensors] += 0.015 * np.arange(500)[:, None]
+        else:
+            stream[ONSET:, sensors] *= 2.0
+        monitor = SyncMonitor(rows[:1000], arl0=10_000)
+        start = monitor.to_bytes()
+        row = int(np.argmax(monitor.update_many(stream)))
+        monitor = SyncMonitor.from_bytes(start)
+        monitor.update_many(stream[: row + 1 + later])
+        alarm = monitor.alarm
+        assert alarm is not None
+        if alarm.row >= ONSET:
+            found.append(alarm)
+    return found
+
+
+@pytest.mark.parametrize("later", [0, 100])
+@pytest.mark.parametrize(
+    ("kind", "sensors"),
+    [("step", [4]), ("step", [2, 7, 11]), ("drift", [4]), ("variance", [4])],
+)
+def test_nine_in_ten_intervals_hold_the_onset(kind: str, sensors: list[int], later: int) -> None:
+    found = alarms(kind, sensors, 40, later)
+    assert len(found) >= 36
+    held = [one.since_ci90[0] <= ONSET <= one.since_ci90[1] for one in found]
+    # 0.84 to 0.97 over some hundred draws.
+    assert np.mean(held) >= 0.7
+    assert np.median([one.since_ci90[1] - one.since_ci90[0] for one in found]) < 130
+
+
+@pytest.mark.parametrize(
+    ("kind", "sensors"),
+    [
+        ("step", [4]),
+        ("step", [2, 7, 11]),
+        ("step", list(range(SENSORS))),
+        ("drift", [4]),
+        ("variance", [4]),
+    ],
+)
+def test_kind_and_sensors_are_right_a_hundred_rows_later(kind: str, sensors: list[int]) -> None:
+    found = alarms(kind, sensors, 30, 100)
+    assert Counter(one.kind for one in found)[kind] >= 0.8 * len(found)
+    right = [sorted(one.sensors) == sensors for one in found]
+    assert np.mean(right) >= 0.7
+
+
+def test_the_size_of_a_change_is_in_the_unit_of_the_readings() -> None:
+    generator = np.random.default_rng(0)
+    rows = 20.0 + 0.1 * generator.normal(size=(1500, 3))
+    rows[1200:, 1] += 0.15
+    monitor = SyncMonitor(rows[:1000], arl0=10_000)
+    monitor.update_many(rows[1000:])
+    alarm = monitor.alarm
+    assert alarm is not None
+    assert alarm.sensors == (1,)
+    assert alarm.change[0] == pytest.approx(0.15, abs=0.03)
+
+
+def test_a_sensor_that_is_not_read_has_not_changed() -> None:
+    generator = np.random.default_rng(0)
+    rows = generator.normal(size=(1300, SENSORS))
+    rows[1100:] += 1.0
+    rows[1090:, 5] = np.nan
+    monitor = SyncMonitor(rows[:1000], arl0=10_000)
+    monitor.update_many(rows[1000:])
+    alarm = monitor.alarm
+    assert alarm is not None
+    assert sorted(alarm.sensors) == [one for one in range(SENSORS) if one != 5]
+
+
+def test_it_is_told_in_a_sentence() -> None:
+    alarm = Alarm(12, "", "step", (3,), (1.0,), (2.0,), 10, (8, 11))
+    assert alarm.sentence() == (
+        "a step in sensor 3 since row 10 (8 to 11); one bad sensor would look like this"
+    )
+    many = Alarm(12, "", "variance", (3, 0, 1, 2, 5), (1.0,) * 5, (2.0,) * 5, 10, (8, 11))
+    names = tuple("abcdef")
+    assert many.sentence(names) == (
+        "a change of variance in d, a, b, c and 1 more since row 10 (8 to 11)"
+    )
