@@ -8,6 +8,7 @@ import pytest
 from monitored_worlds import BASELINE, SENSORS, WORLDS, Rows, noise
 from rga.detection import SyncMonitor
 from rga.detection.reference import Reference
+from rga.detection.statistic import STATISTICS
 from rga.errors import InputError
 
 MISSING = float("nan")
@@ -64,7 +65,7 @@ def test_scores_are_standard_normal_and_independent(world: str) -> None:
     rows = noise(world.replace("few digits", "white"), 2 * 2000, 3)
     if world == "few digits":
         rows = np.round(2 * rows) / 2
-    statistics = Reference.learn(rows[:2000]).statistics(np.full(26, np.inf), 2000)
+    statistics = Reference.learn(rows[:2000]).statistics(np.full(len(STATISTICS), np.inf), 2000)
     statistics.update_many(rows[2000:])
     scores = statistics.recent()[10:]
     assert np.abs(scores.mean(axis=0)).max() < 0.15
