@@ -28,8 +28,8 @@ impl Banks {
             let [row_sum, square_sum, seen, ..] = quick else {
                 continue;
             };
-            let (sum, squares) = (*row_sum, *square_sum);
-            let missing = lanes.equal(*seen, zero);
+            let (sum, squares, count) = (*row_sum, *square_sum, *seen);
+            let missing = lanes.equal(count, zero);
             (*row_sum, *square_sum, *seen) = (zero, zero, zero);
             let (whole, rest) = slow.split_at_mut(1);
             let (in_beats, rest) = rest.split_at_mut(2);
@@ -55,7 +55,7 @@ impl Banks {
                 }
                 whole[0] = zero;
             }
-            let ratios = spread_ratios(lanes, squares);
+            let ratios = spread_ratios(lanes, squares, count);
             for ((state, ratio), sum) in spreading.iter_mut().zip(ratios).zip(&mut spread_sums) {
                 let next = replaced(lanes, *state, ratio, BEAT as f32);
                 *state = lanes.select(missing, *state, next);
