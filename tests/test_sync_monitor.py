@@ -101,7 +101,7 @@ def test_false_alarms_are_as_rare_as_asked(world: str) -> None:
     assert interval.high > 0.4
 
 
-@pytest.mark.parametrize("dead", [[2], [0, 1, 2, 3, 4]])
+@pytest.mark.parametrize("dead", [[2], [0, 1, 2, 3, 4], list(range(SENSORS))])
 def test_sensors_that_die_raise_no_alarm(dead: list[int]) -> None:
     alarms = 0
     for draw in range(20):
@@ -123,6 +123,19 @@ def test_a_dead_sensor_does_not_hide_the_others() -> None:
     assert monitor.alarm is not None
     assert monitor.alarm.sensors[0] == 3
     assert 1 not in monitor.alarm.sensors
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_readings_missing_at_random_raise_no_alarm(world: str) -> None:
+    alarms = 0
+    for draw in range(20):
+        rows = noise(world, BASELINE + 500, 500 + draw)
+        gaps = np.random.default_rng(draw).random(rows.shape) < 0.3
+        rows[gaps] = MISSING
+        monitor = SyncMonitor(rows[:BASELINE], arl0=5_000)
+        alarms += bool(monitor.update_many(rows[BASELINE:])[-1])
+    # One in ten is to be expected.
+    assert alarms <= 7
 
 
 def stream_of(memory: float, common: float, gaps: bool, dead: bool, seed: int) -> Rows:

@@ -183,3 +183,46 @@ fn truncated_and_foreign_bytes_are_refused() -> Result<(), Refusal> {
     assert!(ChangeStatistics::from_bytes(&vec![0xff; state.len()]).is_err());
     Ok(())
 }
+
+/// What is not refused goes on: nothing panics, however a state was spoiled.
+#[test]
+fn spoiled_bytes_never_panic() -> Result<(), Refusal> {
+    let mut watching = statistics(3, false)?;
+    let rows = stream(3, true);
+    watching.update_many(Array::new(&rows, &[ROWS, 3]))?;
+    let state = watching.to_bytes();
+    let mut random = Random(5);
+    let mut refused = 0;
+    for draw in 0..6_000 {
+        let mut spoiled = state.clone();
+        // Every other draw, one of the numbers that come first: they tell how to read the rest.
+        let span = if draw % 2 == 0 { 14 * 8 } else { state.len() };
+        let word = random.bits() as usize % (span / 8) * 8;
+        let values = [
+            0,
+            1,
+            2,
+            3,
+            KEPT as u64,
+            u64::MAX,
+            u64::MAX - 1,
+            random.bits(),
+        ];
+        let value = values[random.bits() as usize % values.len()];
+        spoiled[word..word + 8].copy_from_slice(&value.to_le_bytes());
+        match ChangeStatistics::from_bytes(&spoiled) {
+            Err(_) => refused += 1,
+            Ok(mut other) => {
+                let _ = other.update_many(Array::new(&rows[..30 * 3], &[30, 3]))?;
+                assert!(other.recent().len() <= KEPT * 3);
+                assert!(
+                    other
+                        .alarm()
+                        .is_none_or(|alarm| alarm.statistic < STATISTICS)
+                );
+            }
+        }
+    }
+    assert!(refused > 1_000, "{refused}: nothing was spoiled");
+    Ok(())
+}

@@ -3,12 +3,15 @@
 use super::banks::Banks;
 use super::recent::Recent;
 use super::reference::{Reference, ReferenceArrays};
-use super::{Alarm, ChangeStatistics};
+use super::{Alarm, ChangeStatistics, STATISTICS};
 use crate::gaussian_window::Refusal;
 use crate::input::Array;
 
 /// What the bytes are, and the version of their layout.
 const MARK: u64 = u64::from_le_bytes(*b"rgachg01");
+
+/// No stream is longer.
+const MOST: u64 = 1 << 62;
 
 /// Stands for no alarm.
 const NONE: u64 = u64::MAX;
@@ -75,7 +78,14 @@ impl ChangeStatistics {
         else {
             return Err(foreign());
         };
-        if mark != MARK || sensors == 0 || next.max(filled) > kept as u64 {
+        let ring = kept as u64;
+        let placed = if filled < ring {
+            next == filled
+        } else {
+            filled == ring && next < ring.max(1)
+        };
+        let raised = alarm == NONE || (alarm < rows && statistic < STATISTICS as u64);
+        if mark != MARK || sensors == 0 || !placed || !raised || rows.max(beats) > MOST {
             return Err(foreign());
         }
         let unsettled = rest.counts(sensors)?;

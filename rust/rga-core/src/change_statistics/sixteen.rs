@@ -35,7 +35,7 @@ pub trait Lanes: Copy {
     fn sum(self, numbers: Self::Numbers) -> f32;
     /// Halves are multiplied until one number is left.
     fn product(self, numbers: Self::Numbers) -> f32;
-    /// Number n and number n + 8 added, for n below 8; the others mean nothing.
+    /// Number n and number n + 8 added, for n below 8, twice over.
     fn halves(self, numbers: Self::Numbers) -> Self::Numbers;
     /// Whether some number of `a` is that of `b` or more.
     fn any_reaches(self, a: Self::Numbers, b: Self::Numbers) -> bool;
@@ -153,11 +153,11 @@ impl<S: Simd, const P: usize> Lanes for Sixteen<S, P> {
     #[inline(always)]
     fn halves(self, numbers: Self::Numbers) -> Self::Numbers {
         let mut found = numbers;
-        for at in 0..P.div_ceil(2) {
+        for at in 0..P {
             let other = if P == 1 {
                 self.0.rotate_right_f32s(numbers[0], SIXTEEN / 2)
             } else {
-                numbers[at + P / 2]
+                numbers[(at + P / 2) % P]
             };
             found[at] = self.0.add_f32s(numbers[at], other);
         }

@@ -32,7 +32,8 @@ impl Banks {
         let slow = L::vectors_mut(&mut self.slow).chunks_exact_mut(SLOW);
         for (quick, slow) in quick.zip(slow) {
             let (sum, squares) = (quick[0], quick[1]);
-            let missing = lanes.equal(quick[2], lanes.splat(BEAT as f32));
+            let count = lanes.sub(lanes.splat(BEAT as f32), quick[2]);
+            let missing = lanes.equal(count, zero);
             quick[..3].fill(zero);
             let stepping = quick[3 + ROW_AVERAGES.len()..].chunks_exact_mut(2);
             for (states, largest) in stepping.zip(LARGEST_STEPS) {
@@ -66,7 +67,7 @@ impl Banks {
                 }
                 whole[0] = zero;
             }
-            let ratios = spread_ratios(lanes, squares);
+            let ratios = spread_ratios(lanes, squares, count);
             for ((state, ratio), sum) in spreading.iter_mut().zip(ratios).zip(&mut spread_sums) {
                 let next = replaced(lanes, *state, ratio, BEAT as f32);
                 let next = lanes.min(next, lanes.splat(LARGEST));

@@ -33,10 +33,15 @@ pub fn replaced<L: Lanes>(lanes: L, state: L::Numbers, ratio: L::Numbers, rows: 
     lanes.mul(lanes.add(state, lanes.splat(rows)), ratio)
 }
 
-/// Likelihood ratios of a standard deviation sqrt(2), 2 and 1/2 times what it was, from the sum T
-/// of the squares of a beat: their exponents are T / 4, 3 T / 8 and - 3 T / 2.
+/// Likelihood ratios of a standard deviation s of sqrt(2), 2 and 1/2 times what it was, from the
+/// sum T of the squares of so many scores of a beat: s^-count times powers of e whose exponents are
+/// T / 4, 3 T / 8 and - 3 T / 2.
 #[inline(always)]
-pub fn spread_ratios<L: Lanes>(lanes: L, squares: L::Numbers) -> [L::Numbers; SPREADS] {
+pub fn spread_ratios<L: Lanes>(
+    lanes: L,
+    squares: L::Numbers,
+    count: L::Numbers,
+) -> [L::Numbers; SPREADS] {
     let small = lanes.mul(squares, lanes.splat(1.0 / 512.0));
     let (grow, shrink) = powers(lanes, small, 0);
     let (grow_64, shrink_256) = (squared(lanes, grow, 6), squared(lanes, shrink, 8));
@@ -47,7 +52,12 @@ pub fn spread_ratios<L: Lanes>(lanes: L, squares: L::Numbers) -> [L::Numbers; SP
         lanes.mul(squared(lanes, shrink_256, 1), shrink_256),
     ];
     for (ratio, factor) in ratios.iter_mut().zip([0.5f32.sqrt(), 0.5, 2.0]) {
-        *ratio = lanes.mul(*ratio, lanes.splat(factor.powi(BEAT as i32)));
+        let mut power = lanes.splat(factor.powi(BEAT as i32));
+        for fewer in 1..BEAT as i32 {
+            let same = lanes.equal(count, lanes.splat(fewer as f32));
+            power = lanes.select(same, lanes.splat(factor.powi(fewer)), power);
+        }
+        *ratio = lanes.mul(*ratio, power);
     }
     ratios
 }

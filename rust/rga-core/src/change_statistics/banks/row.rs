@@ -47,9 +47,9 @@ impl Banks {
         let mut count = self.sensors as f32;
         if gaps {
             let behind = (sixteens(self.sensors) * SIXTEEN - self.sensors) as f32;
-            count = (count + behind - lanes.sum(row.missing)).max(1.0);
+            count += behind - lanes.sum(row.missing);
         }
-        let squares = (lanes.sum(row.squares) - count) / (2.0 * count).sqrt();
+        let squares = (lanes.sum(row.squares) - count) / (2.0 * count.max(1.0)).sqrt();
         [lanes.sum(row.alike), squares]
     }
 }
