@@ -162,8 +162,13 @@ def test_a_confidence_is_a_quantile() -> None:
     """Of the standard normal distribution, whose 0.975 quantile every table has."""
     rows = np.random.default_rng(8).normal(size=(30, 2))
     bounds = []
-    for bound in ({"confidence": 0.975}, {"z": 1.959963984540054}, {"confidence": 0.5}, {"z": 0.0}):
-        window = GaussianWindow(2, 30, **bound)
+    for stated in (
+        {"confidence": 0.975},
+        {"z": 1.959963984540054},
+        {"confidence": 0.5},
+        {"z": 0.0},
+    ):
+        window = GaussianWindow(2, 30, **stated)
         window.update_many(rows)
         assert np.array_equal(pickle.loads(pickle.dumps(window)).bound, window.bound)
         bounds.append(window.bound)

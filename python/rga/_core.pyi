@@ -196,6 +196,7 @@ class ChangeStatistics:
     def from_bytes(cls, state: bytes) -> Self:
         """The statistics that `to_bytes` stored; InputError for other bytes."""
 
+@final
 class GaussianWindow:
     """A Gaussian bound for each sensor, on a stream; `help(GaussianWindow)` tells the rule."""
 

@@ -12,6 +12,11 @@
 //! M Q - S^2 loses digits where the values have moved away from the shift or
 //! have shrunk (an outlier has left). S and Q are summed anew from the window
 //! before that can turn a decision, and every `LAPS` windows in any case.
+//!
+//! Sensors go in blocks of eight, one a lane of SIMD vectors (`block`): a few rows at a time
+//! (`tile`) pass through one block after the other (`pass`). Where some values of a block are
+//! missing, fill a window or stay outside, its lanes part ways (`careful`). Products are added
+//! without rounding in between, so that decisions do not depend on the processor.
 
 mod block;
 mod bytes;
@@ -46,7 +51,7 @@ pub struct GaussianWindow {
     rows: u64,
     /// Where the next row goes, 0..M.
     slot: usize,
-    /// Lanes behind the last sensor hold that sensor again.
+    /// The last one overlaps the one before, so that it is full.
     blocks: Vec<Block>,
     /// `[M, blocks]`
     ring: Vec<Eight>,

@@ -410,14 +410,14 @@ impl Work {
     }
 }
 
-/// A number less itself is 0, and what is none stays none: eight sums of that, side by side.
+/// A number times 0 is 0, and what is none stays none: eight sums of that, side by side.
 #[inline(always)]
 fn any_missing(values: &[f64]) -> bool {
     let (eights, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];
     for eight in eights {
         for (sum, value) in sums.iter_mut().zip(eight) {
-            *sum += value - value;
+            *sum += value * 0.0;
         }
     }
     sums.iter().chain(rest).any(|value| value.is_nan())
