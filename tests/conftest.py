@@ -216,6 +216,7 @@ def small_stream(
         settings = {
             "calibration_rows": 40,
             "packet": 10,
+            "detector": "window",
             "window": 30,
             "persistence": [3, 4],
             "settle": 12,

@@ -1,0 +1,123 @@
+"""The monitor in the twin: alarms about residuals, beside twins without a change."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import rga
+from rga.twin import Outcome, Settings
+from rga.twin.monitored import Monitored
+from rga.twin.synchrony import OutOfSync, synchrony
+from rga.twin.window_rule import WindowRule
+
+CHANNELS = ("D1", "D2", "dead", "stuck", "S1")
+Residuals = NDArray[np.float64]
+
+
+def residuals(rows: int = 300, *, step: float = 0.0) -> Residuals:
+    """Noise of the residuals of five channels; S1 has a step at row 200."""
+    draw = np.random.default_rng(4).standard_normal((rows, 5)) * [0.1, 2.0, 1.0, 1.0, 5.0]
+    draw[:, 2] = np.nan
+    draw[:, 3] = 0.7
+    draw[200:, 4] += step
+    return draw
+
+
+def watched(detector: Monitored, rows: Residuals, first: int, packet: int) -> OutOfSync | None:
+    for start in range(first, len(rows), packet):
+        found = detector.alarm(start, rows[: start + packet])
+        if found is not None:
+            return found
+    return None
+
+
+def test_a_step_is_told_with_its_sensor_and_onset() -> None:
+    rows = residuals(step=15.0)
+    detector = Monitored(CHANNELS, Settings())
+    detector.begin_again(0, rows[:100])
+    found = watched(detector, rows, 100, 10)
+    assert found is not None
+    assert found.sensors == ("S1",)
+    assert 198 <= found.since <= found.row <= 205
+    assert "in S1 since row" in found.words
+
+
+def test_without_a_step_there_is_no_alarm() -> None:
+    rows = residuals()
+    detector = Monitored(CHANNELS, Settings())
+    detector.begin_again(0, rows[:100])
+    assert watched(detector, rows, 100, 10) is None
+
+
+def test_packets_of_any_size_and_restarts_find_the_same() -> None:
+    rows = residuals(step=15.0)
+    found = []
+    for packet in (1, 7, 50):
+        detector = Monitored(CHANNELS, Settings())
+        detector.begin_again(0, rows[:100])
+        assert watched(detector, rows[:150], 100, packet) is None
+        resumed = Monitored(CHANNELS, Settings())
+        resumed.restore(detector.to_bytes())
+        alarm = watched(resumed, rows, 150, packet)
+        assert alarm is not None
+        found.append(alarm.row)
+    assert len(set(found)) == 1
+
+
+def test_what_a_recalibration_dealt_with_is_usual_from_then_on() -> None:
+    rows = residuals(step=15.0)
+    detector = Monitored(CHANNELS, Settings())
+    detector.begin_again(0, rows[:100])
+    assert watched(detector, rows[:260], 100, 10) is not None
+    detector.begin_again(None, rows[:260])
+    assert watched(detector, rows, 260, 10) is None
+
+
+def test_few_rows_are_waited_for() -> None:
+    rows = residuals(step=15.0)
+    detector = Monitored(CHANNELS, Settings())
+    detector.begin_again(0, rows[:10])
+    restored = Monitored(CHANNELS, Settings())
+    restored.restore(detector.to_bytes())
+    found = watched(restored, rows, 10, 10)
+    assert found is not None
+    assert 198 <= found.since <= found.row <= 215
+
+
+def test_channels_without_readings_are_never_told() -> None:
+    rows = np.full((80, 2), np.nan)
+    detector = Monitored(("a", "b"), Settings())
+    detector.begin_again(0, rows[:40])
+    assert watched(detector, rows, 40, 10) is None
+    assert detector.doubts == ()
+
+
+def test_settings_choose_the_detector() -> None:
+    assert isinstance(synchrony(CHANNELS, Settings()), Monitored)
+    assert isinstance(synchrony(CHANNELS, Settings(detector="window")), WindowRule)
+
+
+def played(folder: Path, directory: Path) -> Outcome:
+    model = rga.load_model(folder / "model.json")
+    record = rga.load_record(folder / "record.csv", model)
+    settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+    chosen = Settings.model_validate(settings | {"detector": "monitor", "level": "B"})
+    return rga.run(model, record, directory, settings=chosen)
+
+
+@pytest.mark.parametrize("sinks", [True, False])
+def test_the_twin_tells_since_when_a_bearing_is_lower(
+    sinks: bool, small_stream: Callable[..., Path], tmp_path: Path
+) -> None:
+    """A bearing sinks at row 105; in the null twin nothing does."""
+    outcome = played(small_stream(drifts=False, sinks=sinks), tmp_path)
+    alarms = [event for event in outcome.history.events if event.kind == "alarm"]
+    assert bool(alarms) == sinks
+    if sinks:
+        assert 105 <= alarms[0].row < 112
+        since = int(alarms[0].words.rsplit(" ", 1)[1])
+        assert abs(since - 105) <= 2
