@@ -119,8 +119,9 @@ def test_outliers_of_a_baseline_weigh_little() -> None:
     [
         (np.ones(5), "its shape must be"),
         (np.ones((5, 0)), "its shape must be"),
-        (np.ones((3, 2)), "sensor 0 has 3 readings"),
-        (np.zeros((0, 2)), "sensor 0 has 0 readings"),
+        (np.ones((3, 2)), "as to sensor 0, it has 3 readings in the baseline, fewer than 30"),
+        (np.zeros((0, 2)), "as to sensor 0, it has 0 readings"),
+        (np.ones((50, 2)), "as to sensor 0, its readings in the baseline are all alike"),
         ([["a", "b"]], "give an array of numbers"),
         ([[1.0, 2.0], [3.0]], "give an array of numbers"),
         (None, "its shape must be"),
@@ -134,14 +135,36 @@ def test_what_is_no_baseline_is_refused(rows: Any, words: str) -> None:
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        (MISSING, "sensor 2 has 0 readings, fewer than 30"),
-        (7.0, "the readings of sensor 2 are all alike"),
         (float("inf"), "the value is inf .row 0 of the baseline, sensor 2"),
         (1e61, "the value is 1e.61"),
     ],
 )
-def test_a_sensor_that_tells_nothing_is_named(value: float, words: str) -> None:
+def test_a_number_that_is_none_of_a_sensors_is_named(value: float, words: str) -> None:
     rows = noise("white", 100, 0)
     rows[:, 2] = value
     with pytest.raises(InputError, match=words):
         SyncMonitor(rows)
+
+
+@pytest.mark.parametrize(("value", "why"), [(MISSING, "0 readings"), (7.0, "all alike")])
+def test_a_sensor_that_tells_nothing_is_left_out(value: float, why: str) -> None:
+    """The others are watched as if it were not there, under their own numbers."""
+    baseline, stream = noise("white", 200, 0), noise("white", 60, 1)
+    stream[20:, 3] += 5.0
+    without = SyncMonitor(np.delete(baseline, 2, axis=1))
+    expected = without.update_many(np.delete(stream, 2, axis=1))
+    baseline[:, 2] = value
+    monitor = SyncMonitor(baseline)
+    assert list(monitor.unwatched) == [2]
+    assert why in monitor.unwatched[2]
+    stream[:, 2] = 1e9
+    again = SyncMonitor.from_bytes(monitor.to_bytes())
+    for one in (monitor, again):
+        assert np.array_equal(one.update_many(stream), expected)
+        assert one.alarm is not None
+        assert one.alarm.sensors == (3,)
+        assert one.unwatched == monitor.unwatched
+    with pytest.raises(InputError, match="row 60 of the stream, sensor 1"):
+        monitor.update([0.0, float("inf"), *stream[0, 2:]])
+    with pytest.raises(InputError, match="its shape must be"):
+        monitor.update_many(np.delete(stream, 2, axis=1))

@@ -1,6 +1,7 @@
 """The monitor: alarms about any change of a stream, as rare without one as its user tolerates."""
 
 import json
+from dataclasses import replace
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -17,7 +18,9 @@ from rga.detection.calibration import (
     simulated_memory,
 )
 from rga.detection.lookback import changed
-from rga.detection.reference import Reference, checked
+from rga.detection.reference import Reference, unwatched
+from rga.detection.rows import row as row_of
+from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
@@ -56,15 +59,16 @@ class SyncMonitor:
     An alarm stands until `begin_again`. NaN is a missing reading.
 
     Args:
-        baseline: float[rows, n_sensors], NaN where missing. The longer, the smaller the changes
+        baseline: float[rows, n_sensors], NaN where missing; a sensor of which it says too little
+            is not watched, and `unwatched` names it. The longer, the smaller the changes
             that can be told from what the baseline leaves open.
         arl0: rows between false alarms (average run length without a change), 100 to 1e12;
             `rows_between` counts them from alarms per month.
         seed: of the simulation of thresholds.
 
     Raises:
-        InputError: the baseline is no table of numbers, has fewer than 30 readings of a sensor or
-            readings all alike; a number beyond 1e60 in size; `arl0` below 100 or above 1e12; a seed
+        InputError: the baseline is no table of numbers, or has no sensor with 30 readings that are
+            not all alike; a number beyond 1e60 in size; `arl0` below 100 or above 1e12; a seed
             below 0.
 
     Examples:
@@ -78,8 +82,14 @@ class SyncMonitor:
     """
 
     def __init__(self, baseline: ArrayLike, *, arl0: float = 10_000.0, seed: int = 0) -> None:
-        rows = _table(baseline, "the baseline")
-        checked(rows)
+        given = table(baseline, "the baseline")
+        within(given, 0, "the baseline")
+        self._unwatched = unwatched(given)
+        self._watched = np.array([one not in self._unwatched for one in range(given.shape[1])])
+        if not self._watched.any():
+            what = f"no sensor can be watched; as to sensor 0, {self._unwatched[0]}"
+            raise InputError(what, "the baseline", "give a longer one, or other sensors")
+        rows = np.ascontiguousarray(given[:, self._watched])
         reference = Reference.learn(rows)
         memory, length = memory_of(reference.weights), _rounded(len(rows))
         simulated = calibration(
@@ -106,6 +116,7 @@ class SyncMonitor:
         if n_sensors < 1:
             raise InputError(f"{n_sensors} sensors", "n_sensors", "give 1 or more")
         monitor = cls.__new__(cls)
+        monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
         simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), _seed(seed))
         monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
         return monitor
@@ -116,7 +127,7 @@ class SyncMonitor:
         Raises:
             InputError: another shape, or an infinite number; the row has then not entered.
         """
-        return bool(self._statistics.update_many(_row(row))[0])
+        return bool(self._take(row_of(row))[0])
 
     def update_many(self, rows: ArrayLike) -> NDArray[np.bool_]:
         """Whether an alarm stands after each of the rows float[n, n_sensors]: bool[n].
@@ -124,7 +135,7 @@ class SyncMonitor:
         Raises:
             InputError: another shape, or an infinite number; no row has then entered.
         """
-        return self._statistics.update_many(_table(rows, "rows"))
+        return self._take(table(rows, "rows"))
 
     @property
     def alarm(self) -> Alarm | None:
@@ -136,7 +147,9 @@ class SyncMonitor:
         scores = self._statistics.recent().astype(float)
         first = self._statistics.rows - len(scores)
         raised_by = str(STATISTICS[statistic])
-        return explain(scores, first, row, raised_by, self._sizes, self._signature)
+        told = explain(scores, first, row, raised_by, self._sizes, self._signature)
+        columns = np.flatnonzero(self._watched)
+        return replace(told, sensors=tuple(columns[list(told.sensors)].tolist()))
 
     @property
     def rows(self) -> int:
@@ -153,6 +166,11 @@ class SyncMonitor:
         """Reasons why false alarms may come more often than they should."""
         return self._doubts
 
+    @property
+    def unwatched(self) -> dict[int, str]:
+        """Sensors that are not watched, by their columns, and why."""
+        return dict(self._unwatched)
+
     def begin_again(self) -> None:
         """Forget the alarm and all evidence; what the baseline told stays."""
         self._statistics.begin_again()
@@ -163,6 +181,8 @@ class SyncMonitor:
             "arl0": self._arl0,
             "seed": self._seed,
             "doubts": self._doubts,
+            "sensors": len(self._watched),
+            "unwatched": list(self._unwatched.items()),
             "sizes": self._sizes.tolist(),
             "signature": self._signature.tolist(),
         }
@@ -182,10 +202,14 @@ class SyncMonitor:
             told = json.loads(head)
             monitor._arl0, monitor._seed = float(told["arl0"]), int(told["seed"])
             monitor._doubts = tuple(told["doubts"])
+            monitor._unwatched = {int(one): str(why) for one, why in told["unwatched"]}
+            columns = np.arange(int(told["sensors"]))
+            monitor._watched = ~np.isin(columns, list(monitor._unwatched))
             monitor._sizes = np.array(told["sizes"], dtype=float)
             monitor._signature = np.array(told["signature"], dtype=float)
             sensors = monitor._statistics.recent().shape[1:]
-            if not (monitor._sizes.shape == monitor._signature.shape == sensors):
+            shapes = {monitor._sizes.shape, monitor._signature.shape, sensors}
+            if shapes != {(monitor._watched.sum(),)}:
                 raise ValueError
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             remedy = "give the bytes that to_bytes() returned"
@@ -194,6 +218,15 @@ class SyncMonitor:
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
         return type(self).from_bytes, (self.to_bytes(),)
+
+    def _take(self, rows: FloatArray) -> NDArray[np.bool_]:
+        if rows.shape[1] != len(self._watched):
+            what = f"the array has shape {list(rows.shape)}"
+            raise InputError(what, "rows", f"its shape must be [n, {len(self._watched)}]")
+        if not self._watched.all():
+            within(rows, self.rows, "the stream")
+            rows = np.ascontiguousarray(rows[:, self._watched])
+        return self._statistics.update_many(rows)
 
     def _begin(self, reference: Reference, simulated: Calibration, arl0: float, seed: int) -> None:
         self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
@@ -222,48 +255,28 @@ def rows_between(
     if per not in SECONDS:
         raise InputError(f"there is no time {per!r}", "per", f"give one of {', '.join(SECONDS)}")
     for name, value in (("alarms", alarms), ("rate", rate)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{name} is {value}", name, "give a number above 0")
+        if not (_is_number(value) and np.isfinite(value) and value > 0):
+            raise InputError(f"{name} is {value!r}", name, "give a number above 0")
     return SECONDS[per] * rate / alarms
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
 def _arl0(value: float) -> float:
-    if not LEAST <= value <= MOST:
+    if not (_is_number(value) and LEAST <= value <= MOST):
         remedy = f"give {LEAST:g} to {MOST:g} rows between false alarms"
-        raise InputError(f"arl0 is {value}", "arl0", remedy)
+        raise InputError(f"arl0 is {value!r}", "arl0", remedy)
     return float(value)
 
 
 def _seed(value: int) -> int:
-    if value < 0:
-        raise InputError(f"the seed is {value}", "seed", "give 0 or more")
+    if not isinstance(value, int | np.integer) or value < 0:
+        raise InputError(f"the seed is {value!r}", "seed", "give a whole number from 0 on")
     return value
 
 
 def _rounded(rows: int) -> int:
     """Down to lengths that thresholds are simulated for: a shorter baseline says less."""
     return int(np.ceil(LENGTHS ** np.floor(np.log(rows) / np.log(LENGTHS))))
-
-
-def _table(values: ArrayLike, name: str) -> FloatArray:
-    try:
-        table = np.ascontiguousarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        remedy = "give an array of numbers, with NaN for a missing reading"
-        raise InputError(str(error), name, remedy) from None
-    if table.ndim != 2 or table.shape[1] == 0:
-        raise InputError(
-            f"the array has shape {list(table.shape)}", name, "its shape must be [n, sensors]"
-        )
-    return table
-
-
-def _row(values: ArrayLike) -> FloatArray:
-    try:
-        row = np.ascontiguousarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        remedy = "give an array of numbers, with NaN for a missing reading"
-        raise InputError(str(error), "row", remedy) from None
-    if row.ndim != 1:
-        raise InputError(f"the array has shape {list(row.shape)}", "row", "give one row")
-    return row[None]

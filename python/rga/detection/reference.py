@@ -8,7 +8,6 @@ from scipy.stats import norm
 from rga import _core
 from rga.detection.memory import predictors
 from rga.detection.mixing import independence
-from rga.errors import InputError
 from rga.model.parameter import FloatArray
 
 #: rows that a sensor must have been read in
@@ -220,23 +219,19 @@ def outer_slope(units: FloatArray, knot: FloatArray, count: FloatArray) -> Float
     return np.asarray(common + weight * (np.where(np.isfinite(own), own, common) - common))
 
 
-def checked(baseline: FloatArray) -> None:
-    """Refuse a baseline that says too little.
+def unwatched(baseline: FloatArray) -> dict[int, str]:
+    """Sensors of which a baseline says too little, and why.
 
-    Raises:
-        InputError: a number beyond 1e60 in size; a sensor has fewer than 30 readings, or its
-            readings are all alike.
+    Args:
+        baseline: float[rows, sensors], NaN where missing.
     """
-    if (np.abs(baseline) > MOST).any():
-        row, sensor = np.argwhere(np.abs(baseline) > MOST)[0]
-        place = f"row {row} of the baseline, sensor {sensor}"
-        remedy = f"give numbers within {MOST:g} in size, and NaN for a missing reading"
-        raise InputError(f"the value is {baseline[row, sensor]:g}", place, remedy)
-    remedy = "give a longer baseline, or leave the sensor out"
-    count = np.isfinite(baseline).sum(axis=0)
-    for sensor in np.flatnonzero(count < FEWEST):
-        what = f"sensor {sensor} has {count[sensor]} readings, fewer than {FEWEST}"
-        raise InputError(what, "the baseline", remedy)
-    alike = np.nanmin(baseline, axis=0) == np.nanmax(baseline, axis=0)
-    for sensor in np.flatnonzero(alike):
-        raise InputError(f"the readings of sensor {sensor} are all alike", "the baseline", remedy)
+    known = np.isfinite(baseline)
+    count = known.sum(axis=0)
+    lowest = np.where(known, baseline, np.inf).min(axis=0, initial=np.inf)
+    highest = np.where(known, baseline, -np.inf).max(axis=0, initial=-np.inf)
+    few = {
+        int(sensor): f"it has {count[sensor]} readings in the baseline, fewer than {FEWEST}"
+        for sensor in np.flatnonzero(count < FEWEST)
+    }
+    alike = np.flatnonzero((count >= FEWEST) & (lowest == highest))
+    return few | {int(sensor): "its readings in the baseline are all alike" for sensor in alike}

@@ -3,10 +3,8 @@
 import json
 from collections.abc import Sequence
 
-import numpy as np
-
 from rga.detection import SyncMonitor
-from rga.detection.reference import FEWEST
+from rga.detection.reference import unwatched
 from rga.model.parameter import FloatArray
 from rga.twin.settings import Settings
 from rga.twin.synchrony import OutOfSync, listed
@@ -25,9 +23,8 @@ class Monitored:
     """
 
     def __init__(self, channels: Sequence[str], settings: Settings) -> None:
-        self._channels, self._settings = np.array(channels), settings
+        self._channels, self._settings = tuple(channels), settings
         self._monitor: SyncMonitor | None = None
-        self._watched = np.zeros(len(channels), dtype=bool)
         #: rows that the baseline begins with, and that the monitor began with
         self._baseline = self._began = 0
 
@@ -41,12 +38,11 @@ class Monitored:
         if self._monitor is None:
             self._learn(residuals)
             return None
-        self._monitor.update_many(residuals[first:, self._watched])
+        self._monitor.update_many(residuals[first:])
         alarm = self._monitor.alarm
         if alarm is None:
             return None
-        names = tuple(self._channels[self._watched].tolist())
-        sensors = tuple(names[one] for one in alarm.sensors)
+        sensors = tuple(self._channels[one] for one in alarm.sensors)
         since = self._began + alarm.since
         words = f"out of sync: {alarm.looks} in {listed(sensors)} since row {since}"
         return OutOfSync(self._began + alarm.row, since, sensors, words)
@@ -70,11 +66,7 @@ class Monitored:
 
     def to_bytes(self) -> bytes:
         """The state."""
-        head = {
-            "watched": self._watched.tolist(),
-            "baseline": self._baseline,
-            "began": self._began,
-        }
+        head = {"baseline": self._baseline, "began": self._began}
         monitor = b"" if self._monitor is None else self._monitor.to_bytes()
         return json.dumps(head).encode() + b"\n" + monitor
 
@@ -82,19 +74,11 @@ class Monitored:
         """Go on where another stood."""
         head, _, monitor = state.partition(b"\n")
         known = json.loads(head)
-        self._watched = np.array(known["watched"], dtype=bool)
         self._baseline, self._began = known["baseline"], known["began"]
         self._monitor = SyncMonitor.from_bytes(monitor) if monitor else None
 
     def _learn(self, residuals: FloatArray) -> None:
         baseline = residuals[self._baseline :]
-        readings = np.isfinite(baseline).sum(axis=0)
-        largest, smallest = (
-            np.where(np.isfinite(baseline), baseline, fill) for fill in (-np.inf, np.inf)
-        )
-        moves = largest.max(axis=0, initial=-np.inf) > smallest.min(axis=0, initial=np.inf)
-        self._watched = (readings >= FEWEST) & moves
-        if self._watched.any():
-            watched = baseline[:, self._watched]
-            self._monitor = SyncMonitor(watched, arl0=self._settings.arl0)
+        if len(unwatched(baseline)) < len(self._channels):
+            self._monitor = SyncMonitor(baseline, arl0=self._settings.arl0)
             self._began = len(residuals)
