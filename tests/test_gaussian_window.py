@@ -307,3 +307,11 @@ def test_foreign_bytes_are_refused() -> None:
     for other in (b"", b"rga", b"x" * len(state), state[:-8], state + bytes(8), bytes(outside)):
         with pytest.raises(InputError, match="to_bytes"):
             GaussianWindow.from_bytes(other)
+
+
+def test_masked_values_are_missing() -> None:
+    window = GaussianWindow(2, 3)
+    window.update_many(np.zeros((3, 2)))
+    row = np.ma.masked_array([0.0, 1e9], [False, True])
+    assert not window.update(row).any()
+    assert window.update([0.0, 1e9]).tolist() == [False, True]

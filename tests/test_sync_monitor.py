@@ -1,6 +1,7 @@
 """The monitor: what it finds beside its null twin, how rare false alarms are, how it restarts."""
 
 import pickle
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -306,3 +307,81 @@ def test_rows_between_false_alarms() -> None:
         given: dict[str, Any] = {"alarms": 1, "per": "day", "rate": 1.0, **arguments}
         with pytest.raises(InputError, match="give"):
             rows_between(**given)
+
+
+def test_an_alarm_stays_explained_by_the_rows_around_it() -> None:
+    """However many rows come behind it, and in whatever chunks."""
+    generator = np.random.default_rng(0)
+    monitor = SyncMonitor(generator.normal(size=(500, 3)), arl0=2000)
+    stream = generator.normal(size=(9000, 3))
+    stream[300:, 1] += 2.0
+    told = []
+    for chunk in (9000, 700):
+        one = pickle.loads(pickle.dumps(monitor))
+        for first in range(0, len(stream), chunk):
+            one.update_many(stream[first : first + chunk])
+        told.append(one.alarm)
+    assert told[0] == told[1]
+    assert told[0] is not None
+    assert told[0].since_ci90[0] <= told[0].since <= told[0].since_ci90[1] <= told[0].row
+    assert abs(told[0].since - 300) < 10
+    one.begin_again()
+    assert one.alarm is None
+
+
+@pytest.mark.parametrize("sensors", [1, 3])
+def test_a_logger_that_is_silent_raises_no_alarm(sensors: int) -> None:
+    monitor = SyncMonitor.known(sensors, arl0=500)
+    assert not monitor.update_many(np.full((3000, sensors), np.nan)).any()
+
+
+def test_sensors_that_repeat_others_are_doubted() -> None:
+    rows = np.random.default_rng(1).normal(size=(400, 4))
+    assert SyncMonitor(rows, arl0=500).doubts == ()
+    copied = np.c_[rows, rows[:, 1]]
+    (doubt,) = SyncMonitor(copied, arl0=500).doubts
+    assert doubt.startswith("sensors 1, 4 read nearly what others of them read")
+
+
+def test_coarse_readings_are_doubted() -> None:
+    rows = np.random.default_rng(2).normal(size=(400, 2))
+    coarse = np.c_[rows[:, 0], np.round(rows[:, 1] / 2.0)]
+    assert "sensor 1 reads mostly one value" in " ".join(SyncMonitor(coarse, arl0=500).doubts)
+
+
+def test_masked_readings_are_missing() -> None:
+    rows = np.random.default_rng(3).normal(size=(200, 2))
+    monitor = SyncMonitor(rows, arl0=500)
+    again = pickle.loads(pickle.dumps(monitor))
+    stream = np.random.default_rng(4).normal(size=(100, 2))
+    stream[::3, 0] = np.nan
+    monitor.update_many(stream)
+    again.update_many(np.ma.masked_invalid(stream))
+    assert again.to_bytes() == monitor.to_bytes()
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda rows: SyncMonitor(rows, arl0="x"),
+        lambda rows: SyncMonitor(rows, arl0=None),
+        lambda rows: SyncMonitor(rows, seed=1.5),
+        lambda rows: SyncMonitor(rows + 1j),
+        lambda rows: SyncMonitor(rows.astype("M8[s]")),
+        lambda rows: SyncMonitor(rows.astype(str)),
+        lambda rows: SyncMonitor.known("3"),  # type: ignore[arg-type]
+        lambda rows: SyncMonitor.known(10**9),
+        lambda rows: SyncMonitor.from_bytes("state"),  # type: ignore[arg-type]
+        lambda rows: rows_between("1", per="month", rate=1.0),  # type: ignore[arg-type]
+        lambda rows: rows_between(1, per=["day"], rate=1.0),  # type: ignore[arg-type]
+    ],
+)
+def test_what_is_of_another_type_is_refused(made: Callable[[Rows], Any]) -> None:
+    with pytest.raises(InputError):
+        made(np.random.default_rng(5).normal(size=(60, 2)))
+
+
+def test_a_seed_that_was_drawn_is_kept() -> None:
+    rows = np.random.default_rng(6).normal(size=(60, 2))
+    monitor = SyncMonitor(rows, arl0=500, seed=np.int64(3))
+    assert pickle.dumps(monitor) == pickle.dumps(SyncMonitor(rows, arl0=500, seed=3))

@@ -176,7 +176,14 @@ class ChangeStatistics:
         """The largest value of each statistic since this was last asked."""
 
     def recent(self) -> NDArray[np.float32]:
-        """Scores of the latest rows since the statistics began, float32[rows, sensors]."""
+        """Scores of the latest rows since the statistics began, or of those around the alarm.
+
+        float32[rows, sensors]
+        """
+
+    @property
+    def recent_first(self) -> int:
+        """Row of the stream that the first of these rows is."""
 
     def begin_again(self) -> None:
         """Forget the alarm and all evidence."""

@@ -203,7 +203,8 @@ def probability(ratios: FloatArray, mixtures: FloatArray) -> FloatArray:
     """
     weights = np.exp(mixtures - logsumexp(mixtures))
     chances = expit([np.log(part / (1.0 - part)) + ratios for part in PARTS])
-    return np.asarray(weights[: len(PARTS)] @ chances + weights[len(PARTS) :].sum())
+    found = weights[: len(PARTS)] @ chances + weights[len(PARTS) :].sum()
+    return np.asarray(np.minimum(found, 1.0))
 
 
 def changes(kind: Kind, scores: FloatArray, there: NDArray[np.float64]) -> FloatArray:

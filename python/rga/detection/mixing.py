@@ -4,6 +4,8 @@ import numpy as np
 
 from rga.model.parameter import FloatArray
 
+#: variance of a sum of sensors below which they repeat each other, and their least part in it
+REPEATED, PART = 0.02, 0.1
 #: correlations that are for so large a part due to chance are taken for none
 CHANCE = 0.8
 
@@ -62,3 +64,14 @@ def inverse_root(correlation: FloatArray) -> FloatArray:
     """The symmetric matrix whose square is the inverse."""
     values, vectors = np.linalg.eigh(correlation)
     return np.asarray((vectors / np.sqrt(np.maximum(values, 1e-6))) @ vectors.T)
+
+
+def repeating(scores: FloatArray) -> list[int]:
+    """Sensors that others nearly repeat: some sum of theirs hardly varies.
+
+    Args:
+        scores: float[rows, sensors], NaN where missing.
+    """
+    values, vectors = np.linalg.eigh(correlations(scores)[0])
+    part = (vectors[:, values < REPEATED] ** 2).sum(axis=1)
+    return [int(sensor) for sensor in np.flatnonzero(part > PART)]

@@ -9,15 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rga import _core
 from rga.detection.alarm import Alarm, explain
-from rga.detection.calibration import (
-    MEMORIES,
-    WITHIN,
-    Calibration,
-    calibration,
-    memory_of,
-    simulated_memory,
-)
-from rga.detection.lookback import changed
+from rga.detection.calibration import Calibration, calibration, memory_of, simulated_memory
+from rga.detection.doubts import doubts
 from rga.detection.reference import Reference, unwatched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
@@ -29,16 +22,9 @@ from rga.model.parameter import FloatArray
 ROWS_KEPT = 2048
 #: rows between false alarms, at least and at most
 LEAST, MOST = 100.0, 1e12
-#: a baseline that chance makes so changeable less often is doubted
-DOUBTED = 0.01
-CHANGEABLE = (
-    "the baseline changes by itself more than its memory explains: false alarms will come more "
-    "often; take a longer one, or one during which nothing changes"
-)
-WANDERING = (
-    "the readings wander: they go with the ones before almost entirely, more than thresholds allow "
-    "for; watch what they differ by from one row to the next"
-)
+#: sensors go together in a matrix
+MOST_SENSORS = 10_000
+RETURNED = "give the bytes that to_bytes() returned"
 #: lengths of a baseline grow by this factor from one calibration to the next
 LENGTHS = 1.25
 
@@ -56,7 +42,7 @@ class SyncMonitor:
     come from simulated streams, whose references are learned from baselines as long as the user's,
     so that an alarm without a change comes once in `arl0` rows on average.
 
-    An alarm stands until `begin_again`. NaN is a missing reading.
+    An alarm stands until `begin_again`. NaN is a missing reading; gaps raise no alarms.
 
     Args:
         baseline: float[rows, n_sensors], NaN where missing; a sensor of which it says too little
@@ -96,10 +82,8 @@ class SyncMonitor:
             rows.shape[1], length, simulated_memory(memory), _arl0(arl0), _seed(seed)
         )
         self._begin(reference, simulated, arl0, seed)
-        if memory > MEMORIES[-1] + WITHIN:
-            self._doubts += (WANDERING,)
-        if changed(reference, rows, simulated) < DOUBTED:
-            self._doubts += (CHANGEABLE,)
+        columns = np.flatnonzero(self._watched).tolist()
+        self._doubts: tuple[str, ...] = doubts(reference, rows, simulated, columns)
 
     @classmethod
     def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:
@@ -113,8 +97,9 @@ class SyncMonitor:
         Raises:
             InputError: no sensor; `arl0` below 100 or above 1e12; a seed below 0.
         """
-        if n_sensors < 1:
-            raise InputError(f"{n_sensors} sensors", "n_sensors", "give 1 or more")
+        if not (isinstance(n_sensors, int | np.integer) and 1 <= n_sensors <= MOST_SENSORS):
+            remedy = f"give a whole number from 1 to {MOST_SENSORS}"
+            raise InputError(f"{n_sensors!r} sensors", "n_sensors", remedy)
         monitor = cls.__new__(cls)
         monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
         simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), _seed(seed))
@@ -122,12 +107,12 @@ class SyncMonitor:
         return monitor
 
     def update(self, row: ArrayLike) -> bool:
-        """Whether an alarm stands after a row, float[n_sensors].
+        """Whether an alarm stands after a row, float[n_sensors], raised by it or before.
 
         Raises:
             InputError: another shape, or an infinite number; the row has then not entered.
         """
-        return bool(self._take(row_of(row))[0])
+        return bool(self._take(row_of(row, len(self._watched)))[0])
 
     def update_many(self, rows: ArrayLike) -> NDArray[np.bool_]:
         """Whether an alarm stands after each of the rows float[n, n_sensors]: bool[n].
@@ -139,13 +124,17 @@ class SyncMonitor:
 
     @property
     def alarm(self) -> Alarm | None:
-        """The alarm that stands, explained by the rows so far."""
+        """The alarm that stands, explained by the rows around it.
+
+        These are the 1024 rows up to the alarm and the 1024 behind it, as far as they have come:
+        what is told gets surer with them.
+        """
         raised = self._statistics.alarm
         if raised is None:
             return None
         row, statistic = raised
         scores = self._statistics.recent().astype(float)
-        first = self._statistics.rows - len(scores)
+        first = self._statistics.recent_first
         raised_by = str(STATISTICS[statistic])
         told = explain(scores, first, row, raised_by, self._sizes, self._signature)
         columns = np.flatnonzero(self._watched)
@@ -195,7 +184,9 @@ class SyncMonitor:
         Raises:
             InputError: other bytes.
         """
-        head, _, rest = state.partition(b"\n")
+        if not isinstance(state, bytes | bytearray | memoryview):
+            raise InputError(f"{type(state).__name__} is no state", "from_bytes", RETURNED)
+        head, _, rest = bytes(state).partition(b"\n")
         monitor = cls.__new__(cls)
         monitor._statistics = _core.ChangeStatistics.from_bytes(rest)
         try:
@@ -212,8 +203,7 @@ class SyncMonitor:
             if shapes != {(monitor._watched.sum(),)}:
                 raise ValueError
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
-            remedy = "give the bytes that to_bytes() returned"
-            raise InputError("the bytes are no such state", "from_bytes", remedy) from None
+            raise InputError("the bytes are no such state", "from_bytes", RETURNED) from None
         return monitor
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
@@ -230,9 +220,9 @@ class SyncMonitor:
 
     def _begin(self, reference: Reference, simulated: Calibration, arl0: float, seed: int) -> None:
         self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
-        self._arl0, self._seed = float(arl0), seed
+        self._arl0, self._seed = float(arl0), int(seed)
         self._sizes, self._signature = reference.sizes, reference.signature
-        self._doubts: tuple[str, ...] = ()
+        self._doubts = ()
 
 
 def rows_between(
@@ -252,7 +242,7 @@ def rows_between(
         >>> rows_between(1, per="month", rate=1.0)
         2629800.0
     """
-    if per not in SECONDS:
+    if not (isinstance(per, str) and per in SECONDS):
         raise InputError(f"there is no time {per!r}", "per", f"give one of {', '.join(SECONDS)}")
     for name, value in (("alarms", alarms), ("rate", rate)):
         if not (_is_number(value) and np.isfinite(value) and value > 0):
@@ -274,7 +264,7 @@ def _arl0(value: float) -> float:
 def _seed(value: int) -> int:
     if not isinstance(value, int | np.integer) or value < 0:
         raise InputError(f"the seed is {value!r}", "seed", "give a whole number from 0 on")
-    return value
+    return int(value)
 
 
 def _rounded(rows: int) -> int:

@@ -19,6 +19,8 @@ FOLLOWED = 2.5
 KNOTS = 9
 #: readings beyond the outer knots that weigh as much as what all sensors have in common
 TAIL = 20.0
+#: readings that differ by less are alike
+SMALLEST = 1e-280
 #: scores are never beyond this
 LARGEST = 6.0
 #: a normal variable's standard deviation over its median absolute deviation
@@ -233,5 +235,5 @@ def unwatched(baseline: FloatArray) -> dict[int, str]:
         int(sensor): f"it has {count[sensor]} readings in the baseline, fewer than {FEWEST}"
         for sensor in np.flatnonzero(count < FEWEST)
     }
-    alike = np.flatnonzero((count >= FEWEST) & (lowest == highest))
+    alike = np.flatnonzero((count >= FEWEST) & ~(highest - lowest > SMALLEST))
     return few | {int(sensor): "its readings in the baseline are all alike" for sensor in alike}

@@ -23,16 +23,16 @@ def table(values: ArrayLike, name: str) -> FloatArray:
     return found
 
 
-def row(values: ArrayLike) -> FloatArray:
-    """A row as float[1, sensors].
+def row(values: ArrayLike, sensors: int) -> FloatArray:
+    """A row of so many sensors as float[1, sensors].
 
     Raises:
         InputError: no numbers, or another shape.
     """
     found = numbers(values, "row")
-    if found.ndim != 1:
+    if found.shape != (sensors,):
         what = f"the array has shape {list(found.shape)}"
-        raise InputError(what, "row", "its shape must be [sensors]")
+        raise InputError(what, "row", f"its shape must be [{sensors}]")
     return found[None]
 
 
@@ -64,10 +64,13 @@ def numbers(values: ArrayLike, name: str) -> FloatArray:
         InputError: no numbers.
     """
     try:
+        if isinstance(values, np.ma.MaskedArray):
+            values = np.ma.asarray(values, dtype=float).filled(np.nan)
         given = np.asarray(values)
         if given.dtype.kind not in "biufO":
             raise TypeError(f"the values are of type {given.dtype}")
-        return np.ascontiguousarray(given, dtype=float)
+        # Rows of one number stay of that shape.
+        return np.asarray(given, dtype=float, order="C")
     except (TypeError, ValueError) as error:
         remedy = "give an array of numbers, with NaN for a missing reading"
         raise InputError(str(error), name, remedy) from None

@@ -47,9 +47,9 @@ class Settings(BaseModel):
     calibration_rows: Count | None = None
     packet: Count | None = None
     detector: Literal["monitor", "window"] = "monitor"
-    arl0: Annotated[float, Field(ge=100, allow_inf_nan=False)] = 10_000.0
-    window: Annotated[int, Field(ge=2)] = 100
-    z: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 4.0
+    arl0: Annotated[float, Field(ge=100, le=1e12)] = 10_000.0
+    window: Annotated[int, Field(ge=2, le=1_000_000)] = 100
+    z: Annotated[float, Field(gt=0, le=1e6)] = 4.0
     persistence: tuple[Count, Count] = (4, 6)
     policy: PolicyName = "event"
     interval: Count | None = None
@@ -57,7 +57,7 @@ class Settings(BaseModel):
     recovered: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.8
     growth: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 2.0
     design_rows: Annotated[int, Field(ge=128, le=10_000_000)] = 4096
-    repository_z: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 4.0
+    repository_z: Annotated[float, Field(gt=0, le=1e6)] = 4.0
     distinct: Annotated[float, Field(gt=0)] | None = None
     training: TrainingSettings = TrainingSettings()
 
@@ -65,6 +65,8 @@ class Settings(BaseModel):
     def _some_of_more(self) -> "Settings":
         if self.persistence[0] > self.persistence[1]:
             raise ValueError(f"persistence {self.persistence}: more exceedances than rows")
+        if self.persistence[1] > 64:
+            raise ValueError(f"persistence {self.persistence}: more than 64 rows")
         if self.interval is not None and self.policy == "event":
             raise ValueError("policy 'event' has no interval: choose time, hybrid or adaptive")
         return self

@@ -7,7 +7,6 @@
 
 mod banks;
 mod bytes;
-
 mod powers;
 mod recent;
 mod reference;
@@ -77,9 +76,21 @@ impl ChangeStatistics {
         self.alarm
     }
 
-    /// Scores `[rows, sensors]` of the latest rows since the statistics began; NaN where missing.
+    /// Scores `[rows, sensors]` of the latest rows since the statistics began, or of the rows around
+    /// the alarm; NaN where missing.
     pub fn recent(&self) -> Vec<f32> {
         self.recent.in_order()
+    }
+
+    /// Row of the stream that the first row of `recent` is.
+    pub fn recent_first(&self) -> u64 {
+        self.rows.min(self.end_of_evidence()) - self.recent.filled() as u64
+    }
+
+    /// Rows of the stream until which scores are kept: as many before an alarm as behind it.
+    fn end_of_evidence(&self) -> u64 {
+        let behind = self.recent.rows() as u64 / 2;
+        self.alarm.map_or(u64::MAX, |alarm| alarm.row + 1 + behind)
     }
 
     /// Largest value of each statistic since this was last asked.
@@ -155,7 +166,9 @@ impl OnSixteen for Advance<'_> {
         let mut work = Work::new(sensors);
         for (readings, alarm) in self.rows.chunks_exact(sensors).zip(self.alarms) {
             let gaps = own.reference.scores(lanes, readings, &mut work);
-            own.recent.push(&work.scores[..sensors]);
+            if own.rows < own.end_of_evidence() {
+                own.recent.push(&work.scores[..sensors]);
+            }
             let signature = own.reference.signature();
             let found = own.banks.advance(lanes, &work.scores, signature, gaps);
             let peaks = L::vectors_mut(&mut own.peaks).iter_mut();

@@ -69,6 +69,12 @@ impl ChangeStatistics {
         PyArray1::from_vec(py, values).reshape([rows, self.0.sensors()])
     }
 
+    /// Row of the stream that the first of these rows is.
+    #[getter]
+    fn recent_first(&self) -> u64 {
+        self.0.recent_first()
+    }
+
     fn begin_again(&mut self) {
         self.0.begin_again();
     }

@@ -175,13 +175,16 @@ fn bound(py: Python<'_>, z: Option<f64>, confidence: Option<f64>) -> PyResult<f6
 
 /// Anything that NumPy makes an array of numbers of.
 fn floats<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Held<'py, f64>> {
-    if value.cast::<PyArrayDyn<f64>>().is_ok() {
+    // No subclass, which may be masked; being exact does not look at the type of the numbers.
+    let exact = value.cast_exact::<PyArrayDyn<f64>>().is_ok();
+    if exact && value.cast::<PyArrayDyn<f64>>().is_ok() {
         return Held::new(value, name);
     }
     let py = value.py();
     let array = py
-        .import("numpy")?
+        .import("numpy.ma")?
         .call_method1("asarray", (value, "float64"))
+        .and_then(|masked| masked.call_method1("filled", (f64::NAN,)))
         .map_err(|error| {
             let remedy = "give an array of numbers, with NaN for a missing value";
             InputError::new_err((error.value(py).to_string(), name.to_owned(), remedy))

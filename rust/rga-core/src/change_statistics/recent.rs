@@ -49,6 +49,10 @@ impl Recent {
         [early, late].concat()
     }
 
+    pub fn filled(&self) -> usize {
+        self.filled
+    }
+
     pub fn rows(&self) -> usize {
         self.ring.len() / self.sensors
     }

@@ -23,12 +23,9 @@ impl Banks {
         let looked = ROW_AVERAGES.map(|(_, every)| self.rows.is_multiple_of(every));
         let mut row = Row::new(lanes, self.sensors, looked);
         let vectors = L::vectors(scores).iter().zip(L::vectors(signature));
-        let states = L::vectors_mut(&mut self.quick).chunks_exact_mut(QUICK);
+        let (states, _) = L::vectors_mut(&mut self.quick).as_chunks_mut::<QUICK>();
         let whole = if gaps { 0 } else { self.sensors / SIXTEEN };
         for (number, ((score, weight), state)) in vectors.zip(states).enumerate() {
-            let Some(state) = state.first_chunk_mut::<QUICK>() else {
-                continue;
-            };
             // Lanes behind the last sensor are always missing.
             if number < whole {
                 row.take::<true>(*score, *weight, state);
