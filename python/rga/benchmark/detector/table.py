@@ -22,6 +22,9 @@ Delay: rows from the onset to the alarm, the row of the onset counted: mean, and
 90 % interval reaches above it. Runs with an alarm before the
 onset are left out. "≥": some runs ended without an alarm.
 
+Baseline estimated: the window rule and MEWMA keep their limits for known noise, and have the false
+alarms that the first table tells.
+
 Optimum: knows the change, its size and the number of sensors, but not which sensors nor when."""
 
 
