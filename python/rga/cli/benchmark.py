@@ -1,7 +1,8 @@
 """`rga benchmark`: what rga can do, measured."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -39,9 +40,6 @@ Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
-
-#: of a table, in a terminal that is narrower and in a file
-WIDTH = 140
 
 
 @benchmark.callback()
@@ -122,35 +120,29 @@ def solver(
     # CHOLMOD asks for four threads, however many are allowed, and on one core these wait for each
     # other; OpenMP reads its limit when it is loaded.
     os.environ["OMP_THREAD_LIMIT"] = "1"
-    from contextlib import nullcontext
     from dataclasses import asdict
 
-    from rich.console import Console
-
     from rga.benchmark.solver import table
-    from rga.benchmark.solver.run import measure
+    from rga.benchmark.solver.run import Result, measure
     from rga.benchmark.solver.setting import Setting, shorter
-    from rga.cli.output import whole_directory, write_json
-    from rga.cli.progress import shown_progress
+    from rga.cli.measured import measured
+
+    def draw(result: Result, folder: Path) -> None:
+        from rga.benchmark.solver.plot import plot
+
+        plot(result, folder / "solver.png")
 
     setting = shorter(seed) if quick else Setting(seed=seed)
-    command = f"rga benchmark solver{' --quick' if quick else ''} --seed {seed}"
-    with nullcontext() if output is None else whole_directory(output) as draft:
-        with shown_progress() as progress:
-            result = measure(setting, lambda done: progress("solver", done))
-        if draft is not None:
-            from rga.benchmark.solver.plot import plot
-
-            (draft / "solver.md").write_text(table.markdown(result, command), encoding="utf-8")
-            plot(result, draft / "solver.png")
-    if json is not None:
-        write_json({"command": command, **asdict(result)}, json)
-    if json != "-":
-        console = Console()
-        console.width = max(console.width, WIDTH)
-        for line in table.about(result):
-            console.print(line, markup=False, highlight=False)
-        console.print(table.terminal(result))
+    measured(
+        "solver",
+        _command("solver", quick, seed),
+        lambda progress: measure(setting, progress),
+        table,
+        draw,
+        asdict,
+        output=output,
+        json=json,
+    )
 
 
 @benchmark.command()
@@ -162,35 +154,35 @@ def policies(
     json: JsonTarget = None,
 ) -> None:
     """What each policy of synchronisation costs, and what gap it leaves."""
-    from contextlib import nullcontext
     from dataclasses import asdict
 
-    from rich.console import Console
-
+    from rga.benchmark.machine import machine, versions
     from rga.benchmark.policies import table
+    from rga.benchmark.policies.play import Played
     from rga.benchmark.policies.run import compare
     from rga.benchmark.policies.setting import Setting, shorter
-    from rga.cli.output import whole_directory, write_json
-    from rga.cli.progress import shown_progress
+    from rga.cli.measured import measured
+
+    def draw(played: Sequence[Played], folder: Path) -> None:
+        from rga.benchmark.policies.plot import plot
+
+        plot(played, folder / "policies.png")
+
+    def content(played: Sequence[Played]) -> dict[str, Any]:
+        told = {"machine": machine(), "versions": versions(), "seed": seed}
+        return {**told, "played": [asdict(one) for one in played]}
 
     setting = shorter(seed) if quick else Setting(seed=seed)
-    command = f"rga benchmark policies{' --quick' if quick else ''} --seed {seed}"
-    with nullcontext() if output is None else whole_directory(output) as draft:
-        with shown_progress() as progress:
-            played = compare(
-                setting, workers=workers, progress=lambda done: progress("policies", done)
-            )
-        if draft is not None:
-            from rga.benchmark.policies.plot import plot
-
-            (draft / "policies.md").write_text(table.markdown(played, command), encoding="utf-8")
-            plot(played, draft / "policies.png")
-    if json is not None:
-        write_json({"command": command, "played": [asdict(one) for one in played]}, json)
-    if json != "-":
-        console = Console()
-        console.width = max(console.width, WIDTH)
-        console.print(table.terminal(played))
+    measured(
+        "policies",
+        _command("policies", quick, seed),
+        lambda progress: compare(setting, workers=workers, progress=progress),
+        table,
+        draw,
+        content,
+        output=output,
+        json=json,
+    )
 
 
 @benchmark.command()
@@ -202,35 +194,36 @@ def detector(
     json: JsonTarget = None,
 ) -> None:
     """How soon a change is seen, at which rate of false alarms, beside the optimum."""
-    from contextlib import nullcontext
     from dataclasses import asdict
 
-    from rich.console import Console
-
     from rga.benchmark.detector import table
+    from rga.benchmark.detector.result import Result
     from rga.benchmark.detector.run import measure
     from rga.benchmark.detector.setting import Setting, shorter
-    from rga.cli.output import whole_directory, write_json
-    from rga.cli.progress import shown_progress
+    from rga.cli.measured import measured
+
+    def draw(result: Result, folder: Path) -> None:
+        from rga.benchmark.detector.plot import plot
+
+        plot(result, folder)
+
+    def content(result: Result) -> dict[str, Any]:
+        verdicts = [{**asdict(one), "verdict": one.verdict} for one in result.judged]
+        return {**asdict(result), "judged": verdicts}
 
     setting = shorter(seed) if quick else Setting(seed=seed)
-    command = f"rga benchmark detector{' --quick' if quick else ''} --seed {seed}"
-    with nullcontext() if output is None else whole_directory(output) as draft:
-        with shown_progress() as progress:
-            result = measure(
-                setting, workers=workers, progress=lambda done: progress("detectors", done)
-            )
-        if draft is not None:
-            from rga.benchmark.detector.plot import plot
+    measured(
+        "detector",
+        _command("detector", quick, seed),
+        lambda progress: measure(setting, workers=workers, progress=progress),
+        table,
+        draw,
+        content,
+        output=output,
+        json=json,
+    )
 
-            (draft / "detector.md").write_text(table.markdown(result, command), encoding="utf-8")
-            plot(result, draft)
-    if json is not None:
-        verdicts = [{**asdict(one), "verdict": one.verdict} for one in result.judged]
-        write_json({"command": command, **asdict(result), "judged": verdicts}, json)
-    if json != "-":
-        console = Console()
-        console.width = max(console.width, WIDTH)
-        for line in table.about(result):
-            console.print(line, markup=False, highlight=False)
-        console.print(table.terminal(result))
+
+def _command(name: str, quick: bool, seed: int) -> str:
+    """That makes the same again."""
+    return f"rga benchmark {name}{' --quick' if quick else ''} --seed {seed}"

@@ -6,6 +6,7 @@ from itertools import groupby
 from rich.table import Table
 from rich.text import Text
 
+from rga.benchmark.machine import machine, versions
 from rga.benchmark.policies.play import Played
 from rga.benchmark.policies.run import Means, means
 
@@ -33,6 +34,18 @@ recalibration looked back. A row is out of sync where its gap is beyond what a r
 leave (`recovered`). On the null twin nothing drifts: all that is spent there is waste."""
 
 
+def about(played: Sequence[Played]) -> list[str]:
+    """Where it was measured, and how much."""
+    place = machine()
+    named = [f"{name} {number}" for name, number in versions().items() if number]
+    seeds = len({one.seed for one in played})
+    return [
+        f"{place['processor']}, {place['cores']} cores, {place['system']}",
+        ", ".join(named),
+        f"{seeds} {'streams' if seeds > 1 else 'stream'} of each sort",
+    ]
+
+
 def terminal(played: Sequence[Played]) -> Table:
     """For rich."""
     table = Table(HEADINGS[0])
@@ -48,9 +61,8 @@ def terminal(played: Sequence[Played]) -> Table:
 
 def markdown(played: Sequence[Played], command: str) -> str:
     """A page with the table and the figure."""
-    seeds = len({one.seed for one in played})
-    lines = ["# What each policy of synchronisation costs", ""]
-    lines += [f"`{command}`: {seeds} {'streams' if seeds > 1 else 'stream'} of each sort.", ""]
+    lines = ["# What each policy of synchronisation costs", "", f"`{command}`", ""]
+    lines += [*(f"- {line}" for line in about(played)), ""]
     lines += [_row(HEADINGS), _row(["---", *["---:"] * len(COLUMNS)])]
     for stream, rows in _by_stream(played):
         lines.append(_row([f"**{stream}**", *[""] * len(COLUMNS)]))

@@ -1,0 +1,71 @@
+"""What a benchmark found: a page and figures in a directory, JSON, and tables in the terminal."""
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from rich.console import Console, RenderableType
+
+from rga.cli.output import whole_directory, write_json
+from rga.cli.progress import shown_progress
+
+#: of a table, in a terminal that is narrower and in a file
+WIDTH = 140
+
+Result = TypeVar("Result")
+Told = TypeVar("Told", contravariant=True)
+Progress = Callable[[float], None]
+
+
+class Tables(Protocol[Told]):
+    """The module of a benchmark that puts results into words."""
+
+    def about(self, result: Told, /) -> list[str]:
+        """Lines about the machine, and what was measured."""
+
+    def terminal(self, result: Told, /) -> RenderableType:
+        """Tables for rich."""
+
+    def markdown(self, result: Told, command: str, /) -> str:
+        """A page."""
+
+
+def measured(
+    name: str,
+    command: str,
+    measure: Callable[[Progress], Result],
+    tables: Tables[Result],
+    draw: Callable[[Result, Path], None],
+    content: Callable[[Result], dict[str, Any]],
+    *,
+    output: Path | None,
+    json: str | None,
+) -> None:
+    """Measure, and tell what was found.
+
+    Args:
+        name: of the benchmark, and of its page.
+        command: that makes the same again.
+        measure: takes what is told the share that is done.
+        tables: what is found in words.
+        draw: writes figures into a folder.
+        content: what programs read.
+        output: directory for the page and the figures.
+        json: file for what programs read; "-": the terminal.
+    """
+    with nullcontext() if output is None else whole_directory(output) as draft:
+        with shown_progress() as progress:
+            result = measure(lambda done: progress(name, done))
+        if draft is not None:
+            page = tables.markdown(result, command)
+            (draft / f"{name}.md").write_text(page, encoding="utf-8")
+            draw(result, draft)
+    if json is not None:
+        write_json({"command": command, **content(result)}, json)
+    if json != "-":
+        console = Console()
+        console.width = max(console.width, WIDTH)
+        for line in tables.about(result):
+            console.print(line, markup=False, highlight=False)
+        console.print(tables.terminal(result))
