@@ -1,6 +1,6 @@
 """What a stream of readings is like while nothing changes, learned from a baseline record."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import norm
@@ -68,10 +68,7 @@ class Reference:
         have in common, in this order. Outliers have no more weight than other readings.
 
         Args:
-            baseline: float[rows, sensors], NaN where missing.
-
-        Raises:
-            InputError: a sensor has fewer than 30 readings, or its readings are all alike.
+            baseline: float[rows, sensors], NaN where missing; none of the sensors `unwatched`.
         """
         level = np.nanmedian(baseline, axis=0)
         deviations = baseline - level
@@ -86,18 +83,9 @@ class Reference:
         rise = np.nanstd(deviations, axis=0) * (1.0 - weights.sum(axis=0)) * plain.steepness
         signature = mixing @ rise
         length = np.linalg.norm(signature)
-        return cls(
-            level,
-            weights,
-            units,
-            offset,
-            slope,
-            knots,
-            bends,
-            mixing,
-            signature / length if length > 0 else signature,
-            largest,
-        )
+        if length > 0:
+            signature = signature / length
+        return replace(plain, mixing=mixing, signature=signature)
 
     @property
     def steepness(self) -> FloatArray:

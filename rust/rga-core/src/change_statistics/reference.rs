@@ -340,7 +340,7 @@ impl Reference {
 
     /// Missing scores take the values that are likeliest beside the others: those that make the
     /// sum of squares of the independent scores least, found one after the other.
-    #[inline(never)]
+    #[inline(always)]
     fn mix_with_gaps<L: Lanes>(&self, lanes: L, scores: &mut [f32], mixed: &mut [f32]) {
         let sensors = self.sensors();
         let missing: Vec<usize> = (0..sensors).filter(|at| scores[*at].is_nan()).collect();
