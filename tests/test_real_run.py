@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rga
-from rga.twin import Settings
+from rga.cli.settings import read_settings
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "rdso45m"
 RECORD = Path(__file__).parents[2] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
@@ -17,7 +17,8 @@ def test_the_crossing_ends_in_the_verdict_of_the_diagnosis(tmp_path: Path) -> No
         pytest.skip("the measured record is not part of this project")
     model = rga.load_model(EXAMPLE / "model.json")
     record = rga.load_record(RECORD, model, EXAMPLE / "import.toml")
-    outcome = rga.run(model, record, tmp_path, settings=Settings(level="B"))
+    settings = read_settings(EXAMPLE / "settings.toml", "B")
+    outcome = rga.run(model, record, tmp_path, settings=settings)
     findings, history = outcome.findings, outcome.history
     assert findings.verdict == "partial"
     causes = [cause.effect for cause in findings.causes]
