@@ -1,0 +1,1 @@
+"""The paper's table: levels of integration, with every rival beside the networks."""

@@ -1,0 +1,86 @@
+"""What a way to infer contexts gets, and what it gives."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from rga.model import Model
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows of which the contexts are known.
+
+    Attributes:
+        contexts: in the order and the units of the model, float[n, contexts].
+        readings: in the order and the units of the model's sensors, float[n, sensors].
+    """
+
+    contexts: FloatArray
+    readings: FloatArray
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What a method learns from. The contexts of the measured rows are not in it.
+
+    Attributes:
+        model: the twin's; all of its contexts are latent.
+        simulator: of the model.
+        noise: standard deviation of each sensor's noise, float[sensors].
+        source: simulated rows, without noise.
+        real: measured rows, float[n, sensors].
+        load_tests: measured rows whose contexts were recorded as well; none or a few.
+        seed: of everything random.
+    """
+
+    model: Model
+    simulator: Simulator
+    noise: FloatArray
+    source: Rows
+    real: FloatArray
+    load_tests: Rows
+    seed: int
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """Readings without noise, float[n, sensors], of contexts, float[n, contexts]."""
+        return self.simulator.predict(dict(zip(self.model.context, contexts.T, strict=True)))
+
+    @property
+    def ranges(self) -> FloatArray:
+        """Smallest and largest of each context, float[contexts, 2]."""
+        return np.array([variable.range for variable in self.model.context.values()])
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What was inferred.
+
+    Attributes:
+        value: float[n, contexts], in the units of the contexts.
+        spread: standard deviation of each, of the same shape; None where a method tells none.
+    """
+
+    value: FloatArray
+    spread: FloatArray | None
+
+
+class Calibrated(Protocol):
+    """A method that has learned."""
+
+    def infer(self, readings: FloatArray) -> Estimate:
+        """Contexts of measured rows, float[n, sensors]."""
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """What the twin of this method lets expect at contexts, float[n, sensors]."""
+
+    def recalibrated(self, recent: FloatArray) -> "Calibrated":
+        """The method after it has also learned from measured rows, float[n, sensors]."""
+
+
+#: learns
+Method = Callable[[Problem], Calibrated]

@@ -1,0 +1,1 @@
+"""Ways to infer contexts from readings, each calibrated on the same data."""
