@@ -96,7 +96,7 @@ class PhysicalTwin:
         model = full_case_study()
         sensors, members = len(model["sensors"]), len(model["members"])
         rng = stream(seed, "physical twin")
-        joint, torsion = 10.0 ** rng.uniform([6.5, -0.5], [8.0, 0.7])
+        joint, torsion = 10.0 ** (rng.uniform([6.5, 0.5], [8.0, 1.0]) * [1, rng.choice([-1, 1])])
         bearing = 10.0 ** rng.uniform(7.5, 8.3, 4)
         sunlit, deck = rng.uniform([0.3, 0.05], [0.7, 0.2])
         scatter, gain = rng.uniform([0.02, 0.005], [0.04, 0.015])
