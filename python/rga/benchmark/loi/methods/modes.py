@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.benchmark.loi.method import Calibrated, Estimate, Method, Problem, Rows
-from rga.benchmark.loi.methods.starts import best_mode
+from rga.benchmark.loi.method import Calibrated, Estimate, Method, Problem
+from rga.benchmark.loi.methods.guess import QuadraticGuess
+from rga.benchmark.loi.methods.posterior_mode import Mode, posterior_mode
 from rga.benchmark.loi.methods.twin_on_arrays import TwinOnArrays
 from rga.model.parameter import FloatArray
 
@@ -18,19 +19,30 @@ class Modes:
         problem: what was learned from.
         twin: what simulates.
         covariance: of what readings differ by from the twin, float[sensors, sensors].
-        source: rows simulated by the twin, to start from.
+        guess: contexts to start from.
         learn: what learned this from the problem; None where rows without contexts teach nothing.
     """
 
     problem: Problem
     twin: TwinOnArrays
     covariance: FloatArray
-    source: Rows
+    guess: QuadraticGuess
     learn: Method | None = None
+
+    def mode(self, readings: FloatArray, start: FloatArray | None = None) -> Mode:
+        """Modes of measured rows, from the guess or from another start, float[n, contexts]."""
+        return posterior_mode(
+            self.twin.simulate,
+            self.twin.jacobian,
+            readings,
+            self.covariance,
+            self.twin.ranges,
+            self.guess(readings) if start is None else start,
+        )
 
     def infer(self, readings: FloatArray) -> Estimate:
         """Mode and spread of measured rows, float[n, sensors]; NaN where a reading is missing."""
-        mode = best_mode(self.twin, readings, self.covariance, self.source)
+        mode = self.mode(readings)
         return Estimate(mode.value, mode.spread)
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
@@ -44,7 +56,8 @@ class Modes:
         return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
 
 
-def maximum_posterior(problem: Problem) -> Calibrated:
+def maximum_posterior(problem: Problem) -> Modes:
     """MAP: the simulator is taken as true, and readings differ from it by their noise alone."""
     twin = TwinOnArrays(problem.simulator)
-    return Modes(problem, twin, np.diag(problem.noise**2), problem.source)
+    guess = QuadraticGuess(problem.source, problem.noise, twin.ranges, problem.seed)
+    return Modes(problem, twin, np.diag(problem.noise**2), guess)

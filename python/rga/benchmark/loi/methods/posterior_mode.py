@@ -5,16 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.benchmark.loi.methods.box_step import EDGE, box_step
 from rga.benchmark.loi.methods.whitening import Whitening
 from rga.model.parameter import FloatArray
 
-#: half the width of a range whose uniform law has unit variance
-EDGE = np.sqrt(3.0)
-#: damping at first, and what it is multiplied with after a step that failed, divided by after one
-#: that did not
-DAMPING, FACTOR = 1e-3, 8.0
+#: damping at first, and what it falls to at most after a step, as a share
+DAMPING, FALL = 1e-2, 0.2
 #: steps at most; damping beyond which a row rests; gain of a step [chi square] below which it does
-STEPS, STUCK, GAIN = 30, 1e8, 1e-3
+STEPS, STUCK, GAIN = 30, 1e8, 1e-2
 
 OfContexts = Callable[[FloatArray], FloatArray]
 
@@ -26,7 +24,7 @@ class Mode:
     Attributes:
         value: float[n, contexts], in the units of the contexts.
         spread: standard deviation of each, of the same shape.
-        covariance: in standard units, float[n, contexts, contexts].
+        covariance: of the contexts in standard units, float[n, contexts, contexts].
         misfit: minus twice the log posterior, but for a constant, float[n].
     """
 
@@ -50,11 +48,11 @@ def posterior_mode(
     start: FloatArray,
     steps: int = STEPS,
 ) -> Mode:
-    """Levenberg-Marquardt steps (Marquardt, SIAM J. Appl. Math. 11, 1963) inside the ranges.
+    """Gauss-Newton steps inside the ranges, damped as their success asks.
 
     Contexts are counted in standard units z, of which the prior is normal with unit variance, cut
-    off at the ends of the range. A context that stands at an end and would leave is held there for
-    the step (Bertsekas, SIAM J. Control Optim. 20, 1982).
+    off at the ends of the range. The damping is Nielsen's (Madsen, Nielsen and Tingleff, Methods
+    for non-linear least squares problems, 2004).
 
     Args:
         simulate: contexts, float[k, contexts] -> readings without noise, float[k, sensors].
@@ -63,19 +61,20 @@ def posterior_mode(
         covariance: of what readings may differ by from the simulation, float[sensors, sensors].
         ranges: smallest and largest of each context, float[contexts, 2].
         start: contexts to start from, float[n, contexts].
-        steps: at most; 0 linearises at the start.
+        steps: at most; 0 tells the spread at the start.
 
     >>> slopes = np.array([[1.0, 2.0], [0.5, -1.0], [0.0, 1.0]])
     >>> found = posterior_mode(
     ...     lambda c: c @ slopes.T,
     ...     lambda c: np.tile(slopes, (len(c), 1, 1)),
-    ...     np.array([[3.0, 0.0, 1.0]]),
+    ...     np.array([[3.0, 0.0, 1.0], [3.0, 0.0, np.nan]]),
     ...     1e-6 * np.eye(3),
     ...     np.array([[-5.0, 5.0], [-5.0, 5.0]]),
-    ...     np.zeros((1, 2)),
+    ...     np.zeros((2, 2)),
     ... )
     >>> found.value.round(3)
-    array([[1.556, 0.741]])
+    array([[1.429, 0.81 ],
+           [1.5  , 0.75 ]])
     """
     middle, scale = standard(ranges)
     seen = np.isfinite(readings)
@@ -89,45 +88,39 @@ def posterior_mode(
     def height(off: FloatArray, z: FloatArray) -> FloatArray:
         return (off**2).sum(axis=1) + (z**2).sum(axis=1)
 
-    def normal_equations(of: FloatArray) -> None:
+    z = np.clip((start - middle) / scale, -EDGE, EDGE)
+    off = residual(z, rows)
+    misfit = height(off, z)
+    damping, rise = np.full(len(z), DAMPING), np.full(len(z), 2.0)
+    normal, descent = np.empty((len(z), size, size)), np.empty((len(z), size))
+
+    def linearise(of: FloatArray) -> None:
         slope = whiten(jacobian(middle + scale * z[of]) * scale, of)
         turned = slope.transpose(0, 2, 1)
         normal[of] = turned @ slope + np.eye(size)
         descent[of] = (turned @ off[of, :, None])[:, :, 0] - z[of]
 
-    z = np.clip((start - middle) / scale, -EDGE, EDGE)
-    off = residual(z, rows)
-    misfit, damping = height(off, z), np.full(len(z), DAMPING)
-    normal, descent = np.empty((len(z), size, size)), np.empty((len(z), size))
     left, moved = rows, rows
     for _ in range(steps):
-        normal_equations(moved)
-        step = _inside(normal[left], descent[left], z[left], damping[left])
-        promise = np.einsum("nc,nc->n", descent[left], step)
-        trial = np.clip(z[left] + step, -EDGE, EDGE)
-        off_there = residual(trial, left)
-        there = height(off_there, trial)
-        better = there <= misfit[left]
-        moved = left[better]
-        z[moved], off[moved], misfit[moved] = trial[better], off_there[better], there[better]
-        damping[left] *= np.where(better, 1.0 / FACTOR, FACTOR)
-        left = left[(promise > GAIN) & (damping[left] < STUCK)]
+        linearise(moved)
+        step = box_step(normal[left], descent[left], z[left], damping[left])
+        bent = (normal[left] @ step[:, :, None])[:, :, 0]
+        promised = ((2.0 * descent[left] - bent) * step).sum(axis=1)
+        off_there = residual(z[left] + step, left)
+        gained = misfit[left] - height(off_there, z[left] + step)
+        good = gained >= 0.0
+        moved = left[good]
+        z[moved] += step[good]
+        off[moved], misfit[moved] = off_there[good], misfit[moved] - gained[good]
+        share = gained / np.maximum(promised, GAIN)
+        falls = np.maximum(FALL, 1.0 - (2.0 * share - 1.0) ** 3)
+        damping[left] *= np.where(good, falls, rise[left])
+        rise[left] = np.where(good, 2.0, 2.0 * rise[left])
+        left = left[(promised > GAIN) & (damping[left] < STUCK)]
         moved = np.intersect1d(moved, left)
         if not len(left):
             break
-    normal_equations(rows)
+    linearise(rows)
     spread = np.linalg.inv(normal)
     deviation = np.sqrt(np.diagonal(spread, axis1=1, axis2=2))
     return Mode(middle + scale * z, scale * deviation, spread, misfit)
-
-
-def _inside(
-    normal: FloatArray, descent: FloatArray, z: FloatArray, damping: FloatArray
-) -> FloatArray:
-    """Damped steps, float[k, contexts], that leave alone what stands at an end and would leave."""
-    held = (np.abs(z) >= EDGE) & (descent * z > 0)
-    diagonal = np.diagonal(normal, axis1=1, axis2=2)
-    free = np.where(held[:, :, None] | held[:, None, :], 0.0, normal)
-    own = np.arange(z.shape[1])
-    free[:, own, own] = np.where(held, 1.0, diagonal * (1.0 + damping[:, None]))
-    return np.linalg.solve(free, np.where(held, 0.0, descent)[:, :, None])[:, :, 0]
