@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.benchmark.loi.method import Calibrated, Estimate, Method, Problem, Rows
-from rga.benchmark.loi.methods.starts import best_mode
-from rga.benchmark.loi.methods.twin_on_arrays import TwinOnArrays
+from rga.inference.starts import best_mode
+from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model.parameter import FloatArray
 
 

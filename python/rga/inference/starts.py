@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from rga.benchmark.loi.method import Rows
-from rga.benchmark.loi.methods.posterior_mode import Mode, posterior_mode, standard
-from rga.benchmark.loi.methods.twin_on_arrays import TwinOnArrays
-from rga.benchmark.loi.methods.whitening import Whitening
+from rga.inference.posterior_mode import Mode, posterior_mode, standard
+from rga.inference.rows import Rows
+from rga.inference.twin_on_arrays import TwinOnArrays
+from rga.inference.whitening import Whitening
 from rga.model.parameter import FloatArray
 
 #: starts of a row, and steps after which the best of them goes on alone

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.benchmark.loi.methods.whitening import Whitening
+from rga.inference.whitening import Whitening
 from rga.model.parameter import FloatArray
 
 #: half the width of a range whose uniform law has unit variance
