@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.benchmark.loi.methods.posterior_mode import standard
-from rga.benchmark.loi.methods.twin_on_arrays import TwinOnArrays
+from rga.inference.posterior_mode import standard
+from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model.parameter import FloatArray
 
 

@@ -46,9 +46,7 @@ def principal(rows: Linearised, noise: FloatArray, rank: int) -> FloatArray:
     return np.asarray(np.sqrt(noise)[:, None] * (ways[:rank] * size[:rank, None]).T)
 
 
-def expectation_maximisation(
-    rows: Linearised, shapes: FloatArray, noise: FloatArray
-) -> FloatArray:
+def expectation_maximisation(rows: Linearised, shapes: FloatArray, noise: FloatArray) -> FloatArray:
     """Shapes B, float[sensors, rank], after some steps of EM.
 
     Args:

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.benchmark.loi.method import Calibrated, Estimate, Method, Problem
-from rga.benchmark.loi.methods.guess import QuadraticGuess
-from rga.benchmark.loi.methods.posterior_mode import Mode, posterior_mode
-from rga.benchmark.loi.methods.twin_on_arrays import TwinOnArrays
+from rga.inference.guess import QuadraticGuess
+from rga.inference.posterior_mode import Mode, posterior_mode
+from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model.parameter import FloatArray
 
 

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from rga.benchmark.loi.method import Problem, Rows
-from rga.benchmark.loi.methods.guess import QuadraticGuess
 from rga.benchmark.loi.methods.modes import Modes, maximum_posterior
-from rga.benchmark.loi.methods.twin_on_arrays import TwinOnArrays
+from rga.inference.guess import QuadraticGuess
+from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model import Model
 from rga.model.effect import Effect
 from rga.model.effects.bearings import SupportFlexibility
@@ -46,7 +46,9 @@ class Unknown:
 
     def at(self, z: float) -> Effect:
         """The effect with its parameter z standard deviations from the middle."""
-        return self.effect.with_values({self.parameter: self.median * float(np.exp(self.spread * z))})
+        return self.effect.with_values(
+            {self.parameter: self.median * float(np.exp(self.spread * z))}
+        )
 
 
 def unknowns(model: Model) -> Iterator[Unknown]:
@@ -122,7 +124,9 @@ def fit(problem: Problem, sought: dict[str, Unknown]) -> tuple[FloatArray, float
 
     def slope(z: FloatArray) -> FloatArray:
         rates = free.jacobian(contexts(z))[:, :, -len(z) :] * decades / problem.noise[:, None]
-        return np.vstack([np.where(seen[:, :, None], rates, 0.0).reshape(-1, len(z)), np.eye(len(z))])
+        return np.vstack(
+            [np.where(seen[:, :, None], rates, 0.0).reshape(-1, len(z)), np.eye(len(z))]
+        )
 
     found = least_squares(off, np.zeros(len(decades)), slope, bounds=(-FAR, FAR))
     left = float((found.fun[: -len(decades)] ** 2).sum()) / max(seen.sum(), 1)

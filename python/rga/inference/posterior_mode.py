@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.benchmark.loi.methods.box_step import EDGE, box_step
-from rga.benchmark.loi.methods.whitening import Whitening
+from rga.inference.box_step import EDGE, box_step
+from rga.inference.whitening import Whitening
 from rga.model.parameter import FloatArray
 
 #: damping at first, and what it falls to at most after a step, as a share

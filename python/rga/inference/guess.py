@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from rga.benchmark.loi.method import Rows
-from rga.benchmark.loi.methods.box_step import EDGE
-from rga.benchmark.loi.methods.posterior_mode import standard
+from rga.inference.box_step import EDGE
+from rga.inference.posterior_mode import standard
+from rga.inference.rows import Rows
 from rga.model.parameter import FloatArray
 
 #: weight of the ridge, as rows
