@@ -1,0 +1,99 @@
+"""What model updating may change in a model, as contexts drive it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.model import Model
+from rga.model.effect import Effect
+from rga.model.effects.bearings import SupportFlexibility
+from rga.model.effects.stiffness import ElasticModulus, MemberStiffness
+from rga.model.effects.thermal import ThermalExpansion
+from rga.model.parameter import Driven, Factor, Positive
+
+#: group of the members that bend beside pinned ones, and what of them is left of A and J
+BENDING, SLIGHT = "bending beside pins", 1e-6
+#: fixity of joints beforehand: share of the bending stiffness of rigid ones, and its log spread
+FIXITY = (0.3, 1.5)
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A parameter that is updated: log-normal beforehand.
+
+    Attributes:
+        effect: kind and place of the effect, with any value of the parameter.
+        parameter: its name.
+        median, spread: value of the middle, and standard deviation of its natural logarithm.
+    """
+
+    effect: Effect
+    parameter: str
+    median: float
+    spread: float
+
+    def driven(self, context: str) -> Effect:
+        """The effect with its parameter as a power of ten of a context."""
+        follows = Driven(context=context, times=self.median, log10=True)
+        return self.effect.model_copy(update={self.parameter: follows})
+
+    def at(self, z: float) -> Effect:
+        """The effect with its parameter z standard deviations from the middle."""
+        return self.effect.with_values(
+            {self.parameter: self.median * float(np.exp(self.spread * z))}
+        )
+
+
+def unknowns(model: Model) -> Iterator[Unknown]:
+    """Elastic modulus and thermal expansion of materials, stiffness of the group that a member
+    names first, and upright flexibility of each support.
+    """
+    first = dict.fromkeys(member.groups[0] for member in model.members.values() if member.groups)
+    places: list[tuple[type[Effect], dict[str, object]]] = [
+        (kind, place) for kind in (ElasticModulus, ThermalExpansion) for place in kind.places(model)
+    ]
+    places += [(MemberStiffness, {"group": group}) for group in first]
+    places += [
+        (SupportFlexibility, place)
+        for place in SupportFlexibility.places(model)
+        if place["dof"] == "uz" and isinstance(place["support"], str)
+    ]
+    for kind, place in places:
+        ((parameter, prior),) = kind.priors(model, place).items()
+        if not isinstance(prior, Factor | Positive):
+            raise TypeError(f"the prior of {parameter} is not log-normal")
+        median = prior.value(0.0)
+        effect = kind.model_validate({**place, parameter: median})
+        yield Unknown(effect, parameter, median, prior.spread)
+    if BENDING in model.groups:
+        fixity, spread = FIXITY
+        yield Unknown(MemberStiffness(group=BENDING, factor=fixity), "factor", fixity, spread)
+
+
+def with_bending(model: Model) -> Model:
+    """The model with a member that bends, and does nothing else, beside each pinned member.
+
+    A share of its stiffness stands for the rigidity of the joints: stiffnesses are straight in it,
+    which they are not in springs at the ends of a member.
+    """
+    bent = {}
+    sections = dict(model.sections)
+    for name, member in model.members.items():
+        section = model.sections[member.section]
+        if member.kind == "truss" and min(section.Iy, section.Iz) > 0.0:
+            slight = {"A": SLIGHT * section.A, "J": SLIGHT * section.J}
+            sections[f"{member.section}, {BENDING}"] = section.model_copy(update=slight)
+            changed = {
+                "kind": "frame",
+                "section": f"{member.section}, {BENDING}",
+                "groups": [BENDING],
+            }
+            bent[f"{name}, {BENDING}"] = member.model_copy(update=changed)
+    return Model.model_validate(
+        {
+            **{key: getattr(model, key) for key in Model.model_fields},
+            "sections": sections,
+            "members": {**model.members, **bent},
+        }
+    )
