@@ -32,5 +32,7 @@ def _filter(
         rows = Linearised.at(twin, readings, middle + scale * mean)
         weighed = (rows.slope * precision[:, None]).transpose(0, 2, 1)
         pull = (weighed @ rows.off[:, :, None])[:, :, 0]
-        mean, covariance = recursion(weighed @ rows.slope, pull, memory)
+        found, covariance = recursion(weighed @ rows.slope, pull, memory)
+        # Half of the way: where the simulation bends much, whole steps circle.
+        mean = (mean + found) / 2.0
     return mean, np.diagonal(covariance, axis1=1, axis2=2)

@@ -1,0 +1,55 @@
+"""Easy problems of context inference: the model itself, with noise, in place of a bridge."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from scipy.stats import norm
+
+from rga.benchmark.loi.method import Calibrated, Problem
+from rga.benchmark.truth.full_case_study import full_case_study
+from rga.inference.design import design
+from rga.inference.rows import Rows
+from rga.model import read_model
+from rga.simulation import Simulator
+
+
+@cache
+def easy(smooth: bool = False) -> tuple[Problem, Rows]:
+    """A problem without load tests, and rows to judge by; where asked, contexts drift slowly."""
+    model = read_model(full_case_study(), "case study")
+    simulator = Simulator(model)
+    noise = np.array([float(sensor.noise or 0.0) for sensor in model.sensors.values()])
+    drawn = design(model, 1000, latent=list(model.context), seed=1)
+    nothing = Rows(np.zeros((0, len(model.context))), np.zeros((0, len(noise))))
+    problem = Problem(
+        model, simulator, noise, Rows(drawn.contexts, drawn.readings), np.zeros(0), nothing, 1
+    )
+    rng = np.random.default_rng(2)
+    judged = measured(problem, rng, 120, smooth)
+    return replace(problem, real=measured(problem, rng, 120, smooth).readings), judged
+
+
+def measured(problem: Problem, rng: np.random.Generator, rows: int, smooth: bool = False) -> Rows:
+    """Rows of the model with noise."""
+    free = rng.standard_normal((rows, len(problem.ranges)))
+    if smooth:
+        for row in range(1, rows):
+            free[row] = 0.97 * free[row - 1] + np.sqrt(1.0 - 0.97**2) * free[row]
+    low, high = problem.ranges.T
+    contexts = low + (high - low) * norm.cdf(free)
+    shown = problem.simulate(contexts)
+    return Rows(contexts, shown + problem.noise * rng.standard_normal(shown.shape))
+
+
+def error(problem: Problem, learned: Calibrated, judged: Rows) -> float:
+    """Mean squared error of the contexts in variances of contexts spread evenly."""
+    off = learned.infer(judged.readings).value - judged.contexts
+    return float((off**2 / (np.ptp(problem.ranges, axis=1) ** 2 / 12.0)).mean())
+
+
+def coverage(learned: Calibrated, judged: Rows) -> float:
+    """Share of the contexts that lie within central intervals of 90 %."""
+    told = learned.infer(judged.readings)
+    assert told.spread is not None
+    return float((np.abs(told.value - judged.contexts) < norm.ppf(0.95) * told.spread).mean())

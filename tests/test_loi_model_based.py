@@ -1,0 +1,167 @@
+"""Ways to infer contexts that turn the simulator round."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from loi_problems import coverage, easy, error, measured
+from rga.benchmark.loi.methods.discrepancy import smooth_discrepancy
+from rga.benchmark.loi.methods.ensemble_kalman import ensemble_kalman
+from rga.benchmark.loi.methods.iterated_kalman import iterated_kalman
+from rga.benchmark.loi.methods.low_rank import low_rank_discrepancy
+from rga.benchmark.loi.methods.modes import maximum_posterior
+from rga.benchmark.loi.methods.prior import prior_mean
+from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
+from rga.benchmark.loi.methods.updated_model import updated_model
+from rga.inference.rows import Rows
+from rga.inference.twin_on_arrays import TwinOnArrays
+from rga.model.effects.stiffness import MemberStiffness
+
+UNLABELLED = [
+    prior_mean,
+    maximum_posterior,
+    smooth_discrepancy,
+    low_rank_discrepancy,
+    iterated_kalman,
+    unscented_kalman,
+    ensemble_kalman,
+]
+LEARNING = UNLABELLED[1:]
+NAMES = [method.__name__ for method in UNLABELLED]
+
+
+@pytest.fixture(scope="module")
+def learned():
+    problem, _ = easy()
+    return {method.__name__: method(problem) for method in UNLABELLED}
+
+
+def with_load_tests(problem, rows, seed=3):
+    return replace(problem, load_tests=measured(problem, np.random.default_rng(seed), rows))
+
+
+def test_the_prior_mean_is_the_measure_of_errors(learned):
+    problem, judged = easy()
+    assert error(problem, learned["prior_mean"], judged) == pytest.approx(1.0, abs=0.15)
+    assert coverage(learned["prior_mean"], judged) > 0.9
+
+
+@pytest.mark.parametrize("name", NAMES[1:])
+def test_every_row_learns(learned, name):
+    problem, judged = easy()
+    few = Rows(judged.contexts[:60], judged.readings[:60])
+    assert error(problem, learned[name], few) < 0.3
+
+
+@pytest.mark.parametrize(
+    "name", ["maximum_posterior", "smooth_discrepancy", "low_rank_discrepancy", "iterated_kalman"]
+)
+def test_intervals_cover_where_the_model_is_right(learned, name):
+    _, judged = easy()
+    assert 0.84 < coverage(learned[name], judged) < 0.96
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_load_tests_are_not_looked_at(learned, name):
+    problem, judged = easy()
+    rows = judged.readings[:6]
+    method = next(one for one in UNLABELLED if one.__name__ == name)
+    again = method(with_load_tests(problem, 5)).infer(rows)
+    before = learned[name].infer(rows)
+    assert np.array_equal(before.value, again.value)
+    assert np.array_equal(before.spread, again.spread)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_row_one_row_and_missing_readings(learned, name):
+    problem, judged = easy()
+    one, contexts = learned[name], len(problem.ranges)
+    assert one.infer(judged.readings[:0]).value.shape == (0, contexts)
+    assert one.simulate(judged.contexts[:0]).shape == (0, len(problem.noise))
+    assert one.infer(judged.readings[:1]).value.shape == (1, contexts)
+    gappy = judged.readings[:8].copy()
+    gappy[:, ::9] = np.nan
+    gappy[1] = np.nan
+    told = one.infer(gappy)
+    assert np.isfinite(told.value).all()
+    assert (told.spread > 0).all()
+    low, high = problem.ranges.T
+    assert ((told.value >= low - 1e-9) & (told.value <= high + 1e-9)).all()
+
+
+def test_a_missing_sensor_widens_the_intervals():
+    problem, judged = easy()
+    modes = maximum_posterior(problem)
+    gappy = judged.readings[:20].copy()
+    gappy[:, ::2] = np.nan
+    whole = modes.infer(judged.readings[:20]).spread
+    assert np.median(modes.infer(gappy).spread / whole) > 1.1
+
+
+@pytest.mark.parametrize("method", [iterated_kalman, unscented_kalman])
+def test_a_filter_gains_where_contexts_drift_and_loses_nothing_where_not(method):
+    problem, judged = easy(smooth=True)
+    follows = method(problem)
+    assert np.median(follows.memory) > 0.9
+    alone = error(problem, maximum_posterior(problem), judged)
+    assert error(problem, follows, judged) < alone
+    problem, judged = easy()
+    still = method(problem)
+    assert (still.memory == 0.0).all()
+    assert error(problem, still, judged) < 1.1 * error(problem, maximum_posterior(problem), judged)
+
+
+def test_what_was_measured_lately_is_learned():
+    problem, judged = easy()
+    before = low_rank_discrepancy(replace(problem, real=problem.real[:60]))
+    after = before.recalibrated(problem.real[60:])
+    whole = low_rank_discrepancy(problem)
+    assert np.array_equal(after.covariance, whole.covariance)
+    assert not np.array_equal(before.covariance, whole.covariance)
+
+
+def wrong(problem, rows, seed):
+    """Rows of a model with softer diagonals, and the same bridge for both."""
+    soft = MemberStiffness(group="diagonals", factor=0.6)
+    other = TwinOnArrays(problem.simulator.extended({"softer": soft}))
+    made = measured(problem, np.random.default_rng(seed), rows)
+    noise = made.readings - problem.simulate(made.contexts)
+    return Rows(made.contexts, other.simulate(made.contexts) + noise)
+
+
+def test_a_model_error_is_learned_from_rows_without_contexts():
+    problem, _ = easy()
+    problem = replace(problem, real=wrong(problem, 150, 5).readings)
+    judged = wrong(problem, 100, 6)
+    naive = error(problem, maximum_posterior(problem), judged)
+    for method in (smooth_discrepancy, low_rank_discrepancy):
+        found = method(problem)
+        assert error(problem, found, judged) < 0.9 * naive
+        assert coverage(found, judged) > coverage(maximum_posterior(problem), judged) + 0.1
+
+
+def test_updating_finds_what_load_tests_show():
+    problem, _ = easy()
+    problem, judged = replace(problem, load_tests=wrong(problem, 12, 5)), wrong(problem, 60, 6)
+    updated = updated_model(problem)
+    assert error(problem, updated, judged) < 0.5 * error(
+        problem, maximum_posterior(problem), judged
+    )
+    assert coverage(updated, judged) > 0.8
+
+
+def test_updating_without_load_tests_is_map():
+    problem, judged = easy()
+    rows = judged.readings[:5]
+    plain, updated = maximum_posterior(problem).infer(rows), updated_model(problem).infer(rows)
+    assert np.array_equal(plain.value, updated.value)
+
+
+def test_the_same_seed_gives_the_same_bits(learned):
+    problem, judged = easy()
+    for method in (ensemble_kalman, low_rank_discrepancy):
+        again = method(problem).infer(judged.readings[:5])
+        assert np.array_equal(
+            again.value, learned[method.__name__].infer(judged.readings[:5]).value
+        )
