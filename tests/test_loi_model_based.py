@@ -16,7 +16,7 @@ from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
 from rga.benchmark.loi.methods.updated_model import updated_model
 from rga.inference.rows import Rows
 from rga.inference.twin_on_arrays import TwinOnArrays
-from rga.model.effects.stiffness import MemberStiffness
+from rga.model.effects.bearings import SupportFlexibility
 
 UNLABELLED = [
     prior_mean,
@@ -37,8 +37,8 @@ def learned():
     return {method.__name__: method(problem) for method in UNLABELLED}
 
 
-def with_load_tests(problem, rows, seed=3):
-    return replace(problem, load_tests=measured(problem, np.random.default_rng(seed), rows))
+def with_load_tests(problem, rows):
+    return replace(problem, load_tests=measured(problem, np.random.default_rng(3), rows))
 
 
 def test_the_prior_mean_is_the_measure_of_errors(learned):
@@ -50,7 +50,7 @@ def test_the_prior_mean_is_the_measure_of_errors(learned):
 @pytest.mark.parametrize("name", NAMES[1:])
 def test_every_row_learns(learned, name):
     problem, judged = easy()
-    few = Rows(judged.contexts[:60], judged.readings[:60])
+    few = Rows(judged.contexts[:30], judged.readings[:30])
     assert error(problem, learned[name], few) < 0.3
 
 
@@ -63,12 +63,12 @@ def test_intervals_cover_where_the_model_is_right(learned, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_load_tests_are_not_looked_at(learned, name):
+def test_load_tests_are_not_looked_at(name):
     problem, judged = easy()
-    rows = judged.readings[:6]
+    problem, rows = replace(problem, real=problem.real[:20]), judged.readings[:3]
     method = next(one for one in UNLABELLED if one.__name__ == name)
+    before = method(problem).infer(rows)
     again = method(with_load_tests(problem, 5)).infer(rows)
-    before = learned[name].infer(rows)
     assert np.array_equal(before.value, again.value)
     assert np.array_equal(before.spread, again.spread)
 
@@ -80,7 +80,7 @@ def test_no_row_one_row_and_missing_readings(learned, name):
     assert one.infer(judged.readings[:0]).value.shape == (0, contexts)
     assert one.simulate(judged.contexts[:0]).shape == (0, len(problem.noise))
     assert one.infer(judged.readings[:1]).value.shape == (1, contexts)
-    gappy = judged.readings[:8].copy()
+    gappy = judged.readings[:4].copy()
     gappy[:, ::9] = np.nan
     gappy[1] = np.nan
     told = one.infer(gappy)
@@ -99,51 +99,55 @@ def test_a_missing_sensor_widens_the_intervals():
     assert np.median(modes.infer(gappy).spread / whole) > 1.1
 
 
-@pytest.mark.parametrize("method", [iterated_kalman, unscented_kalman])
-def test_a_filter_gains_where_contexts_drift_and_loses_nothing_where_not(method):
+def test_filters_gain_where_contexts_drift():
     problem, judged = easy(smooth=True)
-    follows = method(problem)
-    assert np.median(follows.memory) > 0.9
     alone = error(problem, maximum_posterior(problem), judged)
-    assert error(problem, follows, judged) < alone
-    problem, judged = easy()
-    still = method(problem)
-    assert (still.memory == 0.0).all()
-    assert error(problem, still, judged) < 1.1 * error(problem, maximum_posterior(problem), judged)
+    for method in (iterated_kalman, unscented_kalman):
+        follows = method(problem)
+        assert np.median(follows.memory) > 0.9
+        assert error(problem, follows, judged) < 0.9 * alone
 
 
-def test_what_was_measured_lately_is_learned():
+def test_filters_lose_nothing_where_rows_have_no_order(learned):
     problem, judged = easy()
-    before = low_rank_discrepancy(replace(problem, real=problem.real[:60]))
-    after = before.recalibrated(problem.real[60:])
-    whole = low_rank_discrepancy(problem)
-    assert np.array_equal(after.covariance, whole.covariance)
-    assert not np.array_equal(before.covariance, whole.covariance)
+    alone = error(problem, learned["maximum_posterior"], judged)
+    for name in ("iterated_kalman", "unscented_kalman"):
+        assert (learned[name].memory == 0.0).all()
+        assert error(problem, learned[name], judged) < 1.1 * alone
 
 
 def wrong(problem, rows, seed):
-    """Rows of a model with softer diagonals, and the same bridge for both."""
-    soft = MemberStiffness(group="diagonals", factor=0.6)
-    other = TwinOnArrays(problem.simulator.extended({"softer": soft}))
+    """Rows of a bridge whose eastern bearings give way."""
+    soft = SupportFlexibility(support=["east north", "east south"], dof="uz", stiffness=2e7)
+    other = TwinOnArrays(problem.simulator.extended({"soft": soft}))
     made = measured(problem, np.random.default_rng(seed), rows)
     noise = made.readings - problem.simulate(made.contexts)
     return Rows(made.contexts, other.simulate(made.contexts) + noise)
 
 
+def test_what_was_measured_lately_is_learned():
+    problem, _ = easy()
+    rows = wrong(problem, 40, 5).readings
+    before = smooth_discrepancy(replace(problem, real=rows[:10]))
+    after, whole = before.recalibrated(rows[10:]), smooth_discrepancy(replace(problem, real=rows))
+    assert np.array_equal(after.covariance, whole.covariance)
+    assert not np.array_equal(before.covariance, whole.covariance)
+
+
 def test_a_model_error_is_learned_from_rows_without_contexts():
     problem, _ = easy()
-    problem = replace(problem, real=wrong(problem, 150, 5).readings)
-    judged = wrong(problem, 100, 6)
-    naive = error(problem, maximum_posterior(problem), judged)
-    for method in (smooth_discrepancy, low_rank_discrepancy):
-        found = method(problem)
-        assert error(problem, found, judged) < 0.9 * naive
-        assert coverage(found, judged) > coverage(maximum_posterior(problem), judged) + 0.1
+    problem, judged = replace(problem, real=wrong(problem, 100, 5).readings), wrong(problem, 60, 6)
+    naive, smooth = maximum_posterior(problem), smooth_discrepancy(problem)
+    shapes = low_rank_discrepancy(problem)
+    assert error(problem, smooth, judged) < error(problem, naive, judged)
+    assert coverage(smooth, judged) > coverage(naive, judged) + 0.1
+    assert error(problem, shapes, judged) < 0.5 * error(problem, naive, judged)
+    assert coverage(shapes, judged) > 0.8
 
 
 def test_updating_finds_what_load_tests_show():
     problem, _ = easy()
-    problem, judged = replace(problem, load_tests=wrong(problem, 12, 5)), wrong(problem, 60, 6)
+    problem, judged = replace(problem, load_tests=wrong(problem, 6, 5)), wrong(problem, 40, 6)
     updated = updated_model(problem)
     assert error(problem, updated, judged) < 0.5 * error(
         problem, maximum_posterior(problem), judged
@@ -160,7 +164,7 @@ def test_updating_without_load_tests_is_map():
 
 def test_the_same_seed_gives_the_same_bits(learned):
     problem, judged = easy()
-    for method in (ensemble_kalman, low_rank_discrepancy):
+    for method in (ensemble_kalman, smooth_discrepancy):
         again = method(problem).infer(judged.readings[:5])
         assert np.array_equal(
             again.value, learned[method.__name__].infer(judged.readings[:5]).value

@@ -42,7 +42,7 @@ class QuadraticGuess:
     def __call__(self, readings: FloatArray) -> FloatArray:
         """Contexts, float[n, contexts], of readings, float[n, sensors]; NaN where missing."""
         guessed = self._features(readings) @ self._weights
-        return self._middle + self._scale * np.clip(guessed, -EDGE, EDGE)
+        return np.asarray(self._middle + self._scale * np.clip(guessed, -EDGE, EDGE))
 
     def _features(self, readings: FloatArray) -> FloatArray:
         """Scores of principal components, as the sensors seen tell them, and products of scores."""

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.inference.box_step import EDGE, box_step
 from rga.inference.whitening import Whitening
@@ -12,7 +13,7 @@ from rga.model.parameter import FloatArray
 #: damping at first, and what it falls to at most after a step, as a share
 DAMPING, FALL = 1e-2, 0.2
 #: steps at most; damping beyond which a row rests; gain of a step [chi square] below which it does
-STEPS, STUCK, GAIN = 30, 1e8, 1e-2
+STEPS, STUCK, GAIN = 20, 1e8, 1e-2
 
 OfContexts = Callable[[FloatArray], FloatArray]
 
@@ -81,12 +82,12 @@ def posterior_mode(
     filled, whiten = np.where(seen, readings, 0.0), Whitening(covariance, seen)
     rows, size = np.arange(len(readings)), len(scale)
 
-    def residual(z: FloatArray, of: FloatArray) -> FloatArray:
+    def residual(z: FloatArray, of: NDArray[np.int64]) -> FloatArray:
         off = filled[of] - simulate(middle + scale * z)
         return whiten(off[:, :, None], of)[:, :, 0]
 
     def height(off: FloatArray, z: FloatArray) -> FloatArray:
-        return (off**2).sum(axis=1) + (z**2).sum(axis=1)
+        return np.asarray((off**2).sum(axis=1) + (z**2).sum(axis=1))
 
     z = np.clip((start - middle) / scale, -EDGE, EDGE)
     off = residual(z, rows)
@@ -94,7 +95,7 @@ def posterior_mode(
     damping, rise = np.full(len(z), DAMPING), np.full(len(z), 2.0)
     normal, descent = np.empty((len(z), size, size)), np.empty((len(z), size))
 
-    def linearise(of: FloatArray) -> None:
+    def linearise(of: NDArray[np.int64]) -> None:
         slope = whiten(jacobian(middle + scale * z[of]) * scale, of)
         turned = slope.transpose(0, 2, 1)
         normal[of] = turned @ slope + np.eye(size)
@@ -121,6 +122,6 @@ def posterior_mode(
         if not len(left):
             break
     linearise(rows)
-    spread = np.linalg.inv(normal)
-    deviation = np.sqrt(np.diagonal(spread, axis1=1, axis2=2))
+    spread = np.asarray(np.linalg.inv(normal), dtype=float)
+    deviation: FloatArray = np.sqrt(np.diagonal(spread, axis1=1, axis2=2))
     return Mode(middle + scale * z, scale * deviation, spread, misfit)

@@ -15,7 +15,7 @@ from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model.parameter import FloatArray
 
 #: simulated rows beside the source; passes over all of them at most; samples of a posterior
-DRAWS, EPOCHS, SAMPLES = 20_000, 40, 256
+DRAWS, EPOCHS, SAMPLES = 12_000, 40, 256
 
 
 @dataclass(frozen=True)
@@ -77,10 +77,31 @@ def neural_posterior(problem: Problem) -> Calibrated:
     edge = torch.full((len(scale),), EDGE)
     with torch.random.fork_rng(devices=[]), one_thread():
         torch.manual_seed(problem.seed)
-        learner = NPE(BoxUniform(-edge, edge), density_estimator="maf", show_progress_bars=False)
+        learner = NPE(
+            BoxUniform(-edge, edge),
+            density_estimator="maf",
+            tracker=_Silent(),
+            show_progress_bars=False,
+        )
         learner.append_simulations(
             torch.as_tensor((contexts - middle) / scale, dtype=torch.float32),
             torch.as_tensor(noisy, dtype=torch.float32),
         )
         density = learner.train(max_num_epochs=EPOCHS, show_train_summary=False)
     return NeuralPosterior(problem, twin, density.eval(), problem.source.readings.mean(axis=0))
+
+
+class _Silent:
+    """Keeps no log of a training: by default `sbi` writes one where it runs."""
+
+    log_dir = None
+
+    def log_metric(self, name: str, value: float, step: int | None = None) -> None: ...
+
+    def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None: ...
+
+    def log_params(self, params: dict[str, Any]) -> None: ...
+
+    def add_figure(self, name: str, figure: Any, step: int | None = None) -> None: ...
+
+    def flush(self) -> None: ...

@@ -36,7 +36,7 @@ def _filter(
         arms = np.concatenate([arms, -arms], axis=1)
         points = np.clip(mean[:, None] + arms, -EDGE, EDGE)
         shown = twin.simulate(middle + scale * points.reshape(-1, len(scale)))
-        shown = np.where(seen[:, None], shown.reshape(*points.shape[:2], -1), 0.0)
+        shown = np.where(seen[:, None], shown.reshape(*points.shape[:2], readings.shape[1]), 0.0)
         told, pull = _straight(points, shown, np.where(seen, readings, 0.0), modes.covariance)
         mean, covariance = recursion(told, pull, memory)
     return mean, np.diagonal(covariance, axis1=1, axis2=2)
