@@ -14,6 +14,7 @@ from rga.benchmark.loi.methods.modes import maximum_posterior
 from rga.benchmark.loi.methods.prior import prior_mean
 from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
 from rga.benchmark.loi.methods.updated_model import updated_model
+from rga.inference.posterior_mode import posterior_mode
 from rga.inference.rows import Rows
 from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model.effects.bearings import SupportFlexibility
@@ -160,6 +161,32 @@ def test_updating_without_load_tests_is_map():
     rows = judged.readings[:5]
     plain, updated = maximum_posterior(problem).infer(rows), updated_model(problem).infer(rows)
     assert np.array_equal(plain.value, updated.value)
+
+
+def test_modes_of_a_straight_model_are_generalised_least_squares():
+    rng = np.random.default_rng(0)
+    slopes, root = rng.standard_normal((9, 3)), rng.standard_normal((9, 9))
+    covariance, ranges = root @ root.T + np.eye(9), np.array([[-8.0, 4.0]] * 3)
+    shown = rng.standard_normal((4, 9))
+    shown[2, 5] = np.nan
+    straight = np.tile(slopes, (4, 1, 1))
+    found = posterior_mode(
+        lambda c: c @ slopes.T,
+        lambda c: straight[: len(c)],
+        shown,
+        covariance,
+        ranges,
+        np.zeros((4, 3)),
+    )
+    for row, measured_row in enumerate(shown):
+        seen = np.isfinite(measured_row)
+        weight = np.linalg.inv(covariance[np.ix_(seen, seen)])
+        # Evenly spread over 12 units: variance 12, about -2.
+        normal = slopes[seen].T @ weight @ slopes[seen] + np.eye(3) / 12.0
+        pull = slopes[seen].T @ weight @ measured_row[seen] - 2.0 / 12.0
+        assert found.value[row] == pytest.approx(np.linalg.solve(normal, pull), abs=1e-3)
+        spread = np.sqrt(np.diag(np.linalg.inv(normal)))
+        assert found.spread[row] == pytest.approx(spread)
 
 
 def test_the_same_seed_gives_the_same_bits(learned):

@@ -1,5 +1,6 @@
 """CORAL and DANN, by the package `skada`."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -65,6 +66,7 @@ def skada_coral(problem: Problem) -> Calibrated:
     """
     try:
         from skada import CORALAdapter
+        from sklearn.exceptions import ConvergenceWarning
         from sklearn.neural_network import MLPRegressor
     except ImportError:
         raise NotInstalledError("skada is not installed") from None
@@ -76,7 +78,8 @@ def skada_coral(problem: Problem) -> Calibrated:
     perceptron = MLPRegressor(
         hidden_layer_sizes=(UNITS, UNITS), max_iter=EPOCHS, random_state=problem.seed % 2**32
     )
-    with one_thread():
+    with one_thread(), warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # the passes are bounded
         perceptron.fit(adapted[domain > 0] / size, wanted)
     return _adapted(problem, lambda given: perceptron.predict((given - center) / size), skada_coral)
 

@@ -1,5 +1,6 @@
 """Neural posterior estimation, by the package `sbi`."""
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -87,7 +88,10 @@ def neural_posterior(problem: Problem) -> Calibrated:
             torch.as_tensor((contexts - middle) / scale, dtype=torch.float32),
             torch.as_tensor(noisy, dtype=torch.float32),
         )
-        density = learner.train(max_num_epochs=EPOCHS, show_train_summary=False)
+        with warnings.catch_warnings():
+            # The passes are bounded so that the same seed trains alike on every machine.
+            warnings.filterwarnings("ignore", message="Maximum number of epochs")
+            density = learner.train(max_num_epochs=EPOCHS, show_train_summary=False)
     return NeuralPosterior(problem, twin, density.eval(), problem.source.readings.mean(axis=0))
 
 
