@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from loi_problems import coverage, easy, error, measured
 
+from loi_problems import coverage, easy, error, measured
 from rga.benchmark.loi.methods import domain_adaptation, neural_posterior
 from rga.benchmark.loi.methods.domain_adaptation import skada_coral, skada_dann
 
@@ -19,6 +19,7 @@ def method(request):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(neural_posterior, "DRAWS", 1000)
         patch.setattr(neural_posterior, "EPOCHS", 15)
+        patch.setattr(neural_posterior, "SAMPLES", 64)
         patch.setattr(domain_adaptation, "EPOCHS", 20)
         yield request.param
 
@@ -31,7 +32,7 @@ def learned(method):
 def test_a_peer_learns(learned):
     problem, judged = easy()
     assert error(problem, learned, judged) < 0.75
-    spread = learned.infer(judged.readings).spread
+    spread = learned.infer(judged.readings[:2]).spread
     assert spread is None or coverage(learned, judged) > 0.8
 
 
