@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.inference.box_step import EDGE
 from rga.inference.corrected import CorrectedTwin
-from rga.inference.posterior_mode import EDGE, posterior_mode, standard
+from rga.inference.guess import QuadraticGuess
+from rga.inference.posterior_mode import posterior_mode, standard
 from rga.inference.rows import Rows
-from rga.inference.starts import best_mode
 from rga.inference.unknowns import Unknowns
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
@@ -144,16 +145,18 @@ class _Search:
         return values, gains, offsets
 
     def place(self, source: FloatArray) -> None:
-        """Contexts of the measured rows anew, from several starts, the unknowns as they stand."""
+        """Contexts of the measured rows anew, from two starts, the unknowns as they stand."""
         twin = self.twin
         self.population = self.seen_population
         simulated = Rows(source, twin.simulate(source))
         measured = self.readings[: self.many]
-        mode = best_mode(twin, measured, np.diag(self.variance), simulated)
-        kept = posterior_mode(
-            twin.simulate, twin.jacobian, measured, np.diag(self.variance), self.ranges,
-            self.contexts[: self.many],
-        )  # fmt: skip
+        guess = QuadraticGuess(simulated, np.sqrt(self.variance), self.ranges, seed=0)
+        mode, kept = (
+            posterior_mode(
+                twin.simulate, twin.jacobian, measured, np.diag(self.variance), self.ranges, start
+            )
+            for start in (guess(measured), self.contexts[: self.many])
+        )
         better = (mode.misfit < kept.misfit)[:, None]
         self.contexts[: self.many] = np.where(better, mode.value, kept.value)
         self._weigh(self._residual(self.value, self.contexts), 0.0)
