@@ -52,7 +52,8 @@ class Guide:
         table = dict(zip(self._variables.contexts, contexts.T, strict=True))
         rates = self._physics.jacobian(table)[:, :, self._variables.latent_columns]
         self._looked = latent
-        self._readings = torch.from_numpy(self._physics.predict(table)).view(rows, modes, -1)
+        readings = torch.from_numpy(self._physics.predict(table)).float()
+        self._readings = readings.view(rows, modes, -1)
         self._rates = torch.from_numpy(rates).float().view(rows, modes, *rates.shape[1:])
 
     def __call__(self, rows: Tensor, latent: Tensor) -> Tensor:
@@ -64,7 +65,7 @@ class Guide:
         """
         if isinstance(self._physics, Simulator):
             moved = (latent - self._looked[rows]).float()[..., None]
-            return self._readings[rows].float() + (self._rates[rows] @ moved)[..., 0]
+            return self._readings[rows] + (self._rates[rows] @ moved)[..., 0]
         found = self._physics(self._contexts(rows, latent))
         found = found.view(-1, *latent.shape[:2], found.shape[-1])
         # Each candidate is judged by the way that it takes the train to go.

@@ -14,7 +14,7 @@ from rga.inference.schedule import reversal_strength
 from rga.inference.settings import TrainingSettings
 from rga.model.parameter import FloatArray
 
-#: the target is looked at every so many steps, with that much more weight: it costs most
+#: physics and target are looked at every so many steps, with that much more weight: they cost most
 EVERY = 2
 
 
@@ -87,18 +87,18 @@ class Objective:
             if self._of_target is not None:
                 self._of_target.look(self.network.physical(mixture.value.clamp(-REACH, REACH)))
 
-    def on_source(self) -> Tensor:
-        """Loss of a batch of simulated rows."""
+    def on_source(self, guided: bool) -> Tensor:
+        """Loss of a batch of simulated rows, with or without what physics say of them."""
         settings, network = self._settings, self.network
         rows = torch.randint(len(self._source), (settings.batch,), generator=self._generator)
         mixture: Mixture = network.predictor(network.encoder(self._corrupt(self._source[rows])))
         loss = settings.beta * context_loss(
             mixture, self._wanted[rows], self._backwards[rows], network.ways
         )
-        if self._of_source is not None:
+        if guided and self._of_source is not None:
             readings = self._source[rows, : len(self._scale)]
-            guided = self._physics(self._of_source, rows, mixture, readings)
-            loss = loss + settings.source_gamma * guided
+            fit = self._physics(self._of_source, rows, mixture, readings)
+            loss = loss + EVERY * settings.source_gamma * fit
         return loss
 
     def on_target(self, done: float) -> Tensor | None:
@@ -120,8 +120,8 @@ class Objective:
             loss = loss + EVERY * settings.alpha * self.domain(likes, features, strength)
         if self._of_target is not None:
             readings = real[:, : len(self._scale)]
-            guided = self._physics(self._of_target, rows, network.predictor(features), readings)
-            loss = loss + EVERY * settings.gamma * strength * guided
+            fit = self._physics(self._of_target, rows, network.predictor(features), readings)
+            loss = loss + EVERY * settings.gamma * strength * fit
         return loss
 
     def _physics(self, guide: Guide, rows: Tensor, mixture: Mixture, readings: Tensor) -> Tensor:

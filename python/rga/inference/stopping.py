@@ -6,7 +6,7 @@ from collections.abc import Callable
 from rga.inference.network import ContextNetwork
 
 #: looks in a row that may bring nothing better
-PATIENCE = 4
+PATIENCE = 6
 
 
 class Stopping:

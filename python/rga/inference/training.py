@@ -122,9 +122,9 @@ def _run(
     held_out: Callable[[ContextNetwork], float] | None,
     progress: Callable[[float], None] | None,
 ) -> ContextNetwork:
-    steps, rate, modules = settings.steps, settings.learning_rate, objective.modules
-    modules.train()
-    optimiser = torch.optim.Adam(modules.parameters(), lr=rate, fused=True)
+    steps, rate = settings.steps, settings.learning_rate
+    weights = list(objective.modules.train().parameters())
+    optimiser = torch.optim.Adam(weights, lr=rate, fused=True)
     stopping = None if held_out is None else Stopping(held_out)
     for step in range(steps):
         done = step / steps
@@ -135,16 +135,17 @@ def _run(
             if stopping is not None and done >= lead and stopping.enough(objective.network):
                 break
         optimiser.zero_grad()
-        loss = objective.on_source()
-        if done >= lead and step % EVERY == 0:
+        whole = step % EVERY == 0
+        loss = objective.on_source(guided=whole)
+        if whole and done >= lead:
             real = objective.on_target((done - lead) / (1.0 - lead))
             loss = loss if real is None else loss + real
         torch.autograd.backward(loss)
-        nn.utils.clip_grad_norm_(modules.parameters(), 1.0)
+        nn.utils.clip_grad_norm_(weights, 1.0)
         optimiser.step()
         if progress is not None:
             progress((step + 1) / steps)
-    if not all(torch.isfinite(weight).all() for weight in modules.parameters()):
+    if not all(torch.isfinite(weight).all() for weight in weights):
         raise InputError(
             "the training of the networks diverged",
             "settings of the training",

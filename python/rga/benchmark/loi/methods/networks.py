@@ -120,16 +120,16 @@ def _settings(**changes: object) -> TrainingSettings:
     return told.model_copy(update={"fine_gamma": told.gamma, "fine_physics": told.physics})
 
 
-_ADVERSARY = {"alpha": 0.03}
 _PHYSICS = {"gamma": 0.05, "source_gamma": 0.05}
+_BOTH = {**_PHYSICS, "alpha": 0.1}
 
 #: settings of each row, by its name
 NETWORKS = {
     "source_only": _settings(),
     "residual_network": _settings(beta=0.0, gamma=1.0, source_gamma=1.0, physics="reduced"),
-    "adversarial": _settings(**_ADVERSARY),
-    "adversarial_reduced_physics": _settings(**_ADVERSARY, **_PHYSICS, physics="reduced"),
-    "adversarial_exact_physics": _settings(**_ADVERSARY, **_PHYSICS, physics="exact"),
+    "adversarial": _settings(alpha=0.03),
+    "adversarial_reduced_physics": _settings(**_BOTH, physics="reduced"),
+    "adversarial_exact_physics": _settings(**_BOTH, physics="exact"),
     "physics_only": _settings(**_PHYSICS, physics="exact"),
     "coral": _settings(alpha=10.0, domain="coral"),
 }
