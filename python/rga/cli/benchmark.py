@@ -76,10 +76,10 @@ def diagnosis(
         return
 
     from rga.benchmark.challenge.figures import figures
-    from rga.benchmark.challenge.ledger import versions
     from rga.benchmark.challenge.plots import plot
     from rga.benchmark.challenge.run import run
     from rga.benchmark.challenge.tables import tables
+    from rga.benchmark.ledger import versions
 
     chosen = design.draws(seed, design.QUICK if quick else draws)
     with shown_progress() as progress:
