@@ -12,12 +12,28 @@ FloatArray = NDArray[np.float64]
 
 
 class Driven(BaseModel):
-    """A parameter that follows a context variable: times * (context - minus)."""
+    """A parameter that follows a context variable: times * (context - minus).
+
+    Attributes:
+        context: name of the variable.
+        times, minus: as above.
+        log10: the variable is a decimal logarithm: times * 10 ** (context - minus).
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     context: str
     times: float = Field(default=1.0, allow_inf_nan=False)
     minus: float = Field(default=0.0, allow_inf_nan=False)
+    log10: bool = False
+
+    def follow(self, context: FloatArray) -> FloatArray:
+        """The parameter at values of the context.
+
+        >>> Driven(context="bearing", minus=-3.0, log10=True).follow(np.array([4.0]))
+        array([10000000.])
+        """
+        moved = context - self.minus
+        return np.asarray(self.times * (10.0**moved if self.log10 else moved))
 
 
 class Estimated(BaseModel):
@@ -148,7 +164,7 @@ def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> Floa
         float[rows], in the parameter's unit.
     """
     if isinstance(value, Driven):
-        return value.times * (contexts[value.context] - value.minus)
+        return value.follow(contexts[value.context])
     return np.full(rows, value.value if isinstance(value, Estimated) else value)
 
 

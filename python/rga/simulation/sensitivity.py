@@ -1,9 +1,10 @@
 """Derivatives of the sensors by the contexts.
 
 Coefficients of loads and stiffnesses are straight in the contexts but for kinks, so that their
-central differences have no truncation error; the response to them is differentiated exactly, along
-the contexts (`jacobian`) or backwards from the sensors (`pull_back`). Where whole structures vary,
-where friction remembers, or where displacements are large, the response itself is differenced.
+central differences have no truncation error (1e-7 of them where a context is a logarithm); the
+response to them is differentiated exactly, along the contexts (`jacobian`) or backwards from the
+sensors (`pull_back`). Where whole structures vary, where friction remembers, or where displacements
+are large, the response itself is differenced.
 """
 
 from collections.abc import Iterator

@@ -6,22 +6,10 @@ from typing import Protocol
 
 import numpy as np
 
+from rga.inference.rows import Rows
 from rga.model import Model
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
-
-
-@dataclass(frozen=True)
-class Rows:
-    """Rows of which the contexts are known.
-
-    Attributes:
-        contexts: in the order and the units of the model, float[n, contexts].
-        readings: in the order and the units of the model's sensors, float[n, sensors].
-    """
-
-    contexts: FloatArray
-    readings: FloatArray
 
 
 @dataclass(frozen=True)

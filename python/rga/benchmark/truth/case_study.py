@@ -11,10 +11,10 @@ import numpy as np
 from .draft import Bridge, Draft, section, steel
 
 SPAN = 46.0  # [m]
-_PANELS, _HEIGHT, _WIDTH = 10, 2.6, 3.0
-_PANEL = SPAN / _PANELS
-_SIDES = {"north": _WIDTH, "south": 0.0}
-_PATCH = SPAN / 3.0  # of the crowd [m]
+HEIGHT, WIDTH = 2.6, 3.0  # [m]
+SIDES = {"north": WIDTH, "south": 0.0}
+PATCH = SPAN / 3.0  # of the crowd [m]
+_PANELS = 10
 _AXLES = 31  # a patch in small steps
 _SOLID = 0.35  # share of a truss that the wind sees
 _MM, _MICROSTRAIN = 0.15, 1.5  # noise of the sensors
@@ -33,71 +33,78 @@ def case_study_bridge() -> Bridge:
             "rod": section(0.0012, 1.2e-7, 2e-7),
         },
     )
-    for side, y in _SIDES.items():
-        for i in range(_PANELS + 1):
-            draft.node(_low(side, i), i * _PANEL, y, 0.0)
-        for i in range(1, _PANELS):
-            draft.node(_top(side, i), i * _PANEL, y, _HEIGHT)
-    for side in _SIDES:
-        _truss(draft, side)
-    _deck(draft)
-    for end, i in (("west", 0), ("east", _PANELS)):
-        for side in _SIDES:
-            fixed = ["uz", *(["ux"] if i == 0 else []), *(["uy"] if side == "south" else [])]
-            draft.support(f"{end} {side}", _low(side, i), *fixed)
+    steelwork(draft, _PANELS)
     _contexts(draft)
-    _effects(draft)
-    for side in _SIDES:
+    actions(draft, _PANELS)
+    for side in SIDES:
         _sensors(draft, side)
     return Bridge(
         name="case study",
         model=draft.model,
         roles={"temperature": "temperature"},
         peaks={},
-        bearings=[(f"east {side}", "ux") for side in _SIDES],
+        bearings=[(f"east {side}", "ux") for side in SIDES],
         floor=["bottom chord"],
         jointed=["bottom chord", "top chord", "end posts", "diagonals"],
         area_load="crowd north",
     )
 
 
-def _low(side: str, i: int) -> str:
+def steelwork(draft: Draft, panels: int) -> None:
+    """Nodes, members and supports; any even number of panels."""
+    for side, y in SIDES.items():
+        for i in range(panels + 1):
+            draft.node(low(side, i), i * SPAN / panels, y, 0.0)
+        for i in range(1, panels):
+            draft.node(top(side, i), i * SPAN / panels, y, HEIGHT)
+    for side in SIDES:
+        _truss(draft, side, panels)
+    _deck(draft, panels)
+    for end, i in (("west", 0), ("east", panels)):
+        for side in SIDES:
+            fixed = ["uz", *(["ux"] if i == 0 else []), *(["uy"] if side == "south" else [])]
+            draft.support(f"{end} {side}", low(side, i), *fixed)
+
+
+def low(side: str, i: int) -> str:
+    """Node of the bottom chord."""
     return f"{side}.L{i}"
 
 
-def _top(side: str, i: int) -> str:
+def top(side: str, i: int) -> str:
+    """Node of the top chord."""
     return f"{side}.U{i}"
 
 
-def _truss(draft: Draft, side: str) -> None:
+def _truss(draft: Draft, side: str, panels: int) -> None:
     def add(one: str, other: str, kind: str, group: str) -> None:
         frame = "frame" if group == "verticals" else "truss"
         ends = (f"{side}.{one}", f"{side}.{other}")
         name = f"{side}.{one}-{other}"
         draft.member(ends, kind, [group, f"{side} truss"], name=name, kind=frame)
 
-    for i in range(_PANELS):
+    for i in range(panels):
         add(f"L{i}", f"L{i + 1}", "chord", "bottom chord")
-    for i in range(1, _PANELS - 1):
+    for i in range(1, panels - 1):
         add(f"U{i}", f"U{i + 1}", "chord", "top chord")
     add("L0", "U1", "chord", "end posts")
-    add(f"L{_PANELS}", f"U{_PANELS - 1}", "chord", "end posts")
-    for i in range(1, _PANELS):
+    add(f"L{panels}", f"U{panels - 1}", "chord", "end posts")
+    for i in range(1, panels):
         add(f"L{i}", f"U{i}", "vertical", "verticals")
-    for i in range(1, _PANELS // 2):
+    for i in range(1, panels // 2):
         add(f"U{i}", f"L{i + 1}", "diagonal", "diagonals")
-        add(f"U{_PANELS - i}", f"L{_PANELS - i - 1}", "diagonal", "diagonals")
+        add(f"U{panels - i}", f"L{panels - i - 1}", "diagonal", "diagonals")
 
 
-def _deck(draft: Draft) -> None:
-    for i in range(_PANELS + 1):
+def _deck(draft: Draft, panels: int) -> None:
+    for i in range(panels + 1):
         # Nothing holds the end beams against turning about themselves: they are pinned.
-        kind = "frame" if 0 < i < _PANELS else "truss"
-        ends = (_low("north", i), _low("south", i))
+        kind = "frame" if 0 < i < panels else "truss"
+        ends = (low("north", i), low("south", i))
         draft.member(ends, "beam", ["cross beams"], name=f"beam {i}", kind=kind)
-    for i in range(_PANELS):
+    for i in range(panels):
         for one, other in (("north", "south"), ("south", "north")):
-            ends = (_low(one, i), _low(other, i + 1))
+            ends = (low(one, i), low(other, i + 1))
             draft.member(ends, "rod", ["bracing"], name=f"brace {i} {one}")
 
 
@@ -111,7 +118,8 @@ def _contexts(draft: Draft) -> None:
     draft.context("wind", "kPa", -1.0, 1.0)
 
 
-def _effects(draft: Draft) -> None:
+def actions(draft: Draft, panels: int) -> None:
+    """Warmth, sunshine, the crowd and the wind, each driven by its context."""
     effects = draft.model["effects"]
     groups = {m["groups"][0]: 1.0 for m in draft.model["members"].values()}
     draft.warmth("warmth", "temperature", 0.0, groups)
@@ -120,13 +128,13 @@ def _effects(draft: Draft) -> None:
         "axis": "vertical",
         "difference": {"context": "gradient"},
     }
-    spread = _PATCH * ((np.arange(_AXLES) + 0.5) / _AXLES - 0.5)
-    crowds = [f"crowd {side}" for side in _SIDES]
-    for name, side in zip(crowds, _SIDES, strict=True):
+    spread = PATCH * ((np.arange(_AXLES) + 0.5) / _AXLES - 0.5)
+    crowds = [f"crowd {side}" for side in SIDES]
+    for name, side in zip(crowds, SIDES, strict=True):
         effects[name] = {
             "kind": "axle_load",
-            "path": [_low(side, i) for i in range(_PANELS + 1)],
-            "forces": [round(1e3 * _PATCH * _WIDTH / 2.0 / _AXLES, 3)] * _AXLES,
+            "path": [low(side, i) for i in range(panels + 1)],
+            "forces": [round(1e3 * PATCH * WIDTH / 2.0 / _AXLES, 3)] * _AXLES,
             "offsets": [round(float(x), 4) for x in spread],
             "factor": {"context": "crowd"},
             "position": {"context": "position"},
@@ -136,7 +144,7 @@ def _effects(draft: Draft) -> None:
         "effect": crowds,
         "share": {"context": "eccentricity"},
     }
-    push = round(1e3 * _SOLID * _PANEL * _HEIGHT / 2.0, 3)  # on a node per kPa
+    push = round(1e3 * _SOLID * (SPAN / panels) * HEIGHT / 2.0, 3)  # on a node per kPa
     effects["wind"] = {
         "kind": "nodal_load",
         "forces": {node: [0, push, 0] for node in draft.model["nodes"]},
@@ -146,11 +154,11 @@ def _effects(draft: Draft) -> None:
 
 def _sensors(draft: Draft, side: str) -> None:
     for i in range(1, _PANELS):
-        draft.moves(f"{side} z{i}", _low(side, i), [0, 0, 1], _MM)
+        draft.moves(f"{side} z{i}", low(side, i), [0, 0, 1], _MM)
     middle = _PANELS // 2
-    draft.moves(f"{side} y", _low(side, middle), [0, 1, 0], _MM)
-    draft.moves(f"{side} y top", _top(side, middle), [0, 1, 0], _MM)
-    draft.moves(f"{side} x", _low(side, _PANELS), [1, 0, 0], _MM)
+    draft.moves(f"{side} y", low(side, middle), [0, 1, 0], _MM)
+    draft.moves(f"{side} y top", top(side, middle), [0, 1, 0], _MM)
+    draft.moves(f"{side} x", low(side, _PANELS), [1, 0, 0], _MM)
     gauged = ["L2-L3", "L4-L5", "L5-L6", "L7-L8", "U2-U3", "U4-U5", "U7-U8", "U1-L2", "U9-L8"]
     for member in gauged:
         draft.strains(f"{side} e {member}", f"{side}.{member}", _MICROSTRAIN)

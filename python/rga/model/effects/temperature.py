@@ -22,7 +22,9 @@ class Temperature(Effect):
     delta: Annotated[Value, Parameter("K", 0.0)] = 1.0
 
     def check(self, model: "Model") -> None:
-        """ValueError where a group is missing, or a member is in two of the listed groups."""
+        """ValueError where groups are missing or overlap, or delta follows a logarithm."""
+        if isinstance(self.delta, Driven) and self.delta.log10:
+            raise ValueError("delta: a temperature follows its context straight, not by log10")
         seen: dict[str, str] = {}
         for group in self.groups:
             if group not in model.groups:

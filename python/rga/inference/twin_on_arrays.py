@@ -1,0 +1,39 @@
+"""A simulator on tables of contexts as numbers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+
+@dataclass(frozen=True)
+class TwinOnArrays:
+    """A simulator of which all contexts are latent, with contexts as one table.
+
+    Attributes:
+        simulator: of the model.
+    """
+
+    simulator: Simulator
+
+    @property
+    def ranges(self) -> FloatArray:
+        """Smallest and largest of each context, float[contexts, 2]."""
+        return np.array([one.range for one in self.simulator.model.context.values()])
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """Readings without noise, float[n, sensors], of contexts, float[n, contexts]."""
+        if not len(contexts):
+            return np.zeros((0, len(self.simulator.model.sensors)))
+        return self.simulator.predict(self._named(contexts))
+
+    def jacobian(self, contexts: FloatArray) -> FloatArray:
+        """Derivatives by the contexts in their units, float[n, sensors, contexts]."""
+        if not len(contexts):
+            return np.zeros((0, len(self.simulator.model.sensors), contexts.shape[1]))
+        return self.simulator.jacobian(self._named(contexts))
+
+    def _named(self, contexts: FloatArray) -> dict[str, FloatArray]:
+        return dict(zip(self.simulator.model.context, contexts.T, strict=True))
