@@ -1,0 +1,168 @@
+"""Levels of integration: what a twin does while rows come in.
+
+A calibrates once. B watches the residuals; on an alarm rows are gathered, and it recalibrates. C
+stores its states as well, and takes a stored one up without learning where that explains the rows
+behind an alarm. A method infers row by row, or forward in time, so that a stream is inferred once
+by each state.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from rga.benchmark.loi.method import Calibrated
+from rga.benchmark.loi.score import gap
+from rga.benchmark.loi.setting import Sizes
+from rga.detection import SyncMonitor
+from rga.model.parameter import FloatArray
+
+LEVELS = ("A", "B", "C")
+
+
+@dataclass(frozen=True)
+class State:
+    """A calibrated method, and what it leaves of measured rows.
+
+    Attributes:
+        calibrated: the method.
+        ordinary: residuals, measured minus simulated, of the rows of the first calibration,
+            float[unlabelled, sensors].
+        stream: the same of the stream, float[stream, sensors].
+        baseline: residuals that are usual now, float[unlabelled, sensors].
+    """
+
+    calibrated: Calibrated
+    ordinary: FloatArray
+    stream: FloatArray
+    baseline: FloatArray
+
+    @classmethod
+    def of(cls, calibrated: Calibrated, ordinary: FloatArray, stream: FloatArray) -> "State":
+        """At the end of a calibration.
+
+        Args:
+            calibrated: the method.
+            ordinary: residuals of the rows of the first calibration, float[unlabelled, sensors].
+            stream: readings, float[stream, sensors].
+        """
+        return cls(calibrated, ordinary, residuals(calibrated, stream), ordinary)
+
+    def settled(self, recent: slice) -> "State":
+        """The same, to which the level of the latest rows is usual.
+
+        These are too few to say more: memory and distribution are those of the ordinary rows.
+        """
+        level = self.stream[recent].mean(axis=0)
+        return replace(self, baseline=self.ordinary - self.ordinary.mean(axis=0) + level)
+
+    def monitor(self, sizes: Sizes) -> SyncMonitor:
+        """Watches for residuals that are not usual."""
+        return SyncMonitor(self.baseline, arl0=sizes.arl0)
+
+    def explains(self, rows: slice, sizes: Sizes) -> bool:
+        """Whether rows of the stream leave residuals that are usual to this state."""
+        return not self.monitor(sizes).update_many(self.stream[rows]).any()
+
+    def harms(self, before: "State", recent: slice, sizes: Sizes) -> bool:
+        """Whether it leaves a larger gap than another, of the latest rows or the ordinary ones."""
+        pairs = (
+            (self.ordinary, before.ordinary),
+            (self.stream[recent], before.stream[recent]),
+        )
+        return any(gap(now) > sizes.harm * gap(then) for now, then in pairs)
+
+
+#: a state after it has learned from rows of the stream
+Learned = Callable[[State, slice], State]
+
+
+@dataclass
+class Life:
+    """What became of a twin on a stream.
+
+    Attributes:
+        state: at the end.
+        stored: states that there were, the first one included.
+        alarms: rows that raised one.
+        recalibrations: number of times that it learned, those that were taken back included.
+        taken_back: recalibrations that did harm.
+        recalled: alarms at which a stored state was taken up.
+    """
+
+    state: State
+    stored: list[State]
+    alarms: list[int] = field(default_factory=list)
+    recalibrations: int = 0
+    taken_back: int = 0
+    recalled: int = 0
+
+
+def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
+    """Let a twin live through the stream.
+
+    Args:
+        first: as it was calibrated.
+        sizes: by what rules.
+        learned: makes a state of a state.
+        stores: whether stored states are taken up (level C).
+    """
+    life = Life(first, [first])
+    monitor, began = first.monitor(sizes), 0
+    raised: int | None = None
+    since = 0
+    for row in range(len(first.stream)):
+        if raised is None:
+            if not monitor.update(life.state.stream[row]) or monitor.alarm is None:
+                continue
+            raised, since = row, began + monitor.alarm.since
+            life.alarms.append(row)
+        waited = row + 1 - raised
+        if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1), sizes):
+            pass
+        elif waited == sizes.settle:
+            _learn(life, slice(since, row + 1), sizes, learned)
+        else:
+            continue
+        monitor, began, raised = life.state.monitor(sizes), row + 1, None
+    return life
+
+
+def _recall(life: Life, recent: slice, sizes: Sizes) -> bool:
+    """Take up the stored state that explains rows with the least gap, if there is one."""
+    others = [one for one in life.stored if one is not life.state and one.explains(recent, sizes)]
+    if not others:
+        return False
+    life.state = min(others, key=lambda one: gap(one.stream[recent]))
+    life.recalled += 1
+    return True
+
+
+def _learn(life: Life, recent: slice, sizes: Sizes, learned: Learned) -> None:
+    """Learn from rows; where that does harm, only take for usual what they are like."""
+    before = life.state
+    after = learned(before, recent)
+    if after.calibrated is not before.calibrated:
+        life.recalibrations += 1
+        if after.harms(before, recent, sizes):
+            life.taken_back += 1
+            after = before
+    life.state = after.settled(recent)
+    life.stored.append(life.state)
+
+
+def delays(alarms: Sequence[int], changes: Sequence[int], rows: int) -> tuple[int | None, ...]:
+    """Rows from each change to its alarm, both counted; None where none came before the next.
+
+    >>> delays([3, 12, 14], [10, 20], 30)
+    (3, None)
+    """
+    ends = [*changes[1:], rows]
+    found = []
+    for change, end in zip(changes, ends, strict=False):
+        own = [one for one in alarms if change <= one < end]
+        found.append(own[0] - change + 1 if own else None)
+    return tuple(found)
+
+
+def residuals(calibrated: Calibrated, readings: FloatArray) -> FloatArray:
+    """Measured minus simulated at the contexts that are inferred, float[n, sensors]."""
+    return readings - calibrated.simulate(calibrated.infer(readings).value)
