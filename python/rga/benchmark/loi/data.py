@@ -7,11 +7,12 @@ import numpy as np
 
 from rga.benchmark.loi.contexts import Contexts
 from rga.benchmark.loi.drift import Conditions, Measured, following, when
-from rga.benchmark.loi.method import Problem, Rows
+from rga.benchmark.loi.method import Problem
 from rga.benchmark.loi.setting import DRIFTING, Task
 from rga.benchmark.truth.full_case_study import full_case_study
 from rga.benchmark.truth.physical_twin import PhysicalTwin
 from rga.inference.design import design
+from rga.inference.rows import Rows
 from rga.model import read_model
 from rga.simulation import Simulator
 
@@ -26,7 +27,7 @@ class Calibration:
     Attributes:
         problem: with all load tests.
         usual: what the measured rows are measured under.
-        test: rows under these conditions.
+        test: rows to score under these conditions; half of them where there are drifts.
     """
 
     problem: Problem
@@ -41,12 +42,11 @@ class Stream:
     Attributes:
         rows: of the stream.
         changes: first rows of the parts that differ from the part before.
-        ordinary, drifted: rows to score, under usual conditions and under the drift.
+        drifted: rows to score under the drift, half of the test rows.
     """
 
     rows: Measured
     changes: tuple[int, ...]
-    ordinary: Measured
     drifted: Measured
 
 
@@ -88,7 +88,8 @@ def _calibration(task: Task) -> Calibration:
         load_tests=Rows(load_tests.contexts, load_tests.readings),
         seed=_number(task, "method"),
     )
-    return Calibration(problem, usual, usual.measured(sizes.test, _generator(task, "test")))
+    test = sizes.test // 2 if task.manner == DRIFTING else sizes.test
+    return Calibration(problem, usual, usual.measured(test, _generator(task, "test")))
 
 
 @lru_cache(maxsize=8)
@@ -98,12 +99,10 @@ def _stream(task: Task, drift: str) -> Stream:
     drifted = known.usual.drifted(drift, noise, _generator(task, f"{drift} drift"))
     holds = when(drift, sizes.stream)
     changes = np.flatnonzero(np.diff(holds)) + 1
-    half = sizes.test // 2
     return Stream(
         following(known.usual, drifted, holds, _generator(task, f"{drift} stream")),
         tuple(changes.tolist()),
-        known.usual.measured(half, _generator(task, f"{drift} ordinary")),
-        drifted.measured(half, _generator(task, f"{drift} drifted")),
+        drifted.measured(sizes.test // 2, _generator(task, f"{drift} drifted")),
     )
 
 

@@ -1,21 +1,28 @@
 """Levels of integration: what a twin does while rows come in.
 
-A calibrates once. B watches the residuals; on an alarm rows are gathered, and it recalibrates. C
-stores its states as well, and takes a stored one up without learning where that explains the rows
-behind an alarm. A method infers row by row, or forward in time, so that a stream is inferred once
-by each state.
+A calibrates once. B watches the gap; on an alarm rows are gathered, and it recalibrates. C stores
+its states as well, and takes a stored one up without learning where that explains the rows behind
+an alarm. A method infers row by row, or forward in time, so that each state infers a stream once.
+
+What is watched is the log of the gap of each row. The residuals themselves follow the contexts in a
+few patterns that all sensors have in common, and far more rows than a calibration has would be
+needed to tell these from a change.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+from scipy.stats import ttest_ind
+
 from rga.benchmark.loi.method import Calibrated
-from rga.benchmark.loi.score import gap
 from rga.benchmark.loi.setting import Sizes
 from rga.detection import SyncMonitor
 from rga.model.parameter import FloatArray
 
 LEVELS = ("A", "B", "C")
+#: probability below which rows are not those of a stored state
+UNLIKELY = 0.01
 
 
 @dataclass(frozen=True)
@@ -24,51 +31,49 @@ class State:
 
     Attributes:
         calibrated: the method.
-        ordinary: residuals, measured minus simulated, of the rows of the first calibration,
-            float[unlabelled, sensors].
-        stream: the same of the stream, float[stream, sensors].
-        baseline: residuals that are usual now, float[unlabelled, sensors].
+        ordinary: gaps of the rows of the first calibration [mm^2], float[unlabelled].
+        stream: the same of the stream, float[stream].
+        usual: gaps that are usual now [mm^2], float[n].
     """
 
     calibrated: Calibrated
     ordinary: FloatArray
     stream: FloatArray
-    baseline: FloatArray
+    usual: FloatArray
 
     @classmethod
-    def of(cls, calibrated: Calibrated, ordinary: FloatArray, stream: FloatArray) -> "State":
+    def of(cls, calibrated: Calibrated, real: FloatArray, rows: FloatArray) -> "State":
         """At the end of a calibration.
 
         Args:
             calibrated: the method.
-            ordinary: residuals of the rows of the first calibration, float[unlabelled, sensors].
-            stream: readings, float[stream, sensors].
+            real: rows of the first calibration, float[unlabelled, sensors].
+            rows: of the stream, float[stream, sensors].
         """
-        return cls(calibrated, ordinary, residuals(calibrated, stream), ordinary)
+        ordinary = gaps(calibrated, real)
+        return cls(calibrated, ordinary, gaps(calibrated, rows), ordinary)
 
     def settled(self, recent: slice) -> "State":
-        """The same, to which the level of the latest rows is usual.
-
-        These are too few to say more: memory and distribution are those of the ordinary rows.
-        """
-        level = self.stream[recent].mean(axis=0)
-        return replace(self, baseline=self.ordinary - self.ordinary.mean(axis=0) + level)
+        """The same, to which the gaps of the latest rows are usual."""
+        return replace(self, usual=self.stream[recent])
 
     def monitor(self, sizes: Sizes) -> SyncMonitor:
-        """Watches for residuals that are not usual."""
-        return SyncMonitor(self.baseline, arl0=sizes.arl0)
+        """Watches for gaps that are not usual."""
+        return SyncMonitor(np.log(self.usual)[:, None], arl0=sizes.arl0)
 
-    def explains(self, rows: slice, sizes: Sizes) -> bool:
-        """Whether rows of the stream leave residuals that are usual to this state."""
-        return not self.monitor(sizes).update_many(self.stream[rows]).any()
+    def explains(self, rows: slice, than: "State") -> bool:
+        """Whether gaps of rows are usual to this state, and no larger than those of another.
+
+        Welch's test of the mean logs (Biometrika 34, 1947).
+        """
+        own = self.stream[rows]
+        test = ttest_ind(np.log(own), np.log(self.usual), equal_var=False)
+        return bool(test.pvalue > UNLIKELY and own.mean() <= than.stream[rows].mean())
 
     def harms(self, before: "State", recent: slice, sizes: Sizes) -> bool:
         """Whether it leaves a larger gap than another, of the latest rows or the ordinary ones."""
-        pairs = (
-            (self.ordinary, before.ordinary),
-            (self.stream[recent], before.stream[recent]),
-        )
-        return any(gap(now) > sizes.harm * gap(then) for now, then in pairs)
+        pairs = (self.ordinary, before.ordinary), (self.stream[recent], before.stream[recent])
+        return any(now.mean() > sizes.harm * then.mean() for now, then in pairs)
 
 
 #: a state after it has learned from rows of the stream
@@ -111,12 +116,12 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
     since = 0
     for row in range(len(first.stream)):
         if raised is None:
-            if not monitor.update(life.state.stream[row]) or monitor.alarm is None:
+            if not monitor.update(np.log(life.state.stream[row, None])) or monitor.alarm is None:
                 continue
             raised, since = row, began + monitor.alarm.since
             life.alarms.append(row)
         waited = row + 1 - raised
-        if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1), sizes):
+        if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1)):
             pass
         elif waited == sizes.settle:
             _learn(life, slice(since, row + 1), sizes, learned)
@@ -126,12 +131,13 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
     return life
 
 
-def _recall(life: Life, recent: slice, sizes: Sizes) -> bool:
+def _recall(life: Life, recent: slice) -> bool:
     """Take up the stored state that explains rows with the least gap, if there is one."""
-    others = [one for one in life.stored if one is not life.state and one.explains(recent, sizes)]
+    now = life.state
+    others = [one for one in life.stored if one is not now and one.explains(recent, now)]
     if not others:
         return False
-    life.state = min(others, key=lambda one: gap(one.stream[recent]))
+    life.state = min(others, key=lambda one: float(one.stream[recent].mean()))
     life.recalled += 1
     return True
 
@@ -163,6 +169,7 @@ def delays(alarms: Sequence[int], changes: Sequence[int], rows: int) -> tuple[in
     return tuple(found)
 
 
-def residuals(calibrated: Calibrated, readings: FloatArray) -> FloatArray:
-    """Measured minus simulated at the contexts that are inferred, float[n, sensors]."""
-    return readings - calibrated.simulate(calibrated.infer(readings).value)
+def gaps(calibrated: Calibrated, readings: FloatArray) -> FloatArray:
+    """Mean squares of measured minus simulated at the inferred contexts [mm^2], float[n]."""
+    simulated = calibrated.simulate(calibrated.infer(readings).value)
+    return np.asarray(((readings - simulated) ** 2).mean(axis=1))

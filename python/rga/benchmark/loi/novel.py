@@ -8,9 +8,9 @@ from scipy.spatial import KDTree
 
 from rga.benchmark.loi.contexts import BEYOND
 from rga.benchmark.loi.data import Calibration
-from rga.benchmark.loi.levels import Learned, State, residuals
-from rga.benchmark.loi.method import Rows
+from rga.benchmark.loi.levels import Learned, State
 from rga.benchmark.loi.rows import Row
+from rga.inference.rows import Rows
 from rga.model.parameter import FloatArray
 
 #: a context is novel where its nearest simulation is farther away than this share of the
@@ -52,9 +52,7 @@ def with_novel(row: Row, known: Calibration, rows: FloatArray) -> Learned:
             )
             calibrated = row.calibrated(replace(known, problem=replace(problem, source=source)))
         after = calibrated.recalibrated(rows[recent])
-        if after is state.calibrated:
-            return state
-        return State.of(after, residuals(after, known.problem.real), rows)
+        return state if after is state.calibrated else State.of(after, known.problem.real, rows)
 
     return learned
 

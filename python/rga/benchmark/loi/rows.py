@@ -8,6 +8,7 @@ from rga.benchmark.loi.data import Calibration
 from rga.benchmark.loi.method import Calibrated
 from rga.benchmark.loi.methods.modes import maximum_posterior
 from rga.benchmark.loi.methods.prior import prior_mean
+from rga.inference.rows import Rows
 
 
 @dataclass(frozen=True)
