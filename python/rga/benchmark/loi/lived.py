@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from rga.benchmark.loi.data import Calibration, Stream, stream_of
 from rga.benchmark.loi.examination import Examination
-from rga.benchmark.loi.levels import LEVELS, Learned, Life, State, delays, live
+from rga.benchmark.loi.levels import LEVELS, Learned, Life, State, delays, gaps, live
 from rga.benchmark.loi.method import Calibrated
 from rga.benchmark.loi.novel import with_novel
 from rga.benchmark.loi.rows import METHODS

@@ -9,6 +9,8 @@ from rga.benchmark.truth.physical_twin import GAPS
 
 #: a task of this manner plays all drifts; its ordinary rows lack what drifts bring
 DRIFTING = "drifting"
+#: what level C stores
+REPOSITORIES = ("measured", "paper")
 
 
 @dataclass(frozen=True)
