@@ -23,7 +23,9 @@ class Sheet:
 
     def terminal(self) -> Table:
         """For rich."""
-        table = Table(*self.headings, title=self.title, title_justify="left")
+        table = Table(title=Text(self.title), title_justify="left")
+        for heading in self.headings:
+            table.add_column(Text(heading))
         for row in self.rows:
             table.add_row(*(Text(cell) for cell in row))
         return table

@@ -53,9 +53,9 @@ class State:
         ordinary = gaps(calibrated, real)
         return cls(calibrated, ordinary, gaps(calibrated, rows), ordinary)
 
-    def settled(self, recent: slice) -> "State":
+    def settled(self, latest: slice) -> "State":
         """The same, to which the gaps of the latest rows are usual."""
-        return replace(self, usual=self.stream[recent])
+        return replace(self, usual=self.stream[latest])
 
     def monitor(self, sizes: Sizes) -> SyncMonitor:
         """Watches for gaps that are not usual."""
@@ -124,7 +124,7 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
         if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1)):
             pass
         elif waited == sizes.settle:
-            _learn(life, slice(since, row + 1), sizes, learned)
+            _learn(life, slice(since, row + 1), slice(raised, row + 1), sizes, learned)
         else:
             continue
         monitor, began, raised = life.state.monitor(sizes), row + 1, None
@@ -142,8 +142,8 @@ def _recall(life: Life, recent: slice) -> bool:
     return True
 
 
-def _learn(life: Life, recent: slice, sizes: Sizes, learned: Learned) -> None:
-    """Learn from rows; where that does harm, only take for usual what they are like."""
+def _learn(life: Life, recent: slice, latest: slice, sizes: Sizes, learned: Learned) -> None:
+    """Learn from rows; where that does harm, only take for usual what the latest are like."""
     before = life.state
     after = learned(before, recent)
     if after.calibrated is not before.calibrated:
@@ -151,7 +151,7 @@ def _learn(life: Life, recent: slice, sizes: Sizes, learned: Learned) -> None:
         if after.harms(before, recent, sizes):
             life.taken_back += 1
             after = before
-    life.state = after.settled(recent)
+    life.state = after.settled(latest)
     life.stored.append(life.state)
 
 

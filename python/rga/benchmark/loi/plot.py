@@ -32,7 +32,7 @@ def methods(result: Result) -> Canvas:
         row: mean(scores(result.outcomes, row, gap, manner, lambda one: one.rg))
         for row in result.rows
     }
-    own.sort(key=lambda row: errors[row].value if errors[row] else np.inf, reverse=True)
+    own.sort(key=lambda row: -np.inf if (one := errors[row]) is None else -one.value)
     canvas = Canvas(figsize=(11.0, 1.6 + 0.32 * len(own)), layout="constrained")
     left, right = canvas.subplots(1, 2, sharey=True)
     for axes, found in ((left, errors), (right, gaps)):
@@ -52,6 +52,7 @@ def methods(result: Result) -> Canvas:
         if one is not None:
             right.axvline(one.value, color="0.4", lw=1, ls=style, label=name)
     left.set_yticks(range(len(own)), own)
+    left.set_ylim(-0.6, len(own) - 0.4)
     left.set(xlabel="Error [-]; 1: the middle of the ranges", xlim=(0.0, None))
     right.set(xlabel="RG [mm²]", xscale="log")
     if right.get_legend_handles_labels()[1]:

@@ -23,8 +23,8 @@ class Sizes:
         stream: measured rows among which a drift comes.
         test: measured rows that are scored; one half of them under the drift.
         arl0: rows between false alarms that the monitor is set to.
-        settle: rows from an alarm on that are gathered for a recalibration; also a block of test
-            rows that one stored state is chosen for.
+        settle: rows from an alarm on that are gathered for a recalibration, 30 at least; also a
+            block of test rows that one stored state is chosen for.
         recall: rows from an alarm on by which stored states are tried.
         harm: a recalibration is taken back where it makes a gap so many times as large.
         repository: what level C stores: `measured` rows with the method as it was calibrated on

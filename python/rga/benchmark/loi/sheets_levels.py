@@ -133,7 +133,7 @@ def _delay(played: Sequence[Played]) -> str:
     seen = [one for one in told if one is not None]
     if not told:
         return ""
-    return f"{digits(np.mean(seen)) if seen else '-'} ({len(seen) / len(told):.0%})"
+    return f"{digits(float(np.mean(seen))) if seen else '-'} ({len(seen) / len(told):.0%})"
 
 
 def _arl(played: Sequence[Played]) -> str:

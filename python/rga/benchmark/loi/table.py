@@ -11,36 +11,36 @@ NOTES = """\
 Means over splits, and half of their 90 % intervals by Student's distribution; differences are
 paired: both methods or levels meet the same bridge, rows and noise.
 
-Error: mean over contexts of the mean squared error over that of an even distribution over the range
-(range² / 12), so that the middle of the ranges has an Error of 1 on contexts spread evenly. RG: mean
-squared gap over rows and sensors. Tables of levels are on test rows of which one half is measured
-under usual conditions, the other under the drift.
+Error: mean over contexts of the mean squared error over that of an even distribution over the
+range (range² / 12), so that the middle of the ranges has an Error of 1 on contexts spread evenly.
+RG: mean squared gap over rows and sensors. Tables of levels are on test rows of which one half is
+measured under usual conditions, the other under the drift.
 
 Level A calibrates once. B watches the gap with `SyncMonitor`, gathers rows after an alarm and
 recalibrates; a recalibration that makes the gap of the first rows or of the latest ones larger is
-taken back. C also stores every state, takes one up without learning where it explains the rows behind
-an alarm, and infers each block of test rows by the state that leaves the least gap there.
+taken back. C also stores every state, takes one up without learning where it explains the rows
+behind an alarm, and infers each block of test rows by the state that leaves the least gap there.
 
-AD: rows from a change to its alarm, both counted, over the changes that were seen, whose share stands
-beside it. ARL: rows watched under usual conditions over false alarms, at all drifts together. A delay
-means nothing without it.
+AD: rows from a change to its alarm, both counted, over the changes that were seen, whose share
+stands beside it. ARL: rows watched under usual conditions over false alarms, at all drifts
+together. A delay means nothing without it.
 
-†: less than what the true contexts leave; the method hides what the model gets wrong in the contexts.
-Floors: the noise alone; the model at the true contexts; the model at the contexts that leave the
-least gap."""
+†: less than what the true contexts leave; the method hides in the contexts what the model gets
+wrong. Floors: the noise alone; the model at the true contexts; the model at the contexts that
+leave the least gap."""
 
 
 def about(result: Result) -> list[str]:
     """Where it was measured, how much, and what was left out."""
     place, setting, sizes = result.machine, result.setting, result.setting.sizes
     named = [f"{name} {number}" for name, number in result.versions.items() if number]
+    few = min(setting.few, setting.splits)
     lines = [
         f"{place['processor']}, {place['cores']} cores, {place['system']}",
         ", ".join(named),
-        f"seed {setting.seed}; {setting.splits} splits of the full gap and of drifts, "
-        f"{min(setting.few, setting.splits)} of everything else",
-        f"{sizes.source} simulated rows, {sizes.unlabelled} measured, a stream of {sizes.stream}, "
-        f"{sizes.test} test rows; {sizes.arl0:g} rows between false alarms asked; "
+        f"seed {setting.seed}; splits of full gap and drifts {setting.splits}, of others {few}",
+        f"rows simulated {sizes.source}, unlabelled {sizes.unlabelled}, of a stream {sizes.stream}",
+        f"rows of a test {sizes.test}, between false alarms {sizes.arl0:g} asked",
         f"repository: {sizes.repository}",
     ]
     for name, packages in result.absent.items():
