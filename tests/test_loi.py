@@ -309,7 +309,7 @@ class Levelled:
 
 def test_recalibration_helps_and_c_keeps_what_was_before() -> None:
     """Where the model is right but for some sensors, offsets are learned."""
-    few = replace(SIZES, stream=120, test=20, unlabelled=40, harm=100.0)
+    few = replace(SIZES, stream=90, test=20, unlabelled=32, harm=100.0)
     given = task(gap="noise only", drifts=("sensor",), sizes=few)
     known = calibration_of(given)
     method = Levelled(maximum_posterior(known.problem), np.zeros(84))
@@ -385,20 +385,21 @@ def test_floors_are_in_order() -> None:
     assert rg[BEST_CONTEXT] == pytest.approx(rg[NOISE] * (1.0 - 8.0 / 84.0), rel=0.08)
 
 
-def test_each_block_is_inferred_by_the_state_that_leaves_the_least_gap() -> None:
+def test_each_block_is_inferred_by_the_state_to_which_it_is_most_usual() -> None:
     known = calibration_of(task("same"))
     readings = known.test.readings.copy()
     readings[20:] += 5.0
     shifted = replace(known.test, readings=readings)
-    one = nearest(known.problem)
-    other = Nearest(known.problem, np.full(84, 5.0))
+    one, other = nearest(known.problem), Nearest(known.problem, np.full(84, 5.0))
+    first = State.of(one, known.problem.real, known.problem.real)
+    second = State.of(other, known.problem.real + 5.0, known.problem.real)
     examination = Examination(shifted, known.problem.ranges, 20)
-    both, alone = examination.score([one, other]), examination.score([one])
-    clean = Examination(known.test, known.problem.ranges, 20).score([one])
+    both, alone = examination.score_of_most_usual([first, second]), examination.score(one)
+    clean = Examination(known.test, known.problem.ranges, 20).score(one)
     assert both.error == pytest.approx(clean.error)
     assert both.rg == pytest.approx(clean.rg)
     assert alone.rg > both.rg
-    assert examination.score([one, one]) == alone
+    assert examination.score_of_most_usual([first]) == alone
 
 
 def test_intervals_over_splits() -> None:

@@ -61,14 +61,12 @@ class State:
         """Watches for gaps that are not usual."""
         return SyncMonitor(np.log(self.usual)[:, None], arl0=sizes.arl0)
 
-    def explains(self, rows: slice, than: "State") -> bool:
-        """Whether gaps of rows are usual to this state, and no larger than those of another.
+    def likeness(self, gaps: FloatArray) -> float:
+        """How usual gaps of rows [mm^2], float[n], are to this state, 0 to 1.
 
-        Welch's test of the mean logs (Biometrika 34, 1947).
+        The probability of mean logs that differ as much (Welch, Biometrika 34, 1947).
         """
-        own = self.stream[rows]
-        test = ttest_ind(np.log(own), np.log(self.usual), equal_var=False)
-        return bool(test.pvalue > UNLIKELY and own.mean() <= than.stream[rows].mean())
+        return float(ttest_ind(np.log(gaps), np.log(self.usual), equal_var=False).pvalue)
 
     def harms(self, before: "State", recent: slice, sizes: Sizes) -> bool:
         """Whether it leaves a larger gap than another, of the latest rows or the ordinary ones."""
@@ -132,12 +130,16 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
 
 
 def _recall(life: Life, recent: slice) -> bool:
-    """Take up the stored state that explains rows with the least gap, if there is one."""
-    now = life.state
-    others = [one for one in life.stored if one is not now and one.explains(recent, now)]
-    if not others:
+    """Take up the stored state to which rows are most usual, if they are to any."""
+    found = {
+        number: one.likeness(one.stream[recent])
+        for number, one in enumerate(life.stored)
+        if one is not life.state
+    }
+    best = max(found, key=lambda number: found[number], default=None)
+    if best is None or found[best] < UNLIKELY:
         return False
-    life.state = min(others, key=lambda one: float(one.stream[recent].mean()))
+    life.state = life.stored[best]
     life.recalled += 1
     return True
 

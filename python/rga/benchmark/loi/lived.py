@@ -62,17 +62,17 @@ def lived(
         examination = Examination(stream.drifted, known.problem.ranges, sizes.settle)
         first = State(calibrated, ordinary, gaps(calibrated, rows), ordinary)
         fine_tuned = _remembered(_fine_tuned(known.problem.real, rows))
-        score = usual.score([calibrated]), examination.score([calibrated])
-        played.append(Played(drift, LEVELS[0], *score))
+        scores = usual.score(calibrated), examination.score(calibrated)
+        played.append(Played(drift, LEVELS[0], *scores))
         for level in LEVELS[1:]:
             stores = level == LEVELS[-1] and sizes.repository == "measured"
             learned = fine_tuned
             if level == LEVELS[-1] and not stores:
                 learned = with_novel(METHODS[task.row], known, rows)
             life = live(first, sizes, learned, stores=stores)
-            candidates = [one.calibrated for one in (life.stored if stores else [life.state])]
-            score = usual.score(candidates), examination.score(candidates)
-            played.append(_played(drift, level, score, stream, life))
+            states = life.stored if stores else [life.state]
+            scores = usual.score_of_most_usual(states), examination.score_of_most_usual(states)
+            played.append(_played(drift, level, scores, stream, life))
     return played
 
 

@@ -55,7 +55,7 @@ def play(task: Task) -> Outcome:
         calibrated = METHODS[task.row].calibrated(known)
         learned = time.perf_counter()
         usual = Examination(known.test, known.problem.ranges, task.sizes.settle)
-        score = usual.score([calibrated])
+        score = usual.score(calibrated)
         inferred = time.perf_counter()
         played = lived(task, known, calibrated, usual) if drifts else []
         return replace(

@@ -38,7 +38,7 @@ class Sizes:
     arl0: float = 1000.0
     settle: int = 30
     recall: int = 10
-    harm: float = 1.05
+    harm: float = 1.1
     repository: str = "measured"
 
 
