@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from rga.benchmark.loi.floors import FLOORS
 from rga.benchmark.loi.lived import Played
 from rga.benchmark.loi.play import Outcome
 from rga.benchmark.loi.score import Score
@@ -12,6 +13,8 @@ from rga.benchmark.loi.spread import Mean
 
 #: a number of each split
 Values = Mapping[int, float]
+#: behind an RG that is less than what the true contexts leave
+HIDES = " †"
 
 
 def scores(
@@ -71,3 +74,11 @@ def whole(of: Callable[[Score], float | None]) -> Callable[[Played], float | Non
 def coverage(score: Score) -> float | None:
     """Share of the contexts that 90 % intervals hold."""
     return None if score.coverage is None else float(np.mean(score.coverage))
+
+
+def gap_told(row: str, gap: Mean | None, true: Mean | None) -> str:
+    """An RG in words, marked where a method leaves less than the true contexts do."""
+    if gap is None:
+        return ""
+    hides = row not in FLOORS and true is not None and gap.value < true.value
+    return gap.told(".3g") + (HIDES if hides else "")

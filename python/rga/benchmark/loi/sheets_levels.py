@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.benchmark.figure import digits
-from rga.benchmark.loi.floors import FLOORS
-from rga.benchmark.loi.found import lives, mean, mean_lives, paired, whole
+from rga.benchmark.loi.floors import FLOORS, TRUE_CONTEXT
+from rga.benchmark.loi.found import gap_told, lives, mean, mean_lives, paired, whole
 from rga.benchmark.loi.levels import LEVELS
 from rga.benchmark.loi.lived import Played
 from rga.benchmark.loi.rows import PAPERS
@@ -81,14 +81,15 @@ def _levels(result: Result, title: str, drifts: Sequence[str]) -> Sheet:
     headings = ["method"]
     for level in LEVELS:
         headings += [f"{level}: Error", "RG [mm²]", *([] if level == "A" else ["AD (seen)"])]
+    true = mean(mean_lives(lives(result.outcomes, TRUE_CONTEXT, drifts, LEVELS[0]), whole(_rg)))
     rows = []
     for row in result.rows:
         cells = [row]
         for level in LEVELS:
             lived = lives(result.outcomes, row, drifts, level)
-            for of, form in ((_error, ".3f"), (_rg, ".3g")):
-                found = mean(mean_lives(lived, whole(of)))
-                cells.append("" if found is None else found.told(form))
+            error, gap = (mean(mean_lives(lived, whole(of))) for of in (_error, _rg))
+            cells.append("" if error is None else error.told(".3f"))
+            cells.append(gap_told(row, gap, true))
             if level != "A":
                 cells.append(_delay([one for several in lived.values() for one in several]))
         everywhere = lives(result.outcomes, row, result.setting.drifts, LEVELS[1])

@@ -6,15 +6,12 @@ import numpy as np
 
 from rga.benchmark.figure import digits
 from rga.benchmark.loi.floors import FLOORS, TRUE_CONTEXT
-from rga.benchmark.loi.found import Values, coverage, mean, scores
+from rga.benchmark.loi.found import Values, coverage, gap_told, mean, scores
 from rga.benchmark.loi.rows import ORACLE
 from rga.benchmark.loi.run import Result
 from rga.benchmark.loi.score import Score
 from rga.benchmark.sheet import Sheet
 from rga.benchmark.truth.full_case_study import full_case_study
-
-#: behind an RG that is less than what the true contexts leave
-HIDES = " †"
 
 
 def by_place(result: Result) -> list[Sheet]:
@@ -46,12 +43,11 @@ def by_place(result: Result) -> list[Sheet]:
         return "" if found is None else found.told(".2f")
 
     def gap_left(row: str, gap: str, manner: str) -> str:
-        own = mean(scores(result.outcomes, row, gap, manner, lambda one: one.rg))
-        if own is None:
-            return ""
-        true = mean(scores(result.outcomes, TRUE_CONTEXT, gap, manner, lambda one: one.rg))
-        hides = row not in FLOORS and true is not None and own.value < true.value
-        return own.told(".3g") + (HIDES if hides else "")
+        own, true = (
+            mean(scores(result.outcomes, one, gap, manner, lambda one: one.rg))
+            for one in (row, TRUE_CONTEXT)
+        )
+        return gap_told(row, own, true)
 
     methods = tuple(row for row in result.rows if row not in FLOORS)
     sheets = [
