@@ -3,6 +3,7 @@
 from rich.console import Group
 
 from rga.benchmark.loi.run import Result
+from rga.benchmark.loi.sheet_asked import asked
 from rga.benchmark.loi.sheets_levels import order, papers, published, worth
 from rga.benchmark.loi.sheets_methods import by_context, by_place, cost
 from rga.benchmark.sheet import Sheet
@@ -70,4 +71,5 @@ def sheets(result: Result) -> list[Sheet]:
     levels = papers(result)
     if levels:
         levels.insert(1, published())
-    return [*levels, *worth(result), *by_place(result), by_context(result), cost(result)]
+    others = [by_context(result), asked(result), cost(result)]
+    return [*levels, *worth(result), *by_place(result), *(one for one in others if one.rows)]
