@@ -328,35 +328,33 @@ def test_recalibration_helps_and_c_keeps_what_was_before() -> None:
     assert c.ordinary == a.ordinary
 
 
-def test_the_papers_repository_learns_from_more_simulations() -> None:
-    known = calibration_of(task())
-    sources: list[int] = []
+def test_the_papers_repository_learns_from_simulations_around_what_is_novel() -> None:
+    known, sources = calibration_of(task()), []
 
     def method(problem: Problem) -> Calibrated:
-        sources.append(len(problem.source))
+        sources.append(problem.source)
         return nearest(problem)
 
-    far = replace(known.problem.source, contexts=known.problem.source.contexts.copy())
-    narrow = replace(known, problem=replace(known.problem, source=far))
-    stream = stream_of(task(), "novel").rows.readings
-    learned = with_novel(Row(method), narrow, stream)
-
-    @dataclass(frozen=True)
+    @dataclass(frozen=True, eq=False)
     class Beyond(Nearest):
-        """Infers what no simulation is near to."""
+        """Infers a place that no simulation is near to."""
 
         def infer(self, readings: FloatArray) -> Estimate:
             low, high = self.problem.ranges.T
-            value = np.tile(high + 0.5 * (high - low), (len(readings), 1))
-            return Estimate(value, None)
+            return Estimate(np.tile(low + 1.2 * (high - low), (len(readings), 1)), None)
 
-    level = np.zeros(84)
-    for inner, more in ((Beyond(known.problem, level), True), (nearest(known.problem), False)):
+    stream, level = stream_of(task(), "none").rows.readings, np.zeros(84)
+    for inner, added in ((Beyond(known.problem, level), 8), (nearest(known.problem), 0)):
         sources.clear()
+        learned = with_novel(Row(method), known, stream)
         state = State.of(inner, known.problem.real, stream)
-        after = learned(state, slice(80, 90))
-        assert after.calibrated is not inner
-        assert sources == ([SIZES.source + 80] if more else [])
+        assert learned(state, slice(80, 90)).calibrated is not inner
+        # Rows at one place are novel once.
+        assert [len(one) for one in sources] == ([SIZES.source + added] if added else [])
+        if added:
+            low, high = known.problem.ranges.T
+            share = (sources[0].contexts[-added:] - low) / (high - low)
+            np.testing.assert_allclose(share, 1.2, atol=0.25)
 
 
 # Scores
