@@ -146,7 +146,7 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
         varied = variation_under(request, request.states)
     if varied is None:
         return plan("C3"), _each_state(request)
-    q, stiffness = coefficients(loads), varied.elements[request.state_of_row]
+    q, stiffness = coefficients(loads), varied.at(request.states)[request.state_of_row]
     for path, system in linear_paths(request.prepared, varied, loads):
         try:
             return plan(path, system.terms), system.respond(q, stiffness)
@@ -182,11 +182,11 @@ def linear_paths(
         with suppress(DependentTerms):
             path: Path = "C2" if count else "C1"
             yield path, condensed(prepared, structure, loads, members, springs)
-    if (varied.elements[0] > 0).all():
+    if (varied.first > 0).all():
         arrays, of_loads = structure.arrays, patterns(structure, loads)
         try:
             whole = Factorisation(
-                arrays, of_loads, structure.outputs, members, springs, varied.elements[0]
+                arrays, of_loads, structure.outputs, members, springs, varied.first
             )
         except (_core.UnstableStructure, _core.InvalidInput) as error:
             raise refused(structure, error) from None

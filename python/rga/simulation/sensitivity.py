@@ -214,13 +214,12 @@ def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Ite
         if found is None:
             return
         varied = found
-    first, slope = varied.elements[0], varied.slope
-    ends, moved = coefficients(around.loads(start, every)), around.of_rows @ slope
+    ends, moved = coefficients(around.loads(start, every)), varied.at(around.of_rows)
     for _, system in linear_paths(middle.prepared, varied, loads):
         yield Tangent(
             system,
             coefficients(loads),
-            first + (middle.of_rows - states[0]) @ slope,
+            varied.at(middle.of_rows),
             _rates(ends, sides),
             _rates(moved, sides),
             start.per_si,

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -285,19 +286,40 @@ class Simulator:
         states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
         if parameters:
             table = np.column_stack([values[name][key] for name, key in parameters])
-            if rows and (table == table[0]).all():
+            moving = (table != table[:1]).any(axis=0)
+            if rows and not moving.any():
                 states = table[:1]
             else:
-                states, state_of_row = np.unique(table, axis=0, return_inverse=True)
+                _, first, state_of_row = np.unique(
+                    table[:, moving], axis=0, return_index=True, return_inverse=True
+                )
+                states = table[first]
+
+        columns: dict[str, dict[str, int]] = {name: {} for name in structural}
+        for column, (name, key) in enumerate(parameters):
+            columns[name][key] = column
+
+        def changed(structure: Structure, names: list[str], state: FloatArray) -> Structure:
+            for name in names:
+                own = {key: state[column] for key, column in columns[name].items()}
+                effects[name].change_structure(structure, own)
+            return structure
+
+        # What comes before all that varies is put on the structure once.
+        varies = [np.ptp(states[:, list(columns[name].values())]) > 0 for name in structural]
+        steady = varies.index(True) if True in varies else len(structural)
+        given = [k for name in structural[:steady] for k in columns[name].values()]
+
+        @cache
+        def begun() -> Structure:
+            return changed(self._structure.copy(), structural[:steady], states[0])
 
         def change(state: FloatArray) -> Structure:
             if not structural:
                 return self._structure
-            structure = self._structure.copy()
-            for name in structural:
-                own = {key: state[k] for k, (of, key) in enumerate(parameters) if of == name}
-                effects[name].change_structure(structure, own)
-            return structure
+            if np.array_equal(state[given], states[0, given]):
+                return changed(begun().copy(), structural[steady:], state)
+            return changed(self._structure.copy(), structural, state)
 
         def loads(structure: Structure, chosen: IntArray) -> list[Load]:
             of_rows = {

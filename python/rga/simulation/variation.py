@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray, Structure
@@ -15,21 +16,40 @@ CHECKED = 6
 
 @dataclass(frozen=True)
 class Variation:
-    """Members and springs whose stiffness is a straight function of structural parameters.
+    """Members and springs whose stiffness follows structural parameters, straight in each of them.
+
+    Where several parameters act on a stiffness, they add to it or multiply it.
 
     Attributes:
         start: the structure at the first state.
         members, springs: numbers of those that vary; a frame member varies as a whole.
-        elements: stiffness of members, then springs, at each state, float[states, elements]: EA / L
-            of a truss member [N/m], E of a frame member [Pa], of a spring [N/m or N m/rad].
-        slope: of `elements` by the parameters, float[parameters, elements].
+        origin: the first state, float[parameters].
+        first: stiffness of members, then springs, there, float[elements]: EA / L of a truss member
+            [N/m], E of a frame member [Pa], of a spring [N/m or N m/rad].
+        slope: of `first` by the parameters, float[parameters, elements].
+        multiplied: bool[elements], where parameters multiply.
     """
 
     start: Structure
     members: IntArray
     springs: IntArray
-    elements: FloatArray
+    origin: FloatArray
+    first: FloatArray
     slope: FloatArray
+    multiplied: NDArray[np.bool_]
+
+    def at(self, states: FloatArray) -> FloatArray:
+        """Stiffness at states, float[states, parameters] -> float[states, elements]."""
+        moved = states - self.origin
+        found = np.asarray(self.first + moved @ self.slope)
+        product = np.flatnonzero(self.multiplied)
+        if len(product):
+            found[:, product] = self.first[product]
+        for column in np.flatnonzero(self.slope[:, product].any(axis=1)):
+            own = product[self.slope[column, product] != 0]
+            share = self.slope[column, own] / self.first[own]
+            found[:, own] *= 1.0 + moved[:, [column]] * share
+        return found
 
     @property
     def terms(self) -> int:
@@ -42,12 +62,13 @@ class Variation:
 
 def unvaried(structure: Structure, parameters: int) -> Variation:
     """One structure, at any of whose structural parameters nothing varies."""
-    nothing, none = np.zeros(0, np.int64), np.zeros((1, 0))
-    return Variation(structure, nothing, nothing, none, np.zeros((parameters, 0)))
+    nothing, none = np.zeros(0, np.int64), np.zeros(0)
+    slope = np.zeros((parameters, 0))
+    return Variation(structure, nothing, nothing, np.zeros(parameters), none, slope, none > 0)
 
 
 def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> Variation | None:
-    """What varies between states, or None where it is more than straight stiffnesses.
+    """What varies between states, or None where it is more than stiffnesses straight in each.
 
     Args:
         change: makes the structure of a state.
@@ -58,26 +79,36 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
     slope = np.zeros((states.shape[1], len(first)))
     for column in np.flatnonzero(np.ptp(states, axis=0) > 0):
         low, high = states[:, column].min(), states[:, column].max()
-        found = []
+        three = []
         for value in (low, (low + high) / 2, high):
             state = states[0].copy()
             state[column] = value
             other = change(state)
             if not _only_stiffness_differs(start, other):
                 return None
-            found.append(_stiffness(other))
-        if not np.allclose(found[1], (found[0] + found[2]) / 2, rtol=1e-12, atol=0):
+            three.append(_stiffness(other))
+        if not np.allclose(three[1], (three[0] + three[2]) / 2, rtol=1e-12, atol=0):
             return None
-        slope[column] = (found[2] - found[0]) / (high - low)
-    stiffness = first + (states - states[0]) @ slope
-    for row in np.unique(np.linspace(0, len(states) - 1, CHECKED).astype(int)):
-        other = change(states[row])
-        if not np.allclose(_stiffness(other), stiffness[row], rtol=1e-12, atol=0):
-            return None
+        slope[column] = (three[2] - three[0]) / (high - low)
+    low, high = states.min(axis=0), states.max(axis=0)
+    chosen = np.unique(np.linspace(0, len(states) - 1, CHECKED).astype(int))
+    # Parameters that act together show at the far corner, where all have moved.
+    looked_at = np.vstack([states[chosen], np.where(high > states[0], high, low)])
+    others = [change(state) for state in looked_at]
+    truth = np.stack([_stiffness(other) for other in others])
+    shared = ((slope != 0).sum(axis=0) > 1) & (first > 0)
     varied = np.flatnonzero(slope.any(axis=0))
     count = len(start.arrays["ends"])
     members, springs = varied[varied < count], varied[varied >= count] - count
-    return Variation(start, members, springs, stiffness[:, varied], slope[:, varied])
+    for multiplied in (np.zeros_like(shared), shared):
+        found = Variation(
+            start, members, springs, states[0], first[varied], slope[:, varied], multiplied[varied]
+        )
+        there = np.tile(first, (len(looked_at), 1))
+        there[:, varied] = found.at(looked_at)
+        if np.allclose(truth, there, rtol=1e-12, atol=0):
+            return found
+    return None
 
 
 def _stiffness(structure: Structure) -> FloatArray:

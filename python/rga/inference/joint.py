@@ -1,0 +1,304 @@
+"""Contexts of all rows and unknowns of the structure, inferred together.
+
+Unknowns are the same in all rows, contexts are not: rows without any label tell both, as far as
+sensors outnumber contexts. Rows whose contexts are known, load tests, join in with them.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.inference.corrected import CorrectedTwin
+from rga.inference.posterior_mode import EDGE, posterior_mode, standard
+from rga.inference.rows import Rows
+from rga.inference.starts import best_mode
+from rga.inference.unknowns import Unknowns
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+#: prior spread of the gain of a sensor [-]
+GAIN = 0.01
+#: rounds in which rows are given another chance to leave a wrong mode, steps of each
+ROUNDS, STEPS = 3, 8
+#: variance that the contexts of the measured rows may have, in that of their ranges
+POPULATION = (0.05, 1.5)
+#: shares of a step that are tried; share of the misfit below which a step is not worth another
+SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 1e-3
+#: readings that a sensor's own noise is held against that of all by, and the first guess [spreads]
+HELD_BY, GUESS = 30.0, 5.0
+
+
+@dataclass(frozen=True)
+class Joint:
+    """What was found.
+
+    Attributes:
+        unknowns: of the structure.
+        values: of them, float[unknowns].
+        gains, offsets: of the sensors, float[sensors] each.
+        variance: of what readings still differ by from the twin, float[sensors].
+        doubt: covariance of readings because unknowns are not sure, float[sensors, sensors].
+        rows: measured rows with the contexts found; load tests are not among them.
+    """
+
+    unknowns: Unknowns
+    values: FloatArray
+    gains: FloatArray
+    offsets: FloatArray
+    variance: FloatArray
+    doubt: FloatArray
+    rows: Rows
+
+    @property
+    def twin(self) -> CorrectedTwin:
+        """The model with its unknowns as they were found."""
+        simulator = Simulator(self.unknowns.at(self.values))
+        return CorrectedTwin(simulator, self.gains, self.offsets)
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Of what readings differ by from the twin, float[sensors, sensors]."""
+        return np.asarray(np.diag(self.variance) + self.doubt)
+
+
+def infer_jointly(
+    unknowns: Unknowns,
+    readings: FloatArray,
+    noise: FloatArray,
+    source: FloatArray,
+    *,
+    load_tests: Rows | None = None,
+    offset: float = 0.0,
+    start: Joint | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Joint:
+    """The mode of the joint posterior of contexts and unknowns, by Gauss-Newton steps.
+
+    The unknowns' normal equations are left by eliminating the contexts of each row (Schur's
+    complement), so that the cost grows with the number of rows alone. Noise that turns out larger
+    than stated is a model error that no unknown explains: it weakens all evidence.
+
+    Args:
+        unknowns: of the structure.
+        readings: measured rows, float[n, sensors], NaN where missing.
+        noise: standard deviation of each sensor's noise, float[sensors].
+        source: contexts to start from, float[m, contexts].
+        load_tests: measured rows whose contexts are known.
+        offset: prior spread of the offset of a sensor, in noises.
+        start: an earlier result, about which unknowns are looked for again.
+        progress: told the share that is done.
+    """
+    search = _Search(unknowns, readings, noise, load_tests, offset, start)
+    for number in range(ROUNDS):
+        search.place(source)
+        for step in range(STEPS):
+            if progress is not None:
+                progress((number + step / STEPS) / ROUNDS)
+            if not search.step():
+                break
+    return search.result()
+
+
+class _Search:
+    def __init__(
+        self,
+        unknowns: Unknowns,
+        readings: FloatArray,
+        noise: FloatArray,
+        load_tests: Rows | None,
+        offset: float,
+        start: Joint | None,
+    ) -> None:
+        self.unknowns, self.noise, self.many = unknowns, noise, len(readings)
+        ranges = np.array([one.range for one in unknowns.model.context.values()])
+        self.ranges = ranges
+        self.middle, self.scale = standard(ranges)
+        known = load_tests or Rows(np.zeros((0, len(ranges))), np.zeros((0, len(noise))))
+        self.readings = np.vstack([readings, known.readings])
+        self.seen = np.isfinite(self.readings)
+        self.contexts = np.vstack([np.tile(self.middle, (self.many, 1)), known.contexts])
+        self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
+        sensors, count = len(noise), len(unknowns.centre)
+        self.count = count
+        # In units of their priors: unknowns, gains, offsets.
+        ones = np.ones(sensors)
+        self.unit = np.concatenate([unknowns.spread, GAIN * ones, offset * noise])
+        self.centre = np.concatenate([unknowns.centre, ones, 0.0 * ones])
+        self.value = self.centre.copy()
+        if start is not None:
+            self.value = np.concatenate([start.values, start.gains, start.offsets])
+        self.variance = (GUESS * noise) ** 2 if start is None else start.variance
+        contexts = len(ranges)
+        self.population = np.zeros(contexts), np.ones(contexts)
+        self.seen_population = self.population
+        self.volume = np.zeros(len(self.unit))
+
+    @property
+    def twin(self) -> CorrectedTwin:
+        values, gains, offsets = self._parts(self.value)
+        return CorrectedTwin(Simulator(self.unknowns.at(values)), gains, offsets)
+
+    def _parts(self, value: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        values, gains, offsets = np.split(value, [self.count, self.count + len(self.noise)])
+        return values, gains, offsets
+
+    def place(self, source: FloatArray) -> None:
+        """Contexts of the measured rows anew, from several starts, the unknowns as they stand."""
+        twin = self.twin
+        self.population = self.seen_population
+        simulated = Rows(source, twin.simulate(source))
+        measured = self.readings[: self.many]
+        mode = best_mode(twin, measured, np.diag(self.variance), simulated)
+        kept = posterior_mode(
+            twin.simulate, twin.jacobian, measured, np.diag(self.variance), self.ranges,
+            self.contexts[: self.many],
+        )  # fmt: skip
+        better = (mode.misfit < kept.misfit)[:, None]
+        self.contexts[: self.many] = np.where(better, mode.value, kept.value)
+        self._weigh(self._residual(self.value, self.contexts), 0.0)
+        self.volume = self._volume_slope()
+
+    def _volume_slope(self) -> FloatArray:
+        """Half the slope of the log determinant of the rows' precision along the unknowns.
+
+        The mode over contexts and unknowns is off: contexts that vary less please their prior, so
+        that a structure that is too soft would be found (Neyman and Scott, Econometrica 16, 1948).
+        The likelihood of the unknowns alone has the determinant beside it (Laplace).
+        """
+        here, bent = self.unknowns.sample
+        root = self.scale / np.sqrt(self.variance)[:, None]
+        here, bent = here * root, bent * root
+        turned = here.transpose(0, 2, 1)
+        spread = np.linalg.inv(turned @ here + np.diag(1.0 / self.population[1] ** 2))
+        back = here @ spread
+        of_unknowns = np.einsum("nsc,knsc->k", back, bent, optimize=True)
+        of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
+        slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])
+        return np.asarray(slope * self.many / len(here))
+
+    def step(self) -> bool:
+        """A step of contexts and unknowns together; False where no more is to be gained."""
+        change, moved = self._solve()
+        here = self._misfit(self.value, self.contexts)
+        low, high = self._bounds()
+        for share in SHARES:
+            value = np.clip(self.value + share * self.unit * change, low, high)
+            contexts = self.contexts + share * self.scale * moved
+            contexts = np.clip(contexts, *self.ranges.T)
+            contexts = np.where(self.free, contexts, self.contexts)
+            there = self._misfit(value, contexts)
+            if there < here:
+                self.value, self.contexts = value, contexts
+                self._weigh(self._residual(value, contexts), self.freedom)
+                return here - there > WORTH * here
+        return False
+
+    def result(self) -> Joint:
+        """What was found, with how sure it is."""
+        self._solve()
+        values, gains, offsets = self._parts(self.value)
+        moved = self.slopes @ np.linalg.cholesky(self.covariance)
+        moved = moved.transpose(1, 0, 2).reshape(len(self.noise), -1)
+        doubt = moved @ moved.T
+        return Joint(
+            unknowns=self.unknowns,
+            values=values,
+            gains=gains,
+            offsets=offsets,
+            variance=self.variance,
+            doubt=doubt / max(len(self.slopes), 1),
+            rows=Rows(self.contexts[: self.many], self.readings[: self.many]),
+        )
+
+    def _solve(self) -> tuple[FloatArray, FloatArray]:
+        """Change of the unknowns and of the contexts, in units of their priors."""
+        values, gains, offsets = self._parts(self.value)
+        plain, by_contexts, by_unknowns = self.unknowns.linearise(self.contexts, values)
+        rows, sensors = plain.shape
+        every = np.eye(sensors)
+        slopes = np.concatenate(
+            [
+                by_unknowns * gains[:, None],
+                plain[:, :, None] * every,
+                np.broadcast_to(every, (rows, sensors, sensors)),
+            ],
+            axis=2,
+        )
+        off = np.where(self.seen, self.readings - gains * plain - offsets, 0.0)
+        weight = np.where(self.seen, 1.0 / np.sqrt(self.variance), 0.0)
+        off = off * weight
+        slopes = slopes * self.unit * weight[:, :, None]
+        near = by_contexts * gains[:, None] * self.scale * weight[:, :, None]
+        near = np.where(self.free[:, :, None], near, 0.0)
+        z = (self.contexts - self.middle) / self.scale
+        middle, width = self.population
+        pull = np.where(
+            self.free,
+            (near.transpose(0, 2, 1) @ off[:, :, None])[:, :, 0] - (z - middle) / width**2,
+            0.0,
+        )
+        # A context at an end of its range that would leave stays there.
+        held = (np.abs(z) > EDGE * (1.0 - 1e-9)) & (pull * z > 0)
+        near, pull = np.where(held[:, None], 0.0, near), np.where(held, 0.0, pull)
+        own = near.transpose(0, 2, 1) @ near + np.diag(1.0 / width**2)
+        cross = near.transpose(0, 2, 1) @ slopes
+        table = slopes.reshape(-1, slopes.shape[2])
+        solved = np.linalg.solve(own, np.concatenate([cross, pull[:, :, None]], axis=2))
+        through, alone = solved[:, :, :-1], solved[:, :, -1]
+        flat = cross.reshape(-1, cross.shape[2])
+        whole = table.T @ table + np.eye(len(self.unit)) - flat.T @ through.reshape(flat.shape)
+        right = (
+            table.T @ off.ravel()
+            - self._standard(self.value)
+            - self.volume
+            - flat.T @ alone.ravel()
+        )
+        self.covariance = np.linalg.inv(whole)
+        change = self.covariance @ right
+        inside = np.linalg.inv(own)
+        spread = inside + through @ self.covariance @ through.transpose(0, 2, 1)
+        own_rows = slice(0, self.many)
+        mean = z[own_rows].mean(axis=0)
+        variance = z[own_rows].var(axis=0) + np.diagonal(spread[own_rows], axis1=1, axis2=2).mean(
+            axis=0
+        )
+        self.seen_population = mean, np.sqrt(np.clip(variance, *POPULATION))
+        # Of as many readings the parameters take the freedom that the priors do not.
+        taken = (z.shape[1] - np.trace(inside, axis1=1, axis2=2))[: self.many].sum()
+        self.freedom = float(taken + len(self.unit) - np.trace(self.covariance))
+        self.slopes = slopes * np.sqrt(self.variance)[:, None]
+        return change, alone - (through @ change)
+
+    def _residual(self, value: FloatArray, contexts: FloatArray) -> FloatArray:
+        values, gains, offsets = self._parts(value)
+        twin = CorrectedTwin(Simulator(self.unknowns.at(values)), gains, offsets)
+        return np.where(self.seen, self.readings - twin.simulate(contexts), 0.0)
+
+    def _misfit(self, value: FloatArray, contexts: FloatArray) -> float:
+        off = self._residual(value, contexts)
+        middle, width = self.population
+        z = np.where(self.free, ((contexts - self.middle) / self.scale - middle) / width, 0.0)
+        at = self._standard(value)
+        prior = (z**2).sum() + (at**2).sum() + 2.0 * self.volume @ at
+        return float((off**2 / self.variance).sum() + prior)
+
+    def _standard(self, value: FloatArray) -> FloatArray:
+        """Unknowns, gains and offsets in units of their priors."""
+        used = self.unit > 0
+        return np.where(used, (value - self.centre) / np.where(used, self.unit, 1.0), 0.0)
+
+    def _weigh(self, off: FloatArray, freedom: float) -> None:
+        """What noise and model error are left, sensor by sensor, never below the stated noise."""
+        counts = self.seen.sum(axis=0)
+        left = max(1.0 - freedom / max(counts.sum(), 1), 0.2)
+        own = (off**2).sum(axis=0) / self.noise**2 / left
+        all_ = own.sum() / max(counts.sum(), 1)
+        ratio = (own + HELD_BY * all_) / (counts + HELD_BY)
+        self.variance = self.noise**2 * np.maximum(ratio, 1.0)
+
+    def _bounds(self) -> tuple[FloatArray, FloatArray]:
+        sensors = len(self.noise)
+        wide = np.full(2 * sensors, np.inf)
+        low = np.concatenate([self.unknowns.low, -wide])
+        return low, np.concatenate([self.unknowns.high, wide])
