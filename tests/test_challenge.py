@@ -13,10 +13,10 @@ from rga.benchmark.challenge.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA
 from rga.benchmark.challenge.figures import Figure, figures, rate
 from rga.benchmark.challenge.hidden import Truth
 from rga.benchmark.challenge.judge import Outcome
-from rga.benchmark.challenge.ledger import NAME, Ledger
 from rga.benchmark.challenge.plots import plot
 from rga.benchmark.challenge.tables import failures, tables
 from rga.benchmark.challenge.yardstick import Yardstick
+from rga.benchmark.ledger import NAME, Ledger
 from rga.benchmark.truth import Case, Conditions, draw_case
 from rga.errors import InputError
 from rga.model import Model, read_model
@@ -323,19 +323,19 @@ def test_a_run_ends_in_time(judged: list[str]) -> None:
 
 
 def test_outcomes_of_other_code_are_not_mixed_in(tmp_path: Path) -> None:
-    Ledger(tmp_path).add(outcome("1-single-0"))
-    assert Ledger(tmp_path).outcomes == {"1-single-0": outcome("1-single-0")}
+    Ledger(tmp_path, Outcome).add(outcome("1-single-0"))
+    assert Ledger(tmp_path, Outcome).outcomes == {"1-single-0": outcome("1-single-0")}
     path = tmp_path / NAME
     text = path.read_text()
     path.write_text(text.replace('"rga": "', '"rga": "9.'))
     with pytest.raises(InputError, match=r"of another version: rga 9\.0"):
-        Ledger(tmp_path)
+        Ledger(tmp_path, Outcome)
     for wrong in ("[]", "{}", "nonsense", '{"versions": 3}'):
         path.write_text(text + wrong + "\n")
         with pytest.raises(InputError, match="line 2"):
-            Ledger(tmp_path)
+            Ledger(tmp_path, Outcome)
     with pytest.raises(InputError, match="cannot be kept"):
-        Ledger(path)
+        Ledger(path, Outcome)
 
 
 def test_a_case_is_drawn_and_written(rga: Any, tmp_path: Path) -> None:

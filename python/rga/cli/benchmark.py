@@ -39,6 +39,15 @@ CaseName = Annotated[
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
+Least = Annotated[bool, typer.Option("--quick", help="One split, few methods and drifts.")]
+Stored = Annotated[
+    str,
+    typer.Option(
+        "--repository",
+        metavar="KIND",
+        help="What level C stores: measured (rows and states) or paper (simulated rows).",
+    ),
+]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 
@@ -76,10 +85,10 @@ def diagnosis(
         return
 
     from rga.benchmark.challenge.figures import figures
-    from rga.benchmark.challenge.ledger import versions
     from rga.benchmark.challenge.plots import plot
     from rga.benchmark.challenge.run import run
     from rga.benchmark.challenge.tables import tables
+    from rga.benchmark.ledger import versions
 
     chosen = design.draws(seed, design.QUICK if quick else draws)
     with shown_progress() as progress:
@@ -219,6 +228,53 @@ def detector(
         table,
         draw,
         content,
+        output=output,
+        json=json,
+    )
+
+
+@benchmark.command()
+def loi(
+    quick: Least = False,
+    repository: Stored = "measured",
+    seed: Seed = 0,
+    workers: Workers = 2,
+    dask: DaskAddress = None,
+    output: KeptIn = None,
+    json: JsonTarget = None,
+) -> None:
+    """Ways to infer contexts, at every level of integration: the paper's table."""
+    from dataclasses import asdict, replace
+
+    from rga.benchmark.loi import table
+    from rga.benchmark.loi.floors import FLOORS
+    from rga.benchmark.loi.rows import QUICK
+    from rga.benchmark.loi.run import Result, measure
+    from rga.benchmark.loi.setting import REPOSITORIES, Setting, shorter
+    from rga.cli.measured import measured
+
+    if repository not in REPOSITORIES:
+        remedy = f"give one of {', '.join(REPOSITORIES)}"
+        raise InputError(f"there is no repository {repository!r}", "--repository", remedy)
+
+    def draw(result: Result, folder: Path) -> None:
+        from rga.benchmark.loi.plot import plot
+
+        plot(result, folder)
+
+    setting = shorter(seed, (*FLOORS, *QUICK)) if quick else Setting(seed=seed)
+    sizes = replace(setting.sizes, repository=repository)
+    setting = replace(setting, sizes=sizes)
+    option = "" if repository == "measured" else f" --repository {repository}"
+    measured(
+        "loi",
+        _command("loi", quick, seed) + option,
+        lambda progress: measure(
+            setting, folder=output, workers=workers, dask=dask, progress=progress
+        ),
+        table,
+        draw,
+        asdict,
         output=output,
         json=json,
     )

@@ -34,6 +34,22 @@ class Candidates:
             self.value[chosen], self.spread[chosen], self.share[chosen], self.reversed
         )
 
+    def mean(self) -> tuple[FloatArray, FloatArray]:
+        """The values that are off least in the mean square, and their standard deviations.
+
+        Returns:
+            float[n, latent] each.
+
+        >>> share = np.array([[0.75, 0.25]])
+        >>> two = Candidates(np.array([[[0.0], [80.0]]]), np.ones((1, 2, 1)), share, share[0] < 0)
+        >>> tuple(part.round(2).tolist() for part in two.mean())
+        ([[20.0]], [[34.66]])
+        """
+        share = self.share[..., None]
+        value = (share * self.value).sum(1)
+        off = self.spread**2 + (self.value - value[:, None]) ** 2
+        return value, np.sqrt((share * off).sum(1))
+
     def best(self) -> tuple[FloatArray, FloatArray]:
         """The most probable values, and how far the truth is expected from them.
 

@@ -15,6 +15,8 @@ class TrainingSettings(BaseModel):
 
     Attributes:
         alpha, beta, gamma: weights of the domain, context and physics losses [-].
+        source_gamma: weight of the physics loss on simulated rows [-].
+        domain: what the domain loss is: an adversary's, or the distance of covariances.
         fine_gamma: weight of the physics loss in a fine-tuning, which is about few rows [-].
         physics: what the physics loss compares with: the frozen network trained on the source,
             the simulator itself, or nothing.
@@ -35,6 +37,8 @@ class TrainingSettings(BaseModel):
     alpha: Weight = 0.02
     beta: Weight = 1.0
     gamma: Weight = 0.005
+    source_gamma: Weight = 0.0
+    domain: Literal["adversarial", "coral"] = "adversarial"
     fine_gamma: Weight = 0.5
     physics: Literal["reduced", "exact"] | None = "reduced"
     fine_physics: Literal["reduced", "exact"] | None = "exact"
@@ -52,3 +56,14 @@ class TrainingSettings(BaseModel):
     dropout: Share = 0.02
     faults: Share = 0.002
     gain: Share = 0.03
+
+    def fine(self) -> "TrainingSettings":
+        """The settings of a fine-tuning, as those of a training."""
+        return self.model_copy(
+            update={
+                "gamma": self.fine_gamma,
+                "physics": self.fine_physics,
+                "steps": self.fine_steps,
+                "learning_rate": self.fine_learning_rate,
+            }
+        )

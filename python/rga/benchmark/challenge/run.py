@@ -6,8 +6,7 @@ from pathlib import Path
 
 from rga.benchmark.challenge.design import Draw
 from rga.benchmark.challenge.judge import Outcome, judge
-from rga.benchmark.challenge.ledger import Ledger
-from rga.workers import finished
+from rga.benchmark.ledger import outcomes_of
 
 
 def run(
@@ -36,15 +35,14 @@ def run(
         InputError: the folder cannot be used, or holds outcomes of another version; or there is
             no cluster.
     """
-    ledger = Ledger(folder) if folder is not None else None
-    known = dict(ledger.outcomes) if ledger is not None else {}
     until = None if minutes is None else time.monotonic() + 60.0 * minutes
-    missing = (one for one in chosen if one.id not in known)
-    going = (one for one in missing if until is None or time.monotonic() < until)
-    for _, judged in finished(judge, going, workers=workers, dask=dask):
-        outcome = judged.result()
-        known[outcome.id] = outcome
-        if ledger is not None:
-            ledger.add(outcome)
-        progress(sum(one.id in known for one in chosen) / len(chosen))
-    return [known[one.id] for one in chosen if one.id in known]
+    return outcomes_of(
+        judge,
+        chosen,
+        Outcome,
+        folder=folder,
+        workers=workers,
+        dask=dask,
+        going=lambda: until is None or time.monotonic() < until,
+        progress=progress,
+    )

@@ -1,18 +1,16 @@
 """The tables of the measurements, for a terminal and in Markdown."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from rich.console import Group
-from rich.table import Table
-from rich.text import Text
 
 from rga.benchmark.detector.optimum import OPTIMUM
 from rga.benchmark.detector.rates import Arl0, Delay, Share
 from rga.benchmark.detector.result import Bounds, Judged, Result, Seen
 from rga.benchmark.detector.setting import BASELINE
 from rga.benchmark.figure import HEADINGS, digits
+from rga.benchmark.sheet import Sheet
 
 NOTES = """\
 Rows between alarms: watched rows over alarms, without a change. Quiet: share of streams without an
@@ -28,30 +26,9 @@ alarms that the first table tells.
 Optimum: knows the change, its size and the number of sensors, but not which sensors nor when."""
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """A table as words.
-
-    Attributes:
-        title: above it.
-        headings: of the columns.
-        rows: cells.
-    """
-
-    title: str
-    headings: list[str]
-    rows: list[list[str]]
-
-
 def terminal(result: Result) -> Group:
     """For rich."""
-    tables = []
-    for sheet in sheets(result):
-        table = Table(*sheet.headings, title=sheet.title, title_justify="left")
-        for row in sheet.rows:
-            table.add_row(*(Text(cell) for cell in row))
-        tables.append(table)
-    return Group(*tables)
+    return Group(*(sheet.terminal() for sheet in sheets(result)))
 
 
 def markdown(result: Result, command: str) -> str:
@@ -59,13 +36,7 @@ def markdown(result: Result, command: str) -> str:
     lines = ["# How soon a change is seen, at which rate of false alarms", ""]
     lines += [f"`{command}` on {result.day}.", "", *(f"- {line}" for line in about(result)), ""]
     for sheet in sheets(result):
-        lines += [
-            f"## {sheet.title}",
-            "",
-            _row(sheet.headings),
-            _row(["---"] * len(sheet.headings)),
-        ]
-        lines += [*(_row(row) for row in sheet.rows), ""]
+        lines += sheet.markdown()
     return "\n".join([*lines, NOTES, "", "![delays](delays.png)", "", "![limits](limits.png)", ""])
 
 
@@ -173,7 +144,3 @@ def _bounds(bounds: Bounds) -> str:
     if low is None:
         return f"≤ {high:g}"
     return f"≥ {low:g}" if high is None else f"{low:g} to {high:g}"
-
-
-def _row(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"

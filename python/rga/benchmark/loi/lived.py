@@ -1,0 +1,120 @@
+"""What becomes of a method in streams into which drifts come."""
+
+from dataclasses import dataclass
+
+from rga.benchmark.loi.data import Calibration, Stream, stream_of
+from rga.benchmark.loi.examination import Examination
+from rga.benchmark.loi.levels import LEVELS, Learned, Life, State, delays, gaps, live
+from rga.benchmark.loi.method import Calibrated
+from rga.benchmark.loi.novel import with_novel
+from rga.benchmark.loi.rows import METHODS
+from rga.benchmark.loi.score import Score
+from rga.benchmark.loi.setting import Task
+from rga.model.parameter import FloatArray
+
+
+@dataclass(frozen=True)
+class Played:
+    """A method at a level, after it has lived through a stream.
+
+    Attributes:
+        drift: that came into the stream.
+        level: of integration.
+        ordinary, drifted: scores of test rows under usual conditions, and under the drift.
+        delays: rows from each change to its alarm, both counted; None where there was none.
+        watched: rows before any change up to the first alarm.
+        false_alarm: whether this alarm came before any change.
+        alarms, recalibrations, taken_back, recalled: number of each.
+    """
+
+    drift: str
+    level: str
+    ordinary: Score
+    drifted: Score
+    delays: tuple[int | None, ...] = ()
+    watched: int = 0
+    false_alarm: bool = False
+    alarms: int = 0
+    recalibrations: int = 0
+    taken_back: int = 0
+    recalled: int = 0
+
+
+def lived(
+    task: Task, known: Calibration, calibrated: Calibrated, usual: Examination
+) -> list[Played]:
+    """Every drift of a task at every level.
+
+    Args:
+        task: names the drifts, each of which comes into a stream of its own.
+        known: what the method was calibrated on.
+        calibrated: the method.
+        usual: test rows under usual conditions.
+
+    Raises:
+        InputError: no such drift.
+    """
+    sizes, played = task.sizes, []
+    ordinary = gaps(calibrated, known.problem.real)
+    for drift in task.drifts:
+        stream = stream_of(task, drift)
+        rows = stream.rows.readings
+        examination = Examination(stream.drifted, known.problem.ranges, sizes.settle)
+        first = State(calibrated, ordinary, gaps(calibrated, rows), ordinary)
+        fine_tuned = _remembered(_fine_tuned(known.problem.real, rows))
+        scores = usual.score(calibrated), examination.score(calibrated)
+        played.append(Played(drift, LEVELS[0], *scores))
+        for level in LEVELS[1:]:
+            stores = level == LEVELS[-1] and sizes.repository == "measured"
+            learned = fine_tuned
+            if level == LEVELS[-1] and not stores:
+                learned = with_novel(METHODS[task.row], known, rows)
+            life = live(first, sizes, learned, stores=stores)
+            states = life.stored if stores else [life.state]
+            scores = usual.score_of_most_usual(states), examination.score_of_most_usual(states)
+            played.append(_played(drift, level, scores, stream, life))
+    return played
+
+
+def _played(
+    drift: str, level: str, score: tuple[Score, Score], stream: Stream, life: Life
+) -> Played:
+    rows = len(stream.rows.readings)
+    quiet = stream.changes[0] if stream.changes else rows
+    raised = life.alarms[0] if life.alarms else rows
+    return Played(
+        drift,
+        level,
+        *score,
+        delays=delays(life.alarms, stream.changes, rows),
+        watched=min(raised + 1, quiet),
+        false_alarm=raised < quiet,
+        alarms=len(life.alarms),
+        recalibrations=life.recalibrations,
+        taken_back=life.taken_back,
+        recalled=life.recalled,
+    )
+
+
+def _fine_tuned(real: FloatArray, rows: FloatArray) -> Learned:
+    """A state that has learned from rows of a stream (T1)."""
+
+    def learned(state: State, recent: slice) -> State:
+        after = state.calibrated.recalibrated(rows[recent])
+        return state if after is state.calibrated else State.of(after, real, rows)
+
+    return learned
+
+
+def _remembered(learned: Learned) -> Learned:
+    """The same, which does nothing twice: levels B and C learn alike up to their parting."""
+    known: dict[tuple[int, int, int], tuple[Calibrated, State]] = {}
+
+    def again(state: State, recent: slice) -> State:
+        key = (id(state.calibrated), recent.start, recent.stop)
+        if key not in known:
+            # The method is kept, so that no other one gets its id.
+            known[key] = state.calibrated, learned(state, recent)
+        return known[key][1]
+
+    return again

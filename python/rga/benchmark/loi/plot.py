@@ -1,0 +1,98 @@
+"""Methods beside each other, and what levels change."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure as Canvas
+
+from rga.benchmark.loi.floors import FLOORS
+from rga.benchmark.loi.found import lives, mean, mean_lives, scores
+from rga.benchmark.loi.levels import LEVELS
+from rga.benchmark.loi.rows import ORACLE
+from rga.benchmark.loi.run import Result
+
+
+def plot(result: Result, folder: Path) -> None:
+    """Write `methods.png`, and `levels.png` where there were drifts, to a folder."""
+    drawn = {"methods.png": methods(result)}
+    if result.setting.drifts:
+        drawn["levels.png"] = levels(result)
+    for name, canvas in drawn.items():
+        canvas.savefig(folder / name, format="png", dpi=110)
+
+
+def methods(result: Result) -> Canvas:
+    """Error and RG of each method under the full gap, level A, with 90 % intervals."""
+    gap, manner = result.setting.gaps[-1], result.setting.manners[0]
+    own = [row for row in result.rows if row not in FLOORS]
+    errors = {
+        row: mean(scores(result.outcomes, row, gap, manner, lambda one: one.error)) for row in own
+    }
+    gaps = {
+        row: mean(scores(result.outcomes, row, gap, manner, lambda one: one.rg))
+        for row in result.rows
+    }
+    own.sort(key=lambda row: -np.inf if (one := errors[row]) is None else -one.value)
+    canvas = Canvas(figsize=(11.0, 1.6 + 0.32 * len(own)), layout="constrained")
+    left, right = canvas.subplots(1, 2, sharey=True)
+    for axes, found in ((left, errors), (right, gaps)):
+        for height, row in enumerate(own):
+            one = found[row]
+            if one is not None:
+                axes.errorbar(
+                    one.value, height, xerr=one.reach or 0.0, fmt="o", color="C0", capsize=3
+                )
+        axes.grid(alpha=0.25)
+    floor = errors.get(ORACLE)
+    left.axvline(1.0, color="0.6", lw=1, ls=":")
+    if floor is not None:
+        left.axvline(floor.value, color="0.3", lw=1, ls="--")
+    for name, style in zip(FLOORS, (":", "--", "-."), strict=True):
+        one = gaps.get(name)
+        if one is not None:
+            right.axvline(one.value, color="0.4", lw=1, ls=style, label=name)
+    left.set_yticks(range(len(own)), own)
+    left.set_ylim(-0.6, len(own) - 0.4)
+    left.set(xlabel="Error [-]; 1: the middle of the ranges", xlim=(0.0, None))
+    right.set(xlabel="RG [mm²]", xscale="log")
+    if right.get_legend_handles_labels()[1]:
+        right.legend(fontsize=8)
+    canvas.suptitle(f"Level A, gap: {gap}, contexts: {manner}")
+    return canvas
+
+
+def levels(result: Result) -> Canvas:
+    """Error on drifted rows by level, a panel for each drift."""
+    drifts = result.setting.drifts
+    columns = min(3, len(drifts))
+    rows = -(-len(drifts) // columns)
+    canvas = Canvas(figsize=(4.4 * columns, 3.4 * rows + 1.2), layout="constrained")
+    panels = canvas.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    for axes, drift in zip(panels, drifts, strict=False):
+        for number, row in enumerate(one for one in result.rows if one not in FLOORS):
+            found = [
+                mean(
+                    mean_lives(
+                        lives(result.outcomes, row, [drift], level),
+                        lambda played: played.drifted.error,
+                    )
+                )
+                for level in LEVELS
+            ]
+            axes.plot(
+                range(len(LEVELS)),
+                [np.nan if one is None else one.value for one in found],
+                "osD^v"[number // 10 % 5] + "-",
+                color=f"C{number % 10}",
+                label=row,
+                ms=4,
+                lw=1,
+            )
+        axes.set(title=drift, xticks=range(len(LEVELS)), xticklabels=LEVELS)
+        axes.grid(alpha=0.25)
+    for axes in panels[len(drifts) :]:
+        axes.set_visible(False)
+    panels[0].set_ylabel("Error on drifted rows [-]")
+    handles, labels = panels[0].get_legend_handles_labels()
+    canvas.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+    return canvas

@@ -1,0 +1,102 @@
+"""Tables of methods at level A: by gap, by manner of contexts, and by context."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from rga.benchmark.figure import digits
+from rga.benchmark.loi.floors import FLOORS, TRUE_CONTEXT
+from rga.benchmark.loi.found import Values, coverage, gap_told, mean, scores
+from rga.benchmark.loi.rows import ORACLE
+from rga.benchmark.loi.run import Result
+from rga.benchmark.loi.score import Score
+from rga.benchmark.sheet import Sheet
+from rga.benchmark.truth.full_case_study import full_case_study
+
+
+def by_place(result: Result) -> list[Sheet]:
+    """Error, share of what there is to gain, RG and coverage, by gap and manner of contexts."""
+    setting = result.setting
+    full, first = setting.gaps[-1], setting.manners[0]
+    places = [(gap, first) for gap in setting.gaps]
+    places += [(full, manner) for manner in setting.manners[1:]]
+    names = [gap if manner == first else f"{gap}, {manner}" for gap, manner in places]
+
+    def sheet(title: str, rows: tuple[str, ...], told: Callable[[str, str, str], str]) -> Sheet:
+        cells = [[row, *(told(row, gap, manner) for gap, manner in places)] for row in rows]
+        return Sheet(title, ["method", *names], [one for one in cells if any(one[1:])])
+
+    def number(of: Callable[[Score], float | None], form: str) -> Callable[[str, str, str], str]:
+        def told(row: str, gap: str, manner: str) -> str:
+            found = mean(scores(result.outcomes, row, gap, manner, of))
+            return "" if found is None else found.told(form)
+
+        return told
+
+    def error(row: str, gap: str, manner: str) -> Values:
+        return scores(result.outcomes, row, gap, manner, lambda one: one.error)
+
+    def share(row: str, gap: str, manner: str) -> str:
+        own, floor = error(row, gap, manner), error(ORACLE, gap, manner)
+        gained = {k: (1.0 - own[k]) / (1.0 - floor[k]) for k in own if k in floor}
+        found = mean(gained)
+        return "" if found is None else found.told(".2f")
+
+    def gap_left(row: str, gap: str, manner: str) -> str:
+        own, true = (
+            mean(scores(result.outcomes, one, gap, manner, lambda one: one.rg))
+            for one in (row, TRUE_CONTEXT)
+        )
+        return gap_told(row, own, true)
+
+    methods = tuple(row for row in result.rows if row not in FLOORS)
+    sheets = [
+        sheet("Error [-], level A", methods, number(lambda one: one.error, ".3f")),
+        sheet(f"(1 - Error) / (1 - Error of “{ORACLE}”), level A", methods, share),
+        sheet("RG [mm²], level A", result.rows, gap_left),
+        sheet("Coverage of 90 % intervals, level A", methods, number(coverage, ".2f")),
+    ]
+    return [one for one in sheets if one.rows]
+
+
+def by_context(result: Result) -> Sheet:
+    """Error and coverage of each context, under the full gap."""
+    contexts = full_case_study()["context"]
+    headings = [f"{name} [{variable['unit']}]" for name, variable in contexts.items()]
+    rows = []
+    for row in result.rows:
+        own = [
+            one.score
+            for one in result.outcomes
+            if (one.row, one.gap, one.manner)
+            == (row, result.setting.gaps[-1], result.setting.manners[0])
+        ]
+        errors = [one.errors for one in own if one.errors is not None]
+        held = [one.coverage for one in own if one.coverage is not None]
+        if errors:
+            cells = [digits(one) for one in np.sqrt(np.mean(np.square(errors), axis=0))]
+            if held:
+                shares = np.mean(held, axis=0)
+                cells = [f"{cell} ({part:.0%})" for cell, part in zip(cells, shares, strict=True)]
+            rows.append([row, *cells])
+    title = "Each context under the full gap: root mean square error (coverage of 90 % intervals)"
+    return Sheet(title, ["method", *headings], rows)
+
+
+def cost(result: Result) -> Sheet:
+    """Seconds of learning and of inference."""
+    times: Mapping[str, list[tuple[float, float]]] = {
+        row: [
+            (one.learning, one.inference)
+            for one in result.outcomes
+            if one.row == row and one.learning is not None and one.inference is not None
+        ]
+        for row in result.rows
+    }
+    rows = [
+        [row, digits(learning), digits(1e3 * inference)]
+        for row, several in times.items()
+        if several
+        for learning, inference in (np.median(several, axis=0).tolist(),)
+    ]
+    return Sheet("Cost, median", ["method", "to learn [s]", "to infer a row [ms]"], rows)
