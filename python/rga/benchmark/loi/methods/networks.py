@@ -133,8 +133,8 @@ def _settings(**changes: object) -> TrainingSettings:
 
 
 # Weights of the physics, of the adversary beside them and of coral: what `selection.choose` takes
-# most often on physical twins with all gaps, seeds 1 and 2. Of the adversary alone it takes none;
-# the weight here is the one with the least error there, so that the row stands at its best.
+# on physical twins with all gaps, seeds 1 and 2. Before the adversary alone it takes the source
+# alone, and next to that the weight that stands here.
 _PHYSICS = {"gamma": 0.05, "source_gamma": 0.05}
 _BOTH = {**_PHYSICS, "alpha": 0.1}
 
