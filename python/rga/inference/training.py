@@ -123,6 +123,7 @@ def _run(
     progress: Callable[[float], None] | None,
 ) -> ContextNetwork:
     steps, rate = settings.steps, settings.learning_rate
+    first = round(lead * steps)
     weights = list(objective.modules.train().parameters())
     optimiser = torch.optim.Adam(weights, lr=rate, fused=True)
     stopping = None if held_out is None else Stopping(held_out)
@@ -130,15 +131,15 @@ def _run(
         done = step / steps
         for group in optimiser.param_groups:
             group["lr"] = rate * falling(done)
-        if step % MATCHING == 0:
+        if step >= first and (step - first) % MATCHING == 0:
             objective.look()
-            if stopping is not None and done >= lead and stopping.enough(objective.network):
+            if stopping is not None and stopping.enough(objective.network):
                 break
         optimiser.zero_grad()
         whole = step % EVERY == 0
         loss = objective.on_source(guided=whole)
-        if whole and done >= lead:
-            real = objective.on_target((done - lead) / (1.0 - lead))
+        if whole and step >= first:
+            real = objective.on_target((step - first) / (steps - first))
             loss = loss if real is None else loss + real
         torch.autograd.backward(loss)
         nn.utils.clip_grad_norm_(weights, 1.0)

@@ -1,4 +1,16 @@
-"""The networks of the table: one way to learn, and what each row takes from it."""
+"""The networks of the table: one way to learn, and what each row takes from it.
+
+- `source_only` sees simulated rows alone.
+- `residual_network` has the residual for its loss, of simulated and of real rows, between readings
+  and what a frozen network simulates at the contexts inferred; known contexts are not looked at.
+- `adversarial` and `coral` make features of simulated and real rows alike.
+- `adversarial_reduced_physics` and `adversarial_exact_physics` are guided by the frozen network
+  and by the simulator as well, on simulated and on real rows; `physics_only` by the simulator
+  without an adversary.
+
+All but the first stop where the gap on held-out real rows is least, as
+`rga.inference.selection.unlabelled_gap` measures it.
+"""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -120,6 +132,9 @@ def _settings(**changes: object) -> TrainingSettings:
     return told.model_copy(update={"fine_gamma": told.gamma, "fine_physics": told.physics})
 
 
+# Weights of the physics, of the adversary beside them and of coral: what `selection.choose` takes
+# on physical twins with all gaps, seeds 1 and 2. Before the adversary alone it takes the source
+# alone, and next to that the weight that stands here.
 _PHYSICS = {"gamma": 0.05, "source_gamma": 0.05}
 _BOTH = {**_PHYSICS, "alpha": 0.1}
 
