@@ -1,4 +1,4 @@
-"""A simulation with the gains and offsets of its sensors."""
+"""A simulation with the gains of its sensors."""
 
 from dataclasses import dataclass, field
 
@@ -10,20 +10,18 @@ from rga.model.parameter import FloatArray
 
 @dataclass(frozen=True)
 class CorrectedTwin(TwinOnArrays):
-    """Readings as sensors of other gains and offsets show them.
+    """Readings as sensors of other gains show them.
 
     Attributes:
         gains: factors, float[sensors].
-        offsets: in the sensors' units, float[sensors].
     """
 
     gains: FloatArray = field(default_factory=lambda: np.ones(1))
-    offsets: FloatArray = field(default_factory=lambda: np.zeros(1))
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
         """Readings without noise, float[n, sensors], of contexts, float[n, contexts]."""
-        return self.gains * super().simulate(contexts) + self.offsets
+        return np.asarray(self.gains * super().simulate(contexts))
 
     def jacobian(self, contexts: FloatArray) -> FloatArray:
         """Derivatives by the contexts in their units, float[n, sensors, contexts]."""
-        return self.gains[:, None] * super().jacobian(contexts)
+        return np.asarray(self.gains[:, None] * super().jacobian(contexts))

@@ -37,7 +37,7 @@ class Joint:
     Attributes:
         unknowns: of the structure.
         values: of them, float[unknowns].
-        gains, offsets: of the sensors, float[sensors] each.
+        gains: of the sensors, float[sensors].
         variance: of what readings still differ by from the twin, float[sensors].
         doubt: covariance of readings because unknowns are not sure, float[sensors, sensors].
         rows: measured rows with the contexts found; load tests are not among them.
@@ -46,7 +46,6 @@ class Joint:
     unknowns: Unknowns
     values: FloatArray
     gains: FloatArray
-    offsets: FloatArray
     variance: FloatArray
     doubt: FloatArray
     rows: Rows
@@ -55,7 +54,7 @@ class Joint:
     def twin(self) -> CorrectedTwin:
         """The model with its unknowns as they were found."""
         simulator = Simulator(self.unknowns.at(self.values))
-        return CorrectedTwin(simulator, self.gains, self.offsets)
+        return CorrectedTwin(simulator, self.gains)
 
     @property
     def covariance(self) -> FloatArray:
@@ -70,7 +69,6 @@ def infer_jointly(
     source: FloatArray,
     *,
     load_tests: Rows | None = None,
-    offset: float = 0.0,
     start: Joint | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Joint:
@@ -86,16 +84,16 @@ def infer_jointly(
         noise: standard deviation of each sensor's noise, float[sensors].
         source: contexts to start from, float[m, contexts].
         load_tests: measured rows whose contexts are known.
-        offset: prior spread of the offset of a sensor, in noises.
         start: an earlier result, about which unknowns are looked for again.
         progress: told the share that is done.
     """
-    search = _Search(unknowns, readings, noise, load_tests, offset, start)
-    for number in range(ROUNDS):
+    search = _Search(unknowns, readings, noise, load_tests, start)
+    rounds = ROUNDS if start is None else 1
+    for number in range(rounds):
         search.place(source)
         for step in range(STEPS):
             if progress is not None:
-                progress((number + step / STEPS) / ROUNDS)
+                progress((number + step / STEPS) / rounds)
             if not search.step():
                 break
     return search.result()
@@ -108,7 +106,6 @@ class _Search:
         readings: FloatArray,
         noise: FloatArray,
         load_tests: Rows | None,
-        offset: float,
         start: Joint | None,
     ) -> None:
         self.unknowns, self.noise, self.many = unknowns, noise, len(readings)
@@ -122,13 +119,11 @@ class _Search:
         self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
         sensors, count = len(noise), len(unknowns.centre)
         self.count = count
-        # In units of their priors: unknowns, gains, offsets.
-        ones = np.ones(sensors)
-        self.unit = np.concatenate([unknowns.spread, GAIN * ones, offset * noise])
-        self.centre = np.concatenate([unknowns.centre, ones, 0.0 * ones])
+        self.unit = np.concatenate([unknowns.spread, np.full(sensors, GAIN)])
+        self.centre = np.concatenate([unknowns.centre, np.ones(sensors)])
         self.value = self.centre.copy()
         if start is not None:
-            self.value = np.concatenate([start.values, start.gains, start.offsets])
+            self.value = np.concatenate([start.values, start.gains])
         self.variance = (GUESS * noise) ** 2 if start is None else start.variance
         contexts = len(ranges)
         self.population = np.zeros(contexts), np.ones(contexts)
@@ -137,12 +132,11 @@ class _Search:
 
     @property
     def twin(self) -> CorrectedTwin:
-        values, gains, offsets = self._parts(self.value)
-        return CorrectedTwin(Simulator(self.unknowns.at(values)), gains, offsets)
+        return self._twin(self.value)
 
-    def _parts(self, value: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        values, gains, offsets = np.split(value, [self.count, self.count + len(self.noise)])
-        return values, gains, offsets
+    def _twin(self, value: FloatArray) -> CorrectedTwin:
+        values, gains = np.split(value, [self.count])
+        return CorrectedTwin(Simulator(self.unknowns.at(values)), gains)
 
     def place(self, source: FloatArray) -> None:
         """Contexts of the measured rows anew, from two starts, the unknowns as they stand."""
@@ -177,7 +171,7 @@ class _Search:
         back = here @ spread
         of_unknowns = np.einsum("nsc,knsc->k", back, bent, optimize=True)
         of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
-        slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])
+        slope = np.concatenate([of_unknowns, of_gains])
         return np.asarray(slope * self.many / len(here))
 
     def step(self) -> bool:
@@ -200,7 +194,7 @@ class _Search:
     def result(self) -> Joint:
         """What was found, with how sure it is."""
         self._solve()
-        values, gains, offsets = self._parts(self.value)
+        values, gains = np.split(self.value, [self.count])
         moved = self.slopes @ np.linalg.cholesky(self.covariance)
         moved = moved.transpose(1, 0, 2).reshape(len(self.noise), -1)
         doubt = moved @ moved.T
@@ -208,7 +202,6 @@ class _Search:
             unknowns=self.unknowns,
             values=values,
             gains=gains,
-            offsets=offsets,
             variance=self.variance,
             doubt=doubt / max(len(self.slopes), 1),
             rows=Rows(self.contexts[: self.many], self.readings[: self.many]),
@@ -216,19 +209,11 @@ class _Search:
 
     def _solve(self) -> tuple[FloatArray, FloatArray]:
         """Change of the unknowns and of the contexts, in units of their priors."""
-        values, gains, offsets = self._parts(self.value)
+        values, gains = np.split(self.value, [self.count])
         plain, by_contexts, by_unknowns = self.unknowns.linearise(self.contexts, values)
-        rows, sensors = plain.shape
-        every = np.eye(sensors)
-        slopes = np.concatenate(
-            [
-                by_unknowns * gains[:, None],
-                plain[:, :, None] * every,
-                np.broadcast_to(every, (rows, sensors, sensors)),
-            ],
-            axis=2,
-        )
-        off = np.where(self.seen, self.readings - gains * plain - offsets, 0.0)
+        own_gains = plain[:, :, None] * np.eye(plain.shape[1])
+        slopes = np.concatenate([by_unknowns * gains[:, None], own_gains], axis=2)
+        off = np.where(self.seen, self.readings - gains * plain, 0.0)
         weight = np.where(self.seen, 1.0 / np.sqrt(self.variance), 0.0)
         off = off * weight
         slopes = slopes * self.unit * weight[:, :, None]
@@ -274,9 +259,8 @@ class _Search:
         return change, alone - (through @ change)
 
     def _residual(self, value: FloatArray, contexts: FloatArray) -> FloatArray:
-        values, gains, offsets = self._parts(value)
-        twin = CorrectedTwin(Simulator(self.unknowns.at(values)), gains, offsets)
-        return np.where(self.seen, self.readings - twin.simulate(contexts), 0.0)
+        simulated = self._twin(value).simulate(contexts)
+        return np.where(self.seen, self.readings - simulated, 0.0)
 
     def _misfit(self, value: FloatArray, contexts: FloatArray) -> float:
         off = self._residual(value, contexts)
@@ -287,9 +271,8 @@ class _Search:
         return float((off**2 / self.variance).sum() + prior)
 
     def _standard(self, value: FloatArray) -> FloatArray:
-        """Unknowns, gains and offsets in units of their priors."""
-        used = self.unit > 0
-        return np.where(used, (value - self.centre) / np.where(used, self.unit, 1.0), 0.0)
+        """Unknowns and gains in units of their priors."""
+        return np.asarray((value - self.centre) / self.unit)
 
     def _weigh(self, off: FloatArray, freedom: float) -> None:
         """What noise and model error are left, sensor by sensor, never below the stated noise."""
@@ -301,7 +284,6 @@ class _Search:
         self.variance = self.noise**2 * np.maximum(ratio, 1.0)
 
     def _bounds(self) -> tuple[FloatArray, FloatArray]:
-        sensors = len(self.noise)
-        wide = np.full(2 * sensors, np.inf)
+        wide = np.full(len(self.noise), np.inf)
         low = np.concatenate([self.unknowns.low, -wide])
         return low, np.concatenate([self.unknowns.high, wide])

@@ -306,7 +306,7 @@ class Simulator:
             return structure
 
         # What comes before all that varies is put on the structure once.
-        varies = [np.ptp(states[:, list(columns[name].values())]) > 0 for name in structural]
+        varies = [bool(np.ptp(states[:, list(columns[name].values())]) > 0) for name in structural]
         steady = varies.index(True) if True in varies else len(structural)
         given = [k for name in structural[:steady] for k in columns[name].values()]
 

@@ -6,8 +6,20 @@ from importlib.util import find_spec
 
 from rga.benchmark.loi.data import Calibration
 from rga.benchmark.loi.method import Calibrated
+from rga.benchmark.loi.methods import networks
+from rga.benchmark.loi.methods.discrepancy import smooth_discrepancy
+from rga.benchmark.loi.methods.domain_adaptation import skada_coral, skada_dann
+from rga.benchmark.loi.methods.ensemble_kalman import ensemble_kalman
+from rga.benchmark.loi.methods.iterated_kalman import iterated_kalman
+from rga.benchmark.loi.methods.joint import joint_posterior
+from rga.benchmark.loi.methods.knows_frame import knows_the_frame
+from rga.benchmark.loi.methods.low_rank import low_rank_discrepancy
 from rga.benchmark.loi.methods.modes import maximum_posterior
+from rga.benchmark.loi.methods.neural_posterior import neural_posterior
+from rga.benchmark.loi.methods.polished import polished_network
 from rga.benchmark.loi.methods.prior import prior_mean
+from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
+from rga.benchmark.loi.methods.updated_model import updated_model
 from rga.inference.rows import Rows
 
 
@@ -41,11 +53,41 @@ class Row:
 
 
 METHODS: dict[str, Row] = {
+    "knows the frame": Row(knows_the_frame, oracle=True),
     "prior mean": Row(prior_mean),
+    "source only": Row(networks.source_only),
+    "residual network": Row(networks.residual_network),
+    "CORAL": Row(networks.coral),
+    "DANN": Row(networks.adversarial),
+    "DANN + physics, frozen network": Row(networks.adversarial_reduced_physics),
+    "DANN + physics, exact simulator": Row(networks.adversarial_exact_physics),
+    "physics only": Row(networks.physics_only),
+    "network + polish": Row(polished_network),
     "MAP": Row(maximum_posterior),
+    "MAP, smooth discrepancy": Row(smooth_discrepancy),
+    "MAP, low-rank discrepancy (EM)": Row(low_rank_discrepancy),
+    "iterated Kalman filter": Row(iterated_kalman),
+    "unscented Kalman filter": Row(unscented_kalman),
+    "ensemble Kalman filter": Row(ensemble_kalman),
+    "updated model, 20 load tests": Row(updated_model, load_tests=20),
+    "updated model, 60 load tests": Row(updated_model, load_tests=60),
+    "joint posterior": Row(joint_posterior),
+    "joint posterior, 20 load tests": Row(joint_posterior, load_tests=20),
+    "joint posterior, 60 load tests": Row(joint_posterior, load_tests=60),
+    "neural posterior (sbi)": Row(neural_posterior, needs=("sbi",)),
+    "CORAL (skada)": Row(skada_coral, needs=("skada", "sklearn")),
+    "DANN (skada)": Row(skada_dann, needs=("skada", "sklearn", "skorch")),
 }
 #: methods of a quick run
-QUICK = ("prior mean", "MAP")
+QUICK = (
+    "knows the frame",
+    "prior mean",
+    "source only",
+    "DANN",
+    "DANN + physics, frozen network",
+    "MAP",
+    "joint posterior",
+)
 #: the method whose Error is a floor: it knows what the physical twin is like
 ORACLE = "knows the frame"
 #: methods by the columns of the paper's table

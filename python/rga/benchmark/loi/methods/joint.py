@@ -1,0 +1,67 @@
+"""Contexts and unknowns of the structure together, with load tests where there are any."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rga.benchmark.loi.method import Calibrated, Problem
+from rga.benchmark.loi.methods.modes import Modes
+from rga.inference.guess import QuadraticGuess
+from rga.inference.joint import Joint, infer_jointly
+from rga.inference.rows import Rows
+from rga.inference.unknowns import Unknowns
+from rga.model import Model
+from rga.model.parameter import FloatArray
+
+#: of the rows of the calibration, so many stay beside recent ones
+KEPT = 100
+
+
+@dataclass(frozen=True)
+class JointModes(Modes):
+    """Modes under a twin that has learned its unknowns.
+
+    Attributes:
+        joint: what was found beside the contexts.
+    """
+
+    joint: Joint | None = None
+
+    def recalibrated(self, recent: FloatArray) -> Calibrated:
+        """The unknowns found again; sensors that no longer fit weigh less."""
+        kept = self.problem.real[:: max(1, len(self.problem.real) // KEPT)]
+        problem = replace(self.problem, real=np.vstack([kept, recent]))
+        return _learned(problem, self.joint)
+
+
+_KNOWN: dict[str, Unknowns] = {}
+
+
+def unknowns_of(model: Model) -> Unknowns:
+    """The unknowns of a model; those of the last one are kept, with what they take long to see."""
+    content = model.model_dump_json()
+    if content not in _KNOWN:
+        _KNOWN.clear()
+        _KNOWN[content] = Unknowns(model)
+    return _KNOWN[content]
+
+
+def joint_posterior(problem: Problem) -> Calibrated:
+    """Contexts and unknowns in one posterior."""
+    return _learned(problem, None)
+
+
+def _learned(problem: Problem, start: Joint | None) -> JointModes:
+    found = infer_jointly(
+        unknowns_of(problem.model),
+        problem.real,
+        problem.noise,
+        problem.source.contexts,
+        load_tests=problem.load_tests if len(problem.load_tests) else None,
+        start=start,
+    )
+    twin = found.twin
+    simulated = Rows(problem.source.contexts, twin.simulate(problem.source.contexts))
+    deviation = np.sqrt(np.diagonal(found.covariance))
+    guess = QuadraticGuess(simulated, deviation, twin.ranges, problem.seed)
+    return JointModes(problem, twin, found.covariance, guess, joint=found)
