@@ -6,8 +6,16 @@ from importlib.util import find_spec
 
 from rga.benchmark.loi.data import Calibration
 from rga.benchmark.loi.method import Calibrated
+from rga.benchmark.loi.methods.discrepancy import smooth_discrepancy
+from rga.benchmark.loi.methods.domain_adaptation import skada_coral, skada_dann
+from rga.benchmark.loi.methods.ensemble_kalman import ensemble_kalman
+from rga.benchmark.loi.methods.iterated_kalman import iterated_kalman
+from rga.benchmark.loi.methods.low_rank import low_rank_discrepancy
 from rga.benchmark.loi.methods.modes import maximum_posterior
+from rga.benchmark.loi.methods.neural_posterior import neural_posterior
 from rga.benchmark.loi.methods.prior import prior_mean
+from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
+from rga.benchmark.loi.methods.updated_model import updated_model
 from rga.inference.rows import Rows
 
 
@@ -43,6 +51,16 @@ class Row:
 METHODS: dict[str, Row] = {
     "prior mean": Row(prior_mean),
     "MAP": Row(maximum_posterior),
+    "MAP with discrepancy": Row(smooth_discrepancy),
+    "EM low-rank discrepancy": Row(low_rank_discrepancy),
+    "calibrated model, 20 load tests": Row(updated_model, load_tests=20),
+    "calibrated model, 60 load tests": Row(updated_model, load_tests=60),
+    "iterated EKF": Row(iterated_kalman),
+    "unscented KF": Row(unscented_kalman),
+    "ensemble KF": Row(ensemble_kalman),
+    "NPE (sbi)": Row(neural_posterior, needs=("sbi",)),
+    "CORAL (skada)": Row(skada_coral, needs=("skada",)),
+    "DANN (skada)": Row(skada_dann, needs=("skada",)),
 }
 #: methods of a quick run
 QUICK = ("prior mean", "MAP")
