@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
+from rga.inference.bending import with_bending
 from rga.model import Model, model_content, read_model
 from rga.model.parameter import FloatArray, listed
 from rga.simulation import Simulator
@@ -16,6 +17,8 @@ from rga.simulation import Simulator
 GROUP, STRETCH = 0.08, 0.04
 #: stretches that a group of so many members is cut into, along the bridge
 STRETCHES, MANY = 5, 12
+#: decimal logarithm of the share of rigid joints' bending, and its spread
+FIXITY, FIXITY_SPREAD = -0.5, 0.6
 #: decimal logarithm of the stiffness [N/m] of a bearing that the model takes as rigid
 BEARING, BEARING_SPREAD = 9.0, 0.7
 #: share of a spread by which unknowns are moved to see how derivatives change
@@ -60,8 +63,8 @@ class Unknown:
 class Unknowns:
     """All unknowns of a model, and the model with them.
 
-    Stretches of every group of members may be stiffer or softer, rigid bearings may give way, and
-    the sun may warm one side more than the other.
+    Stretches of every group of members may be stiffer or softer, pinned joints may be stiff, rigid
+    bearings may give way, and the sun may warm one side more than the other.
 
     Args:
         model: as it was given.
@@ -75,7 +78,10 @@ class Unknowns:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.parts = [*_stretches(model), *_bearings(model), *_sides(model)]
+        self._bending = with_bending(model)
+        self.parts = [
+            *_stretches(model), *_joints(self._bending), *_bearings(model), *_sides(model)
+        ]  # fmt: skip
         self.centre = np.array([part.centre for part in self.parts])
         self.spread = np.array([part.spread for part in self.parts])
         self.low, self.high = np.array([part.bounds for part in self.parts]).reshape(-1, 2).T
@@ -89,7 +95,7 @@ class Unknowns:
 
     def at(self, values: FloatArray) -> Model:
         """The model extended by the unknowns at values, float[unknowns]."""
-        content = model_content(self.model)
+        content = model_content(self._bending)
         # They come first: what does not vary is put on the structure once.
         found = {
             part.name: part.at(float(value)) for part, value in zip(self.parts, values, strict=True)
@@ -149,7 +155,7 @@ class Unknowns:
     @cached_property
     def _driven(self) -> Simulator:
         """The simulator in which each unknown is a context of its own."""
-        content = model_content(self.model)
+        content = model_content(self._bending)
         for part in self.parts:
             content["context"][part.name] = {"unit": "-", "range": list(part.bounds)}
             driven = {"context": part.name, **part.driven}
@@ -188,6 +194,16 @@ def _stretches(model: Model) -> Iterator[Unknown]:
 def _stiffness(name: str, place: dict[str, Any], spread: float) -> Unknown:
     effect = {"kind": "member_stiffness", **place}
     return Unknown(name, effect, "factor", {"minus": -1.0}, 0.0, spread, (-0.6, 1.5))
+
+
+def _joints(model: Model) -> Iterator[Unknown]:
+    """Share of the bending of rigid joints that the joints of a group leave to its members."""
+    for group in model.groups:
+        if group.startswith("bending of "):
+            effect = {"kind": "member_stiffness", "group": group}
+            yield Unknown(
+                group, effect, "factor", {"log10": True}, FIXITY, FIXITY_SPREAD, (-2.0, 1.0)
+            )
 
 
 def _bearings(model: Model) -> Iterator[Unknown]:

@@ -7,7 +7,8 @@ from scipy.optimize import least_squares
 
 from rga.benchmark.loi.method import Problem
 from rga.benchmark.loi.methods.modes import Modes, maximum_posterior
-from rga.benchmark.loi.methods.updated_parameters import Unknown, unknowns, with_bending
+from rga.benchmark.loi.methods.updated_parameters import Unknown, unknowns
+from rga.inference.bending import with_bending
 from rga.inference.guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga.inference.twin_on_arrays import TwinOnArrays

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.inference.bending import BENDING
 from rga.model import Model
 from rga.model.effect import Effect
 from rga.model.effects.bearings import SupportFlexibility
@@ -12,8 +13,6 @@ from rga.model.effects.stiffness import ElasticModulus, MemberStiffness
 from rga.model.effects.thermal import ThermalExpansion
 from rga.model.parameter import Driven, Factor, Positive
 
-#: group of the members that bend beside pinned ones, and what of them is left of A and J
-BENDING, SLIGHT = "bending beside pins", 1e-6
 #: fixity of joints beforehand: share of the bending stiffness of rigid ones, and its log spread
 FIXITY = (0.3, 1.5)
 
@@ -69,31 +68,3 @@ def unknowns(model: Model) -> Iterator[Unknown]:
     if BENDING in model.groups:
         fixity, spread = FIXITY
         yield Unknown(MemberStiffness(group=BENDING, factor=fixity), "factor", fixity, spread)
-
-
-def with_bending(model: Model) -> Model:
-    """The model with a member that bends, and does nothing else, beside each pinned member.
-
-    A share of its stiffness stands for the rigidity of the joints: stiffnesses are straight in it,
-    which they are not in springs at the ends of a member.
-    """
-    bent = {}
-    sections = dict(model.sections)
-    for name, member in model.members.items():
-        section = model.sections[member.section]
-        if member.kind == "truss" and min(section.Iy, section.Iz) > 0.0:
-            slight = {"A": SLIGHT * section.A, "J": SLIGHT * section.J}
-            sections[f"{member.section}, {BENDING}"] = section.model_copy(update=slight)
-            changed = {
-                "kind": "frame",
-                "section": f"{member.section}, {BENDING}",
-                "groups": [BENDING],
-            }
-            bent[f"{name}, {BENDING}"] = member.model_copy(update=changed)
-    return Model.model_validate(
-        {
-            **{key: getattr(model, key) for key in Model.model_fields},
-            "sections": sections,
-            "members": {**model.members, **bent},
-        }
-    )
