@@ -36,6 +36,7 @@ CaseName = Annotated[
         "--case", metavar="ID", help="Only draw this case, and write it to the directory."
     ),
 ]
+Splits = Annotated[int, typer.Option("--splits", min=1, help="Random splits of the full gap.")]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
@@ -237,6 +238,7 @@ def detector(
 def loi(
     quick: Least = False,
     repository: Stored = "measured",
+    splits: Splits = 10,
     seed: Seed = 0,
     workers: Workers = 2,
     dask: DaskAddress = None,
@@ -262,10 +264,11 @@ def loi(
 
         plot(result, folder)
 
-    setting = shorter(seed, (*FLOORS, *QUICK)) if quick else Setting(seed=seed)
+    setting = shorter(seed, (*FLOORS, *QUICK)) if quick else Setting(seed=seed, splits=splits)
     sizes = replace(setting.sizes, repository=repository)
     setting = replace(setting, sizes=sizes)
     option = "" if repository == "measured" else f" --repository {repository}"
+    option += "" if quick or splits == Setting.splits else f" --splits {splits}"
     measured(
         "loi",
         _command("loi", quick, seed) + option,

@@ -20,8 +20,9 @@ from rga.simulation import Simulator
 
 #: prior spread of the gain of a sensor [-]
 GAIN = 0.01
-#: rounds in which rows are given another chance to leave a wrong mode, steps of each
-ROUNDS, STEPS = 3, 8
+#: rounds in which rows are given another chance to leave a wrong mode, steps of each; steps from an
+#: earlier result
+ROUNDS, STEPS, AGAIN = 3, 8, 3
 #: variance that the contexts of the measured rows may have, in that of their ranges
 POPULATION = (0.05, 1.5)
 #: shares of a step that are tried; share of the misfit below which a step is not worth another
@@ -88,12 +89,12 @@ def infer_jointly(
         progress: told the share that is done.
     """
     search = _Search(unknowns, readings, noise, load_tests, start)
-    rounds = ROUNDS if start is None else 1
+    rounds, steps = (ROUNDS, STEPS) if start is None else (1, AGAIN)
     for number in range(rounds):
         search.place(source)
-        for step in range(STEPS):
+        for step in range(steps):
             if progress is not None:
-                progress((number + step / STEPS) / rounds)
+                progress((number + step / steps) / rounds)
             if not search.step():
                 break
     return search.result()

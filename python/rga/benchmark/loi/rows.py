@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 
+from rga.benchmark.loi.contexts import MANNERS
 from rga.benchmark.loi.data import Calibration
 from rga.benchmark.loi.method import Calibrated
 from rga.benchmark.loi.methods import networks
@@ -20,6 +21,7 @@ from rga.benchmark.loi.methods.polished import polished_network
 from rga.benchmark.loi.methods.prior import prior_mean
 from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
 from rga.benchmark.loi.methods.updated_model import updated_model
+from rga.benchmark.loi.setting import Task
 from rga.inference.rows import Rows
 
 
@@ -31,12 +33,14 @@ class Row:
         learn: a `Method`; that of an oracle takes the physical twin beside the problem.
         oracle: whether it knows the physical twin as it was at first.
         load_tests: measured rows whose contexts it gets as well.
+        manners: of contexts that it is played under, `DRIFTING` among them; None: under all.
         needs: packages that rga does without.
     """
 
     learn: Callable[..., Calibrated]
     oracle: bool = False
     load_tests: int = 0
+    manners: tuple[str, ...] | None = None
     needs: tuple[str, ...] = ()
 
     def calibrated(self, known: Calibration) -> Calibrated:
@@ -52,8 +56,11 @@ class Row:
         return [package for package in self.needs if find_spec(package) is None]
 
 
+#: filters need rows in order; what only differs in its load tests need not live through streams
+_IN_ORDER = ("smooth",)
+
 METHODS: dict[str, Row] = {
-    "knows the frame": Row(knows_the_frame, oracle=True),
+    "knows the frame": Row(knows_the_frame, oracle=True, manners=MANNERS),
     "prior mean": Row(prior_mean),
     "source only": Row(networks.source_only),
     "residual network": Row(networks.residual_network),
@@ -64,19 +71,19 @@ METHODS: dict[str, Row] = {
     "physics only": Row(networks.physics_only),
     "network + polish": Row(polished_network),
     "MAP": Row(maximum_posterior),
-    "MAP, smooth discrepancy": Row(smooth_discrepancy),
+    "MAP, smooth discrepancy": Row(smooth_discrepancy, manners=MANNERS),
     "MAP, low-rank discrepancy (EM)": Row(low_rank_discrepancy),
-    "iterated Kalman filter": Row(iterated_kalman),
-    "unscented Kalman filter": Row(unscented_kalman),
-    "ensemble Kalman filter": Row(ensemble_kalman),
-    "updated model, 20 load tests": Row(updated_model, load_tests=20),
-    "updated model, 60 load tests": Row(updated_model, load_tests=60),
+    "iterated Kalman filter": Row(iterated_kalman, manners=_IN_ORDER),
+    "unscented Kalman filter": Row(unscented_kalman, manners=_IN_ORDER),
+    "ensemble Kalman filter": Row(ensemble_kalman, manners=_IN_ORDER),
+    "updated model, 20 load tests": Row(updated_model, load_tests=20, manners=MANNERS),
+    "updated model, 60 load tests": Row(updated_model, load_tests=60, manners=MANNERS),
     "joint posterior": Row(joint_posterior),
-    "joint posterior, 20 load tests": Row(joint_posterior, load_tests=20),
-    "joint posterior, 60 load tests": Row(joint_posterior, load_tests=60),
-    "neural posterior (sbi)": Row(neural_posterior, needs=("sbi",)),
-    "CORAL (skada)": Row(skada_coral, needs=("skada", "sklearn")),
-    "DANN (skada)": Row(skada_dann, needs=("skada", "sklearn", "skorch")),
+    "joint posterior, 20 load tests": Row(joint_posterior, load_tests=20, manners=MANNERS),
+    "joint posterior, 60 load tests": Row(joint_posterior, load_tests=60, manners=MANNERS),
+    "neural posterior (sbi)": Row(neural_posterior, manners=MANNERS, needs=("sbi",)),
+    "CORAL (skada)": Row(skada_coral, manners=MANNERS, needs=("skada", "sklearn")),
+    "DANN (skada)": Row(skada_dann, manners=MANNERS, needs=("skada", "sklearn", "skorch")),
 }
 #: methods of a quick run
 QUICK = (
@@ -96,3 +103,9 @@ PAPERS = {
     "without physics": "DANN",
     "with physics": "DANN + physics, frozen network",
 }
+
+
+def plays(task: Task) -> bool:
+    """Whether the row of a task is played under its manner of contexts."""
+    row = METHODS.get(task.row)
+    return row is None or row.manners is None or task.manner in row.manners

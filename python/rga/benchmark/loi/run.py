@@ -8,7 +8,7 @@ from typing import Any
 from rga.benchmark.ledger import outcomes_of
 from rga.benchmark.loi.floors import FLOORS
 from rga.benchmark.loi.play import Outcome, play
-from rga.benchmark.loi.rows import METHODS
+from rga.benchmark.loi.rows import METHODS, plays
 from rga.benchmark.loi.setting import Setting
 from rga.benchmark.machine import machine, versions
 from rga.errors import InputError
@@ -67,7 +67,7 @@ def measure(
     rows = tuple(name for name in wanted if name not in absent)
     outcomes = outcomes_of(
         play,
-        setting.tasks(rows),
+        [task for task in setting.tasks(rows) if plays(task)],
         Outcome,
         folder=folder,
         workers=workers,

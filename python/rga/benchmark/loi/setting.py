@@ -88,7 +88,7 @@ class Setting:
 
     seed: int = 0
     splits: int = 10
-    few: int = 3
+    few: int = 1
     gaps: tuple[str, ...] = GAPS
     manners: tuple[str, ...] = MANNERS
     drifts: tuple[str, ...] = DRIFTS

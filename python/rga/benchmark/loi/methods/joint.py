@@ -14,7 +14,7 @@ from rga.model import Model
 from rga.model.parameter import FloatArray
 
 #: of the rows of the calibration, so many stay beside recent ones
-KEPT = 100
+KEPT = 60
 
 
 @dataclass(frozen=True)
