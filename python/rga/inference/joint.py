@@ -196,7 +196,8 @@ class _Search:
         """What was found, with how sure it is."""
         self._solve()
         values, gains = np.split(self.value, [self.count])
-        moved = self.slopes @ np.linalg.cholesky(self.covariance)
+        sure = self.covariance + self.covariance @ self.pull @ self.covariance
+        moved = self.slopes @ np.linalg.cholesky(sure)
         moved = moved.transpose(1, 0, 2).reshape(len(self.noise), -1)
         doubt = moved @ moved.T
         return Joint(
@@ -257,6 +258,10 @@ class _Search:
         taken = (z.shape[1] - np.trace(inside, axis1=1, axis2=2))[: self.many].sum()
         self.freedom = float(taken + len(self.unit) - np.trace(self.covariance))
         self.slopes = slopes * np.sqrt(self.variance)[:, None]
+        # What is wrong with a model stays wrong from row to row: each sensor is one cluster of rows
+        # (Liang and Zeger, Biometrika 73, 1986).
+        pulls = np.einsum("nsp,ns->sp", slopes - near @ through, off)
+        self.pull = pulls.T @ pulls
         return change, alone - (through @ change)
 
     def _residual(self, value: FloatArray, contexts: FloatArray) -> FloatArray:

@@ -56,7 +56,7 @@ class Row:
         return [package for package in self.needs if find_spec(package) is None]
 
 
-#: filters need rows in order; what only differs in its load tests need not live through streams
+#: filters need rows in order; a few rows that adapt stand for the others in streams
 _IN_ORDER = ("smooth",)
 
 METHODS: dict[str, Row] = {
@@ -64,12 +64,12 @@ METHODS: dict[str, Row] = {
     "prior mean": Row(prior_mean),
     "source only": Row(networks.source_only),
     "residual network": Row(networks.residual_network),
-    "CORAL": Row(networks.coral),
+    "CORAL": Row(networks.coral, manners=MANNERS),
     "DANN": Row(networks.adversarial),
     "DANN + physics, frozen network": Row(networks.adversarial_reduced_physics),
     "DANN + physics, exact simulator": Row(networks.adversarial_exact_physics),
-    "physics only": Row(networks.physics_only),
-    "network + polish": Row(polished_network),
+    "physics only": Row(networks.physics_only, manners=MANNERS),
+    "network + polish": Row(polished_network, manners=MANNERS),
     "MAP": Row(maximum_posterior),
     "MAP, smooth discrepancy": Row(smooth_discrepancy, manners=MANNERS),
     "MAP, low-rank discrepancy (EM)": Row(low_rank_discrepancy),
