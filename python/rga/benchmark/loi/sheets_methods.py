@@ -12,6 +12,13 @@ from rga.benchmark.loi.run import Result
 from rga.benchmark.loi.score import Score
 from rga.benchmark.sheet import Sheet
 from rga.benchmark.truth.full_case_study import full_case_study
+from rga.inference.design import design
+from rga.inference.identifiability import BLIND, unseen_share
+from rga.model import read_model
+from rga.simulation import Simulator
+
+#: rows by which it is told what sensors see
+LOOKED_AT = 512
 
 
 def by_place(result: Result) -> list[Sheet]:
@@ -63,7 +70,7 @@ def by_context(result: Result) -> Sheet:
     """Error and coverage of each context, under the full gap."""
     contexts = full_case_study()["context"]
     headings = [f"{name} [{variable['unit']}]" for name, variable in contexts.items()]
-    rows = []
+    rows = [["what noise leaves", *_seen()]]
     for row in result.rows:
         own = [
             one.score
@@ -81,6 +88,21 @@ def by_context(result: Result) -> Sheet:
             rows.append([row, *cells])
     title = "Each context under the full gap: root mean square error (coverage of 90 % intervals)"
     return Sheet(title, ["method", *headings], rows)
+
+
+def _seen() -> list[str]:
+    """How far single rows leave each context open where the model is right, and how blind it is."""
+    model = read_model(full_case_study(), "full case study")
+    contexts = design(model, LOOKED_AT, latent=list(model.context), seed=0).contexts
+    noise = np.array([sensor.noise for sensor in model.sensors.values()], dtype=float)
+    left = unseen_share(Simulator(model), contexts, noise)
+    ranges = np.array([variable.range for variable in model.context.values()])
+    spread = np.sqrt(left) * np.ptp(ranges, axis=1) / np.sqrt(12.0)
+    blind = [" not seen" if share > BLIND else "" for share in left]
+    return [
+        f"{digits(one)}, {share:.0%} of the prior{word}"
+        for one, share, word in zip(spread.tolist(), left.tolist(), blind, strict=True)
+    ]
 
 
 def cost(result: Result) -> Sheet:
