@@ -100,3 +100,51 @@ def test_time(simulator: Simulator) -> None:
 def test_a_wrong_shape_is_refused(simulator: Simulator) -> None:
     with pytest.raises(InputError, match="temperature, load"):
         simulator.as_torch()(torch.zeros(3, 5, dtype=torch.float64))
+
+
+def test_parameters_that_multiply_one_stiffness_are_differentiated_row_by_row(
+    simulator: Simulator,
+) -> None:
+    data = simulator.model.model_dump()
+    data["context"]["wear"] = {"unit": "-", "range": [0, 0.5]}
+    data["effects"]["wear"] = {
+        "kind": "member_stiffness",
+        "member": ["west"],
+        "factor": {"context": "wear", "times": -1.0, "minus": 1.0},
+    }
+    worn = Simulator(read_model(data, "test"))
+    rows = 12
+    table = {
+        "temperature": np.linspace(-15, 35, rows),
+        "load": np.linspace(10, 90, rows),
+        "wear": np.linspace(0.0, 0.45, rows) ** 1.2 + 0.01,
+    }
+    found = worn.jacobian(table)
+    for column, name in enumerate(worn.model.context):
+        step = 1e-5 * np.ptp(worn.model.context[name].range)
+        ahead, behind = (worn.predict({**table, name: table[name] + way * step}) for way in (1, -1))
+        slope = (ahead - behind) / (2 * step)
+        near = 1e-6 * np.abs(slope).max()
+        np.testing.assert_allclose(found[:, :, column], slope, rtol=1e-5, atol=near)
+
+
+def test_a_logarithm_drives_a_stiffness(simulator: Simulator) -> None:
+    data = simulator.model.model_dump()
+    data["context"]["firmness"] = {"unit": "-", "range": [-1, 0]}
+    factor = {"context": "firmness", "log10": True}
+    data["effects"]["stiffness"]["factor"] = factor
+    firm = Simulator(read_model(data, "test"))
+    data["effects"]["stiffness"]["factor"] = 10.0**-0.4
+    fixed = Simulator(read_model(data, "test"))
+    table = {"temperature": [5.0, 9.0], "load": [20.0, 30.0], "firmness": [-0.4, -0.4]}
+    np.testing.assert_allclose(firm.predict(table), fixed.predict(table), rtol=1e-12)
+    slope = firm.jacobian(table)[:, :, 2]
+    ahead, behind = (firm.predict({**table, "firmness": [-0.4 + way] * 2}) for way in (1e-5, -1e-5))
+    np.testing.assert_allclose(slope, (ahead - behind) / 2e-5, rtol=1e-5, atol=1e-9)
+
+
+def test_a_temperature_follows_no_logarithm(two_bars: dict[str, Any]) -> None:
+    warm = next(e for e in two_bars["effects"].values() if e["kind"] == "temperature")
+    warm["delta"] = {"context": "temperature", "log10": True}
+    with pytest.raises(InputError, match="log10"):
+        read_model(two_bars, "test")

@@ -1,0 +1,206 @@
+"""Contexts and unknowns together: what is hidden in the structure is found, and nothing else."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rga.inference import Rows, Unknowns, infer_jointly
+from rga.inference.identifiability import BLIND, unseen_share
+from rga.inference.posterior_mode import posterior_mode, standard
+from rga.model import Model, read_model, write_model
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    """A plane truss of six panels with two latent contexts and vertical displacements."""
+    panels, nodes, members = 6, {}, {}
+    for i in range(panels + 1):
+        nodes[f"L{i}"] = [4.0 * i, 0, 0]
+        nodes[f"U{i}"] = [4.0 * i, 0, 4.0]
+
+    def add(one: str, other: str, group: str) -> None:
+        bar = {"nodes": [one, other], "section": "bar", "material": "steel", "groups": [group]}
+        members[f"{one}-{other}"] = {**bar, "kind": "truss"}
+
+    for i in range(panels):
+        add(f"L{i}", f"L{i + 1}", "bottom chord")
+        add(f"U{i}", f"U{i + 1}", "top chord")
+        add(f"L{i}", f"U{i + 1}", "diagonals")
+    for i in range(panels + 1):
+        add(f"L{i}", f"U{i}", "verticals")
+    forces = {f"L{i}": [0, 0, -2e4] for i in range(1, panels)}
+    lean = {f"L{i}": [0, 0, -1e4 * i] for i in range(1, panels)}
+    sensors = {
+        f"{node} {way}": {
+            "kind": "displacement",
+            "node": node,
+            "direction": direction,
+            "unit": "mm",
+            "noise": 0.02,
+        }
+        for node in nodes
+        for way, direction in (("z", [0, 0, 1]), ("x", [1, 0, 0]))
+        if node not in ("L0", f"L{panels}")
+    }
+    groups = {m["groups"][0]: 1.0 for m in members.values()}
+    content = {
+        "rga_model": 1,
+        "name": "six panels",
+        "plane": "xz",
+        "materials": {"steel": {"E": 2.0e11, "nu": 0.3, "alpha": 1.2e-5, "density": 7850}},
+        "sections": {"bar": {"A": 0.004, "Iy": 8e-6, "Iz": 8e-6, "J": 1e-6}},
+        "nodes": nodes,
+        "members": members,
+        "supports": {
+            "west": {"node": "L0", "fixed": ["ux", "uz"]},
+            "east": {"node": f"L{panels}", "fixed": ["uz"]},
+        },
+        "context": {
+            "crowd": {"unit": "kPa", "range": [0, 4]},
+            "lean": {"unit": "-", "range": [0, 1]},
+            "warmth": {"unit": "K", "range": [-20, 20]},
+            "bearing": {"unit": "log10 N/m", "range": [6, 8]},
+        },
+        "effects": {
+            "load": {"kind": "nodal_load", "forces": forces, "factor": {"context": "crowd"}},
+            "more": {"kind": "nodal_load", "forces": lean, "factor": {"context": "lean"}},
+            "warm": {"kind": "temperature", "groups": groups, "delta": {"context": "warmth"}},
+            "spring": {
+                "kind": "support_spring",
+                "support": "east",
+                "dof": "ux",
+                "stiffness": {"context": "bearing", "log10": True},
+            },
+        },
+        "sensors": sensors,
+    }
+    return read_model(json.loads(json.dumps(content)), "six panels")
+
+
+def drawn(model: Model, rows: int, seed: int) -> FloatArray:
+    low, high = np.array([one.range for one in model.context.values()]).T
+    return np.asarray(low + (high - low) * np.random.default_rng(seed).random((rows, len(low))))
+
+
+def measured(model: Model, contexts: FloatArray, seed: int) -> FloatArray:
+    clean = Simulator(model).predict(dict(zip(model.context, contexts.T, strict=True)))
+    return np.asarray(clean + 0.02 * np.random.default_rng(seed).standard_normal(clean.shape))
+
+
+def noise_of(model: Model) -> FloatArray:
+    return np.full(len(model.sensors), 0.02)
+
+
+def error(model: Model, found: FloatArray, truth: FloatArray) -> float:
+    _, scale = standard(np.array([one.range for one in model.context.values()]))
+    return float((((found - truth) / scale) ** 2).mean())
+
+
+@pytest.fixture(scope="module")
+def other(model: Model) -> Model:
+    """The structure as it is: a softer bottom chord, a stiffer stretch of diagonals."""
+    unknowns = Unknowns(model)
+    values = unknowns.centre.copy()
+    names = [part.name for part in unknowns.parts]
+    values[names.index("stiffness of bottom chord")] = -0.15
+    values[names.index("stiffness of diagonals")] = 0.1
+    return unknowns.at(values)
+
+
+def test_unknowns_and_contexts_are_found_without_a_label(model: Model, other: Model) -> None:
+    contexts, unknowns = drawn(model, 60, 1), Unknowns(model)
+    readings, noise = measured(other, contexts, 2), noise_of(model)
+    found = infer_jointly(unknowns, readings, noise, drawn(model, 300, 3))
+    names = [part.name for part in unknowns.parts]
+    chord = found.values[names.index("stiffness of bottom chord")]
+    assert -0.2 < chord < -0.08
+    twin = Simulator(model)
+    alone = posterior_mode(
+        lambda c: twin.predict(dict(zip(model.context, c.T, strict=True))),
+        lambda c: twin.jacobian(dict(zip(model.context, c.T, strict=True))),
+        readings,
+        np.diag(noise**2),
+        np.array([one.range for one in model.context.values()]),
+        np.tile(unknowns_middle(model), (len(readings), 1)),
+    )
+    assert error(model, found.rows.contexts, contexts) < 0.5 * error(model, alone.value, contexts)
+    left = readings - found.twin.simulate(found.rows.contexts)
+    assert np.sqrt((left**2).mean()) < 0.03
+
+
+def unknowns_middle(model: Model) -> FloatArray:
+    return np.mean([one.range for one in model.context.values()], axis=1)
+
+
+def test_where_nothing_is_hidden_nothing_is_found(model: Model) -> None:
+    unknowns = Unknowns(model)
+    pins = unknowns.centre.copy()
+    pins[["bending" in part.name for part in unknowns.parts]] = -2.0
+    contexts = drawn(model, 60, 4)
+    found = infer_jointly(
+        unknowns, measured(unknowns.at(pins), contexts, 5), noise_of(model), drawn(model, 300, 6)
+    )
+    stiffness = [part.name.startswith("stiffness") for part in unknowns.parts]
+    assert np.abs(found.values[stiffness]).max() < 0.06
+    assert np.abs(found.gains - 1.0).max() < 0.02
+    assert np.sqrt(found.variance.mean()) < 0.023
+
+
+def test_load_tests_make_it_surer_and_are_the_only_labels(model: Model, other: Model) -> None:
+    contexts, unknowns = drawn(model, 40, 7), Unknowns(model)
+    readings, noise, source = measured(other, contexts, 8), noise_of(model), drawn(model, 300, 9)
+    labelled = drawn(model, 20, 10)
+    tests = Rows(labelled, measured(other, labelled, 11))
+    without = infer_jointly(unknowns, readings, noise, source)
+    beside = infer_jointly(unknowns, readings, noise, source, load_tests=tests)
+    assert np.trace(beside.doubt) < np.trace(without.doubt)
+    again = infer_jointly(unknowns, readings, noise, source)
+    np.testing.assert_array_equal(without.values, again.values)
+
+
+def test_missing_readings_are_left_out(model: Model, other: Model) -> None:
+    contexts, unknowns = drawn(model, 40, 12), Unknowns(model)
+    readings = measured(other, contexts, 13)
+    readings[::3, 4] = np.nan
+    found = infer_jointly(unknowns, readings, noise_of(model), drawn(model, 300, 14))
+    assert np.isfinite(found.values).all()
+    assert error(model, found.rows.contexts, contexts) < 0.2
+
+
+def test_derivatives_are_those_of_the_readings(model: Model) -> None:
+    contexts, unknowns = drawn(model, 6, 15), Unknowns(model)
+    values = unknowns.centre + 0.3 * unknowns.spread
+    here, by_contexts, by_unknowns = unknowns.linearise(contexts, values)
+    table = dict(zip(model.context, contexts.T, strict=True))
+    np.testing.assert_allclose(here, Simulator(unknowns.at(values)).predict(table), atol=1e-9)
+    for number in range(len(values)):
+        step = 1e-4 * unknowns.spread[number] * (np.arange(len(values)) == number)
+        ahead, behind = (unknowns.linearise(contexts, values + way * step)[0] for way in (1, -1))
+        slope = (ahead - behind) / (2.0 * step[number])
+        np.testing.assert_allclose(
+            by_unknowns[:, :, number], slope, atol=1e-5 + 1e-4 * np.abs(slope).max()
+        )
+    assert by_contexts.shape == (*here.shape, 4)
+
+
+def test_the_model_with_its_unknowns_is_a_model_file(model: Model, tmp_path: Path) -> None:
+    unknowns = Unknowns(model)
+    extended = unknowns.at(unknowns.centre + 0.5 * unknowns.spread)
+    write_model(extended, tmp_path / "model.json")
+    again = read_model(json.loads((tmp_path / "model.json").read_text()), "again")
+    table = dict(zip(model.context, drawn(model, 5, 16).T, strict=True))
+    np.testing.assert_array_equal(
+        Simulator(again).predict(table), Simulator(extended).predict(table)
+    )
+
+
+def test_a_context_that_no_sensor_sees_is_told(model: Model) -> None:
+    contexts, noise = drawn(model, 50, 17), noise_of(model)
+    seen = unseen_share(Simulator(model), contexts, noise)
+    assert seen[0] < 0.1
+    deaf = unseen_share(Simulator(model), contexts, 1e6 * noise)
+    assert (deaf > BLIND).all()

@@ -1,0 +1,73 @@
+"""Rows of the table that know more: the joint posterior, the polished network, the true frame."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rga.benchmark.loi.data import Calibration, calibration_of
+from rga.benchmark.loi.examination import Examination
+from rga.benchmark.loi.method import Calibrated
+from rga.benchmark.loi.methods.joint import joint_posterior
+from rga.benchmark.loi.methods.knows_frame import knows_the_frame
+from rga.benchmark.loi.methods.modes import maximum_posterior
+from rga.benchmark.loi.methods.polished import polished_network
+from rga.benchmark.loi.score import Score
+from rga.benchmark.loi.setting import Sizes, Task
+from rga.inference.rows import Rows
+
+LITTLE = Sizes(source=400, unlabelled=60, test=80)
+
+
+def known(gap: str) -> Calibration:
+    found = calibration_of(Task(3, 0, gap, "same", "", (), LITTLE))
+    none = Rows(found.problem.load_tests.contexts[:0], found.problem.load_tests.readings[:0])
+    return replace(found, problem=replace(found.problem, load_tests=none))
+
+
+def scored(calibrated: Calibrated, data: Calibration) -> Score:
+    return Examination(data.test, data.problem.ranges, 30).score(calibrated)
+
+
+@pytest.fixture(scope="module")
+def full() -> Calibration:
+    return known("all")
+
+
+def test_the_joint_posterior_comes_near_the_floor(full: Calibration) -> None:
+    floor = scored(knows_the_frame(full.problem, full.usual.twin), full)
+    blind = scored(maximum_posterior(full.problem), full)
+    joint = joint_posterior(full.problem)
+    found = scored(joint, full)
+    assert floor.error is not None
+    assert found.error is not None
+    assert blind.error is not None
+    assert floor.error < found.error < 0.5 * blind.error
+    assert found.coverage is not None
+    assert np.mean(found.coverage) > 0.65
+
+    # What it has seen again it still knows, and a sensor that lies weighs less.
+    recent = full.problem.real[:30].copy()
+    recent[:, 5] += 8.0
+    again = joint.recalibrated(recent)
+    assert (scored(again, full).error or 1.0) < 1.2 * found.error
+
+
+def test_the_polished_network_leaves_hardly_more_than_the_noise() -> None:
+    data = known("noise only")
+    found = scored(polished_network(data.problem), data)
+    noise = float((data.test.noise**2).mean())
+    assert found.rg is not None
+    assert found.rg < 1.2 * noise
+    assert (found.error or 1.0) < 0.3
+
+
+def test_nothing_but_load_tests_is_labelled(full: Calibration) -> None:
+    """The problem holds no context of a measured row; load tests are taken where they are given."""
+    fields = set(full.problem.__dataclass_fields__)
+    assert fields == {"model", "simulator", "noise", "source", "real", "load_tests", "seed"}
+    tests = calibration_of(Task(3, 0, "all", "same", "", (), LITTLE)).problem.load_tests
+    with_tests = replace(full.problem, load_tests=Rows(tests.contexts[:10], tests.readings[:10]))
+    alone = polished_network(full.problem).infer(full.test.readings[:5]).value
+    beside = polished_network(with_tests).infer(full.test.readings[:5]).value
+    np.testing.assert_array_equal(alone, beside)
