@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rga.errors import InputError
 from rga.inference import Rows, Unknowns, infer_jointly
 from rga.inference.identifiability import BLIND, unseen_share
 from rga.inference.posterior_mode import posterior_mode, standard
@@ -204,3 +205,27 @@ def test_a_context_that_no_sensor_sees_is_told(model: Model) -> None:
     assert seen[0] < 0.1
     deaf = unseen_share(Simulator(model), contexts, 1e6 * noise)
     assert (deaf > BLIND).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"readings": np.zeros((3, 2))}, "readings have the shape"),
+        ({"readings": np.full((3, 24), np.nan)}, "no row to infer from"),
+        ({"noise": np.zeros(24)}, "noise of the sensors"),
+        ({"source": np.full((3, 4), np.inf)}, "source are not all finite"),
+        ({"load_tests": Rows(np.zeros((2, 4)), np.zeros((3, 24)))}, "3 rows of readings and 2"),
+    ],
+)
+def test_bad_input_gets_one_clear_error(
+    model: Model, change: dict[str, FloatArray], message: str
+) -> None:
+    assert len(model.sensors) == 24
+    given = {
+        "readings": np.zeros((3, 24)),
+        "noise": noise_of(model),
+        "source": drawn(model, 5, 18),
+        **change,
+    }
+    with pytest.raises(InputError, match=message):
+        infer_jointly(Unknowns(model), **given)  # type: ignore[arg-type]
