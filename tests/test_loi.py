@@ -528,7 +528,7 @@ def test_wrong_rows_and_drifts_are_refused(few_methods: dict[str, Row], tmp_path
 
 def test_tasks_have_names_of_their_own() -> None:
     tasks = Setting().tasks(("a", "b"))
-    assert len({one.id for one in tasks}) == len(tasks) == 2 * (10 * 2 + 3 * (5 + 3))
+    assert len({one.id for one in tasks}) == len(tasks) == 2 * (10 * 2 + Setting.few * (5 + 3))
     paper = replace(tasks[0], sizes=replace(tasks[0].sizes, repository="paper"))
     assert paper.id != tasks[0].id
     assert {one.manner for one in tasks} == {*MANNERS, DRIFTING}

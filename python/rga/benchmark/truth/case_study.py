@@ -22,17 +22,7 @@ _MM, _MICROSTRAIN = 0.15, 1.5  # noise of the sensors
 
 def case_study_bridge() -> Bridge:
     """The twin's model of the bridge; the same every time."""
-    draft = Draft(
-        "case study footbridge",
-        {"steel": steel(2.05e11)},
-        {
-            "chord": section(0.0085, 1.2e-5, 4e-7),
-            "diagonal": section(0.0042, 4e-6, 2e-7),
-            "vertical": section(0.0050, 4e-5, 2e-5),
-            "beam": section(0.0060, 8e-5, 2e-5),
-            "rod": section(0.0012, 1.2e-7, 2e-7),
-        },
-    )
+    draft = drafted("case study footbridge")
     steelwork(draft, _PANELS)
     _contexts(draft)
     actions(draft, _PANELS)
@@ -47,6 +37,21 @@ def case_study_bridge() -> Bridge:
         floor=["bottom chord"],
         jointed=["bottom chord", "top chord", "end posts", "diagonals"],
         area_load="crowd north",
+    )
+
+
+def drafted(name: str) -> Draft:
+    """A model of these sections, without a member so far."""
+    return Draft(
+        name,
+        {"steel": steel(2.05e11)},
+        {
+            "chord": section(0.0085, 1.2e-5, 4e-7),
+            "diagonal": section(0.0042, 4e-6, 2e-7),
+            "vertical": section(0.0050, 4e-5, 2e-5),
+            "beam": section(0.0060, 8e-5, 2e-5),
+            "rod": section(0.0012, 1.2e-7, 2e-7),
+        },
     )
 
 

@@ -5,8 +5,8 @@ None of its contexts is measured: the twin has to infer them all.
 
 from __future__ import annotations
 
-from .case_study import SIDES, SPAN, actions, low, steelwork, top
-from .draft import Draft, ModelDict, section, steel
+from .case_study import SIDES, SPAN, actions, drafted, low, steelwork, top
+from .draft import Draft, ModelDict
 
 PANELS = 20
 #: sides of the six panels of the bottom chord that may have lost area
@@ -17,17 +17,7 @@ _MM = 0.3  # noise of the sensors
 
 def full_case_study() -> ModelDict:
     """The twin's model of the bridge; the same every time."""
-    draft = Draft(
-        "footbridge, full case study",
-        {"steel": steel(2.05e11)},
-        {
-            "chord": section(0.0085, 1.2e-5, 4e-7),
-            "diagonal": section(0.0042, 4e-6, 2e-7),
-            "vertical": section(0.0050, 4e-5, 2e-5),
-            "beam": section(0.0060, 8e-5, 2e-5),
-            "rod": section(0.0012, 1.2e-7, 2e-7),
-        },
-    )
+    draft = drafted("footbridge, full case study")
     steelwork(draft, PANELS)
     for side in SIDES:
         for i in _WORN:
