@@ -24,10 +24,11 @@ def plot(result: Result, folder: Path) -> None:
 def methods(result: Result) -> Canvas:
     """Error and RG of each method under the full gap, level A, with 90 % intervals."""
     gap, manner = result.setting.gaps[-1], result.setting.manners[0]
-    own = [row for row in result.rows if row not in FLOORS]
     errors = {
-        row: mean(scores(result.outcomes, row, gap, manner, lambda one: one.error)) for row in own
+        row: mean(scores(result.outcomes, row, gap, manner, lambda one: one.error))
+        for row in result.rows
     }
+    own = [row for row, error in errors.items() if error is not None]
     gaps = {
         row: mean(scores(result.outcomes, row, gap, manner, lambda one: one.rg))
         for row in result.rows
@@ -68,8 +69,9 @@ def levels(result: Result) -> Canvas:
     rows = -(-len(drifts) // columns)
     canvas = Canvas(figsize=(4.4 * columns, 3.4 * rows + 1.2), layout="constrained")
     panels = canvas.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    streamed = [one.row for one in result.outcomes if one.played and one.row not in FLOORS]
     for axes, drift in zip(panels, drifts, strict=False):
-        for number, row in enumerate(one for one in result.rows if one not in FLOORS):
+        for number, row in enumerate(dict.fromkeys(streamed)):
             found = [
                 mean(
                     mean_lives(

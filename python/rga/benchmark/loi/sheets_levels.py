@@ -83,7 +83,7 @@ def _levels(result: Result, title: str, drifts: Sequence[str]) -> Sheet:
         headings += [f"{level}: Error", "RG [mm²]", *([] if level == "A" else ["AD (seen)"])]
     true = mean(mean_lives(lives(result.outcomes, TRUE_CONTEXT, drifts, LEVELS[0]), whole(_rg)))
     rows = []
-    for row in result.rows:
+    for row in _streamed(result):
         cells = [row]
         for level in LEVELS:
             lived = lives(result.outcomes, row, drifts, level)
@@ -104,7 +104,7 @@ def _worth(result: Result, name: str, drifts: Sequence[str]) -> Sheet:
     ]  # fmt: skip
 
     rows = []
-    for row in result.rows:
+    for row in _streamed(result):
         if row in FLOORS:
             continue
         a, b, c = (lives(result.outcomes, row, drifts, level) for level in LEVELS)
@@ -126,6 +126,11 @@ def _worth(result: Result, name: str, drifts: Sequence[str]) -> Sheet:
         cells = ["" if one is None else one.told(form) for one, form in differences]
         rows.append([row, *cells])
     return Sheet(f"What recalibration changes: drifts {name}", headings, rows)
+
+
+def _streamed(result: Result) -> list[str]:
+    """Rows that lived through streams."""
+    return [row for row in result.rows if lives(result.outcomes, row, result.setting.drifts, "A")]
 
 
 def _delay(played: Sequence[Played]) -> str:
