@@ -60,7 +60,7 @@ class Nearest:
     def simulate(self, contexts: FloatArray) -> FloatArray:
         return self.problem.simulate(contexts) + self.level
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         off = recent - self.simulate(self.infer(recent).value)
         return replace(self, level=self.level + off.mean(axis=0), learned=[len(recent)])
 
@@ -305,7 +305,7 @@ class Levelled:
     def simulate(self, contexts: FloatArray) -> FloatArray:
         return self.inner.simulate(contexts) + self.level
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         off = recent - self.simulate(self.infer(recent).value)
         return replace(self, level=self.level + off.mean(axis=0))
 
@@ -386,7 +386,7 @@ def test_floors_are_in_order() -> None:
     assert rg[BEST_CONTEXT] == pytest.approx(rg[NOISE] * (1.0 - 8.0 / 84.0), rel=0.08)
 
 
-def test_each_block_is_inferred_by_the_state_to_which_it_is_most_usual() -> None:
+def test_each_block_is_inferred_by_the_state_after_which_it_is_likeliest() -> None:
     known = calibration_of(task("same"))
     readings = known.test.readings.copy()
     readings[20:] += 5.0
@@ -395,12 +395,12 @@ def test_each_block_is_inferred_by_the_state_to_which_it_is_most_usual() -> None
     first = State.of(one, known.problem.real, known.problem.real)
     second = State.of(other, known.problem.real + 5.0, known.problem.real)
     examination = Examination(shifted, known.problem.ranges, 20)
-    both, alone = examination.score_of_most_usual([first, second]), examination.score(one)
+    both, alone = examination.score_of_likeliest([first, second]), examination.score(one)
     clean = Examination(known.test, known.problem.ranges, 20).score(one)
     assert both.error == pytest.approx(clean.error)
     assert both.rg == pytest.approx(clean.rg)
     assert alone.rg > both.rg
-    assert examination.score_of_most_usual([first]) == alone
+    assert examination.score_of_likeliest([first]) == alone
 
 
 def test_intervals_over_splits() -> None:

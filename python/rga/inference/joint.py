@@ -11,7 +11,7 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.inference.corrected import CorrectedTwin
-from rga.inference.joint_search import Search
+from rga.inference.joint_search import Beforehand, Search
 from rga.inference.rows import Rows
 from rga.inference.unknowns import Unknowns
 from rga.model.parameter import FloatArray
@@ -20,6 +20,8 @@ from rga.simulation import Simulator
 #: rounds in which rows are given another chance to leave a wrong mode, steps of each; steps from an
 #: earlier result
 ROUNDS, STEPS, AGAIN = 3, 8, 3
+#: rounds and steps from what is known beforehand
+LATER = 2, 6
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,9 @@ class Joint:
         unknowns: of the structure.
         values: of them, float[unknowns].
         gains: of the sensors, float[sensors].
+        offsets: of the sensors, in their units, float[sensors].
+        sure: covariance of unknowns, gains and offsets in units of their priors,
+            float[parameters, parameters].
         variance: of what readings still differ by from the twin, float[sensors].
         doubt: covariance of readings because unknowns are not sure, float[sensors, sensors].
         rows: measured rows with the contexts found; load tests are not among them.
@@ -38,15 +43,22 @@ class Joint:
     unknowns: Unknowns
     values: FloatArray
     gains: FloatArray
+    offsets: FloatArray
+    sure: FloatArray
     variance: FloatArray
     doubt: FloatArray
     rows: Rows
 
     @property
+    def parameters(self) -> FloatArray:
+        """Unknowns, gains and offsets, float[unknowns + 2 sensors]."""
+        return np.concatenate([self.values, self.gains, self.offsets])
+
+    @property
     def twin(self) -> CorrectedTwin:
         """The model with its unknowns as they were found."""
         simulator = Simulator(self.unknowns.at(self.values))
-        return CorrectedTwin(simulator, self.gains)
+        return CorrectedTwin(simulator, self.gains, self.offsets)
 
     @property
     def covariance(self) -> FloatArray:
@@ -62,6 +74,7 @@ def infer_jointly(
     *,
     load_tests: Rows | None = None,
     start: Joint | None = None,
+    prior: Joint | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Joint:
     """The mode of the joint posterior of contexts and unknowns, by Gauss-Newton steps.
@@ -76,7 +89,10 @@ def infer_jointly(
         noise: standard deviation of each sensor's noise, float[sensors].
         source: contexts to start from, float[m, contexts].
         load_tests: measured rows whose contexts are known.
-        start: an earlier result, about which unknowns are looked for again.
+        start: an earlier result, about which unknowns are looked for again. Its rows are among the
+            measured ones: a sensor that has changed since weighs less, and is not corrected.
+        prior: an earlier result that is known beforehand: the rows that it came from need not be
+            among the measured ones. Since then unknowns may have moved, and sensors may lie.
         progress: told the share that is done.
 
     Raises:
@@ -84,11 +100,14 @@ def infer_jointly(
             that are not finite.
     """
     _check(unknowns, readings, noise, source, load_tests)
-    begun = None
+    beforehand = Beforehand.fresh(unknowns, len(noise))
+    if prior is not None:
+        beforehand = Beforehand.later(prior.parameters, prior.sure, len(prior.values))
+    search = Search(unknowns, readings, noise, load_tests, beforehand)
+    rounds, steps = (ROUNDS, STEPS) if prior is None else LATER
     if start is not None:
-        begun = np.concatenate([start.values, start.gains]), start.variance
-    search = Search(unknowns, readings, noise, load_tests, begun)
-    rounds, steps = (ROUNDS, STEPS) if start is None else (1, AGAIN)
+        search.begin(start.parameters, start.variance)
+        rounds, steps = 1, AGAIN
     for number in range(rounds):
         search.place(source)
         for step in range(steps):
@@ -133,7 +152,7 @@ def _check(
 def _told(search: Search) -> Joint:
     """What was found, with how sure it is."""
     search.solve()
-    values, gains = np.split(search.value, [search.count])
+    values, gains, offsets = search.split(search.value)
     sure = search.covariance + search.covariance @ search.pull @ search.covariance
     moved = search.slopes @ np.linalg.cholesky(sure)
     moved = moved.transpose(1, 0, 2).reshape(len(gains), -1)
@@ -141,6 +160,8 @@ def _told(search: Search) -> Joint:
         unknowns=search.unknowns,
         values=values,
         gains=gains,
+        offsets=offsets,
+        sure=sure,
         variance=search.variance,
         doubt=moved @ moved.T / max(len(search.slopes), 1),
         rows=Rows(search.contexts[: search.many], search.readings[: search.many]),

@@ -1,6 +1,6 @@
 """What a structure may have otherwise than its model says, as parameters to be inferred."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,8 @@ STRETCHES, MANY = 5, 12
 FIXITY, FIXITY_SPREAD = -0.5, 0.6
 #: decimal logarithm of the stiffness [N/m] of a bearing that the model takes as rigid
 BEARING, BEARING_SPREAD = 9.0, 0.7
+#: spread of the settlement of a support [m], and what it cannot exceed
+SETTLEMENT, SUNK = 0.005, 0.1
 #: share of a spread by which unknowns are moved to see how derivatives change
 BENT = 0.1
 #: rows by which it is seen
@@ -41,6 +43,7 @@ class Unknown:
         centre, spread: of its normal prior.
         bounds: beyond which it makes no sense.
         follows: context that it is a rate of; None where it is constant.
+        straight: whether readings are straight in it.
     """
 
     name: str
@@ -51,6 +54,7 @@ class Unknown:
     spread: float
     bounds: tuple[float, float]
     follows: str | None = None
+    straight: bool = False
 
     def at(self, value: float) -> dict[str, Any]:
         """The effect with the unknown at a value."""
@@ -64,7 +68,8 @@ class Unknowns:
     """All unknowns of a model, and the model with them.
 
     Stretches of every group of members may be stiffer or softer, pinned joints may be stiff, rigid
-    bearings may give way, and the sun may warm one side more than the other.
+    bearings may give way, supports may have settled, and the sun may warm one side more than the
+    other.
 
     Args:
         model: as it was given.
@@ -80,7 +85,8 @@ class Unknowns:
         self.model = model
         self._bending = with_bending(model)
         self.parts = [
-            *_stretches(model), *_joints(self._bending), *_bearings(model), *_sides(model)
+            *_stretches(model), *_joints(self._bending), *_bearings(model), *_settlements(model),
+            *_sides(model),
         ]  # fmt: skip
         self.centre = np.array([part.centre for part in self.parts])
         self.spread = np.array([part.spread for part in self.parts])
@@ -115,23 +121,44 @@ class Unknowns:
         Returns:
             float[n, sensors], float[n, sensors, contexts] and float[n, sensors, unknowns].
         """
-        count, model = contexts.shape[1], self.model
-        columns = np.tile(values, (len(contexts), 1))
-        rates = {
-            number: list(model.context).index(part.follows)
-            for number, part in enumerate(self.parts)
-            if part.follows is not None
-        }
-        for number, followed in rates.items():
-            columns[:, number] *= contexts[:, followed]
-        names = [*model.context, *(part.name for part in self.parts)]
-        table = dict(zip(names, np.hstack([contexts, columns]).T, strict=True))
-        readings, slopes = self._driven.predict(table), self._driven.jacobian(table)
-        by_contexts, by_unknowns = slopes[:, :, :count].copy(), slopes[:, :, count:].copy()
+        count, rates = contexts.shape[1], self._rates
+        straight = [number for number, part in enumerate(self.parts) if part.straight]
+        driven = [number for number, part in enumerate(self.parts) if not part.straight]
+        readings = self.predict(contexts, values)
+        by_unknowns = np.empty((*readings.shape, len(values)))
+        # Where readings are straight, a difference is the derivative. That it changes with
+        # contexts is left out: it hardly does.
+        moved = np.vstack([values, values + np.diag(self.spread)[straight]])
+        one = np.tile(contexts.mean(axis=0), (len(moved), 1))
+        there = self.predict(one, moved)
+        by_unknowns[:, :, straight] = (there[1:] - there[0]).T / self.spread[straight]
+        slopes = self._of_driven.jacobian(self._table(contexts, values, driven))
+        by_contexts, by_unknowns[:, :, driven] = slopes[:, :, :count].copy(), slopes[:, :, count:]
         for number, followed in rates.items():
             by_contexts[:, :, followed] += by_unknowns[:, :, number] * values[number]
             by_unknowns[:, :, number] *= contexts[:, None, followed]
         return readings, by_contexts, by_unknowns
+
+    def predict(self, contexts: FloatArray, values: FloatArray) -> FloatArray:
+        """Readings of contexts, float[n, contexts], and unknowns, float[unknowns] or one a row."""
+        return self._of_all.predict(self._table(contexts, values, range(len(self.parts))))
+
+    def _table(
+        self, contexts: FloatArray, values: FloatArray, chosen: Sequence[int]
+    ) -> dict[str, FloatArray]:
+        """Columns of contexts and of chosen unknowns, rates times what they follow."""
+        columns = np.array(np.broadcast_to(values, (len(contexts), len(self.parts))))
+        for number, followed in self._rates.items():
+            columns[:, number] *= contexts[:, followed]
+        names = [*self.model.context, *(self.parts[number].name for number in chosen)]
+        return dict(zip(names, np.hstack([contexts, columns[:, chosen]]).T, strict=True))
+
+    @cached_property
+    def _rates(self) -> dict[int, int]:
+        """Numbers of unknowns that are rates, and of the contexts that they follow."""
+        names = list(self.model.context)
+        followed = {number: part.follows for number, part in enumerate(self.parts)}
+        return {number: names.index(name) for number, name in followed.items() if name is not None}
 
     def bend(self, contexts: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives by contexts, and how they change with each unknown about its centre.
@@ -149,14 +176,24 @@ class Unknowns:
             return Simulator(self.at(values)).jacobian(table)
 
         here = slopes(self.centre)
-        moved = [slopes(self.centre + step) - here for step in np.diag(BENT * self.spread)]
+        moved = [
+            np.zeros_like(here) if part.straight else slopes(self.centre + step) - here
+            for part, step in zip(self.parts, np.diag(BENT * self.spread), strict=True)
+        ]
         return here, np.stack(moved) / BENT
 
     @cached_property
-    def _driven(self) -> Simulator:
-        """The simulator in which each unknown is a context of its own."""
+    def _of_all(self) -> Simulator:
+        return self._driven(self.parts)
+
+    @cached_property
+    def _of_driven(self) -> Simulator:
+        return self._driven([part for part in self.parts if not part.straight])
+
+    def _driven(self, parts: Sequence[Unknown]) -> Simulator:
+        """The simulator in which each of some unknowns is a context of its own."""
         content = model_content(self._bending)
-        for part in self.parts:
+        for part in parts:
             content["context"][part.name] = {"unit": "-", "range": list(part.bounds)}
             driven = {"context": part.name, **part.driven}
             content["effects"][part.name] = {**part.effect, part.key: driven}
@@ -224,6 +261,28 @@ def _bearings(model: Model) -> Iterator[Unknown]:
                 BEARING,
                 BEARING_SPREAD,
                 (BEARING - 3.0, BEARING + 3.0),
+            )
+
+
+def _settlements(model: Model) -> Iterator[Unknown]:
+    """Upright settlement of supports."""
+    settled = {
+        name
+        for effect in model.effects.values()
+        if effect.kind == "support_settlement"
+        for name in listed(getattr(effect, "support"))  # noqa: B009
+    }
+    for name, support in model.supports.items():
+        if "uz" in support.fixed and name not in settled:
+            yield Unknown(
+                f"settlement of {name}",
+                {"kind": "support_settlement", "support": name, "dof": "uz"},
+                "displacement",
+                {},
+                0.0,
+                SETTLEMENT,
+                (-SUNK, SUNK),
+                straight=True,
             )
 
 

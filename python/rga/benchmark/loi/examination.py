@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.benchmark.loi.drift import Measured
-from rga.benchmark.loi.levels import State
+from rga.benchmark.loi.levels import State, most_likely
 from rga.benchmark.loi.method import Calibrated, Estimate
 from rga.benchmark.loi.score import Score, score
 from rga.model.parameter import FloatArray
@@ -24,42 +24,38 @@ class Examination:
         self._measured, self._ranges = measured, ranges
         self._block = block
         # Methods are kept, so that no other one gets the id of one.
-        self._known: dict[int, tuple[Calibrated, tuple[Estimate, FloatArray, FloatArray]]] = {}
+        self._known: dict[int, tuple[Calibrated, tuple[Estimate, FloatArray]]] = {}
 
     def score(self, method: Calibrated) -> Score:
         """Of one method for all rows."""
-        estimate, simulated, _ = self._inferred(method)
+        estimate, simulated = self._inferred(method)
         return score(self._measured, estimate, simulated, self._ranges)
 
-    def score_of_most_usual(self, states: Sequence[State]) -> Score:
-        """Of the state, for each block of rows, to which the gaps there are most usual."""
+    def score_of_likeliest(self, states: Sequence[State]) -> Score:
+        """Of the state, for each block of rows, after which what it leaves of them is likeliest."""
         known = [self._inferred(one.calibrated) for one in states]
+        left = [self._measured.readings - simulated for _, simulated in known]
         rows = np.arange(len(self._measured.readings))
         chosen = np.zeros_like(rows)
         for first in range(0, len(rows), self._block):
             block = slice(first, first + self._block)
-            likeness = [
-                state.likeness(gaps[block]) for state, (*_, gaps) in zip(states, known, strict=True)
-            ]
-            chosen[block] = np.argmax(likeness)
+            chosen[block] = most_likely(states, [one[block] for one in left])
 
         def picked(several: Sequence[FloatArray]) -> FloatArray:
             return np.asarray(np.stack(several)[chosen, rows])
 
-        spreads = [estimate.spread for estimate, *_ in known if estimate.spread is not None]
-        value = picked([estimate.value for estimate, *_ in known])
+        spreads = [estimate.spread for estimate, _ in known if estimate.spread is not None]
+        value = picked([estimate.value for estimate, _ in known])
         return score(
             self._measured,
             Estimate(value, picked(spreads) if spreads else None),
-            picked([simulated for _, simulated, _ in known]),
+            picked([simulated for _, simulated in known]),
             self._ranges,
         )
 
-    def _inferred(self, method: Calibrated) -> tuple[Estimate, FloatArray, FloatArray]:
-        """Estimate, what is simulated there, and gaps of rows [mm^2]."""
+    def _inferred(self, method: Calibrated) -> tuple[Estimate, FloatArray]:
+        """Estimate, and what is simulated there."""
         if id(method) not in self._known:
             estimate = method.infer(self._measured.readings)
-            simulated = method.simulate(estimate.value)
-            gaps = ((self._measured.readings - simulated) ** 2).mean(axis=1)
-            self._known[id(method)] = method, (estimate, simulated, gaps)
+            self._known[id(method)] = method, (estimate, method.simulate(estimate.value))
         return self._known[id(method)][1]

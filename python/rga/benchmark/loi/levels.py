@@ -6,14 +6,14 @@ an alarm. A method infers row by row, or forward in time, so that each state inf
 
 What is watched is the log of the gap of each row. The residuals themselves follow the contexts in a
 few patterns that all sensors have in common, and far more rows than a calibration has would be
-needed to tell these from a change.
+needed to tell these from a change. Stored states are told apart by the residuals of each sensor.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import ttest_ind
+from scipy.stats import t, ttest_ind
 
 from rga.benchmark.loi.method import Calibrated
 from rga.benchmark.loi.setting import Sizes
@@ -27,13 +27,13 @@ UNLIKELY = 0.01
 
 @dataclass(frozen=True)
 class State:
-    """A calibrated method, and what it leaves of measured rows.
+    """A calibrated method, and what it leaves of measured rows: measured minus simulated.
 
     Attributes:
         calibrated: the method.
-        ordinary: gaps of the rows of the first calibration [mm^2], float[unlabelled].
-        stream: the same of the stream, float[stream].
-        usual: gaps that are usual now [mm^2], float[n].
+        ordinary: of the rows of the first calibration, float[unlabelled, sensors].
+        stream: of the rows of the stream, float[stream, sensors].
+        usual: what is usual now, float[n, sensors].
     """
 
     calibrated: Calibrated
@@ -50,28 +50,63 @@ class State:
             real: rows of the first calibration, float[unlabelled, sensors].
             rows: of the stream, float[stream, sensors].
         """
-        ordinary = gaps(calibrated, real)
-        return cls(calibrated, ordinary, gaps(calibrated, rows), ordinary)
+        ordinary = residuals(calibrated, real)
+        return cls(calibrated, ordinary, residuals(calibrated, rows), ordinary)
 
     def settled(self, latest: slice) -> "State":
-        """The same, to which the gaps of the latest rows are usual."""
+        """The same, to which the latest rows are usual."""
         return replace(self, usual=self.stream[latest])
 
     def monitor(self, sizes: Sizes) -> SyncMonitor:
         """Watches for gaps that are not usual."""
-        return SyncMonitor(np.log(self.usual)[:, None], arl0=sizes.arl0)
+        return SyncMonitor(self.usual_gaps()[:, None], arl0=sizes.arl0)
 
-    def likeness(self, gaps: FloatArray) -> float:
-        """How usual gaps of rows [mm^2], float[n], are to this state, 0 to 1.
+    def usual_gaps(self) -> FloatArray:
+        """Logs of gaps that are usual, float[n].
 
-        The probability of mean logs that differ as much (Welch, Biometrika 34, 1947).
+        Those of the usual rows are too small, since the method has learned from these: a new row
+        has (n + 1) / (n - 1) times the variance of rows to which the mean of each sensor is fitted.
         """
-        return float(ttest_ind(np.log(gaps), np.log(self.usual), equal_var=False).pvalue)
+        count = len(self.usual)
+        return np.asarray(log_gaps(self.usual) + np.log((count + 1.0) / (count - 1.0)))
 
-    def harms(self, before: "State", recent: slice, sizes: Sizes) -> bool:
-        """Whether it leaves a larger gap than another, of the latest rows or the ordinary ones."""
-        pairs = (self.ordinary, before.ordinary), (self.stream[recent], before.stream[recent])
-        return any(now.mean() > sizes.harm * then.mean() for now, then in pairs)
+    def likely(self, rows: FloatArray) -> float:
+        """Log density of residuals of rows, float[n, sensors], after the usual ones.
+
+        Each sensor's are normal, with a mean and a deviation that the usual rows tell (Student's
+        predictive distribution: Gelman et al., Bayesian Data Analysis, 3rd ed., section 3.2).
+        """
+        count = len(self.usual)
+        spread = self.usual.std(axis=0, ddof=1) * np.sqrt(1.0 + 1.0 / count)
+        return float(t.logpdf(rows, count - 1, self.usual.mean(axis=0), spread).sum())
+
+    def explains(self, rows: FloatArray) -> bool:
+        """Whether the gaps that it leaves of rows may be usual.
+
+        The mean logs may not differ more than is likely (Welch, Biometrika 34, 1947).
+        """
+        found = ttest_ind(log_gaps(rows), self.usual_gaps(), equal_var=False)
+        return bool(found.pvalue >= UNLIKELY)
+
+    def harms(self, before: "State", recent: slice, sizes: Sizes, *, alone: bool) -> bool:
+        """Whether the latest rows, or the ordinary ones, are less likely than by another.
+
+        Deviations of sensors count by their logs, as in the likelihood of normal ones that are not
+        known: a method may find that few sensors lie, and leave more of these.
+
+        Args:
+            before: the other.
+            recent: the latest rows of the stream.
+            sizes: by what rules.
+            alone: whether it stands for rows like the latest alone.
+        """
+        pairs = [(self.stream[recent], before.stream[recent])]
+        if not alone:
+            pairs.append((self.ordinary, before.ordinary))
+        return any(
+            np.log((now**2).mean(axis=0) / (then**2).mean(axis=0)).mean() > np.log(sizes.harm)
+            for now, then in pairs
+        )
 
 
 #: a state after it has learned from rows of the stream
@@ -114,7 +149,8 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
     since = 0
     for row in range(len(first.stream)):
         if raised is None:
-            if not monitor.update(np.log(life.state.stream[row, None])) or monitor.alarm is None:
+            seen = log_gaps(life.state.stream[row : row + 1])
+            if not monitor.update(seen) or monitor.alarm is None:
                 continue
             raised, since = row, began + monitor.alarm.since
             life.alarms.append(row)
@@ -122,35 +158,43 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
         if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1)):
             pass
         elif waited == sizes.settle:
-            _learn(life, slice(since, row + 1), slice(raised, row + 1), sizes, learned)
+            rows = slice(since, row + 1), slice(raised, row + 1)
+            _learn(life, *rows, sizes, learned, alone=stores)
         else:
             continue
         monitor, began, raised = life.state.monitor(sizes), row + 1, None
     return life
 
 
+def most_likely(states: Sequence[State], rows: Sequence[FloatArray]) -> int:
+    """Number of the state after which the residuals of rows are likeliest.
+
+    Args:
+        states: one or more.
+        rows: what each of them leaves of the same rows, float[n, sensors].
+    """
+    return int(np.argmax([one.likely(own) for one, own in zip(states, rows, strict=True)]))
+
+
 def _recall(life: Life, recent: slice) -> bool:
-    """Take up the stored state to which rows are most usual, if they are to any."""
-    found = {
-        number: one.likeness(one.stream[recent])
-        for number, one in enumerate(life.stored)
-        if one is not life.state
-    }
-    best = max(found, key=lambda number: found[number], default=None)
-    if best is None or found[best] < UNLIKELY:
+    """Take up the likeliest of the stored states, if it explains the rows and is another."""
+    best = life.stored[most_likely(life.stored, [one.stream[recent] for one in life.stored])]
+    if best is life.state or not best.explains(best.stream[recent]):
         return False
-    life.state = life.stored[best]
+    life.state = best
     life.recalled += 1
     return True
 
 
-def _learn(life: Life, recent: slice, latest: slice, sizes: Sizes, learned: Learned) -> None:
+def _learn(
+    life: Life, recent: slice, latest: slice, sizes: Sizes, learned: Learned, *, alone: bool
+) -> None:
     """Learn from rows; where that does harm, only take for usual what the latest are like."""
     before = life.state
     after = learned(before, recent)
     if after.calibrated is not before.calibrated:
         life.recalibrations += 1
-        if after.harms(before, recent, sizes):
+        if after.harms(before, recent, sizes, alone=alone):
             life.taken_back += 1
             after = before
     life.state = after.settled(latest)
@@ -171,7 +215,11 @@ def delays(alarms: Sequence[int], changes: Sequence[int], rows: int) -> tuple[in
     return tuple(found)
 
 
-def gaps(calibrated: Calibrated, readings: FloatArray) -> FloatArray:
-    """Mean squares of measured minus simulated at the inferred contexts [mm^2], float[n]."""
-    simulated = calibrated.simulate(calibrated.infer(readings).value)
-    return np.asarray(((readings - simulated) ** 2).mean(axis=1))
+def residuals(calibrated: Calibrated, readings: FloatArray) -> FloatArray:
+    """Measured minus simulated at the inferred contexts, float[n, sensors]."""
+    return readings - calibrated.simulate(calibrated.infer(readings).value)
+
+
+def log_gaps(residuals: FloatArray) -> FloatArray:
+    """Logs of the mean squares of rows, float[n, sensors] -> float[n]."""
+    return np.asarray(np.log((residuals**2).mean(axis=1)))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from rga.benchmark.loi.data import Calibration, Stream, stream_of
 from rga.benchmark.loi.examination import Examination
-from rga.benchmark.loi.levels import LEVELS, Learned, Life, State, delays, gaps, live
+from rga.benchmark.loi.levels import LEVELS, Learned, Life, State, delays, live, residuals
 from rga.benchmark.loi.method import Calibrated
 from rga.benchmark.loi.novel import with_novel
 from rga.benchmark.loi.rows import METHODS
@@ -55,23 +55,22 @@ def lived(
         InputError: no such drift.
     """
     sizes, played = task.sizes, []
-    ordinary = gaps(calibrated, known.problem.real)
+    ordinary = residuals(calibrated, known.problem.real)
     for drift in task.drifts:
         stream = stream_of(task, drift)
         rows = stream.rows.readings
         examination = Examination(stream.drifted, known.problem.ranges, sizes.settle)
-        first = State(calibrated, ordinary, gaps(calibrated, rows), ordinary)
-        fine_tuned = _remembered(_fine_tuned(known.problem.real, rows))
+        first = State(calibrated, ordinary, residuals(calibrated, rows), ordinary)
         scores = usual.score(calibrated), examination.score(calibrated)
         played.append(Played(drift, LEVELS[0], *scores))
         for level in LEVELS[1:]:
             stores = level == LEVELS[-1] and sizes.repository == "measured"
-            learned = fine_tuned
+            learned = _fine_tuned(known.problem.real, rows, alone=stores)
             if level == LEVELS[-1] and not stores:
                 learned = with_novel(METHODS[task.row], known, rows)
             life = live(first, sizes, learned, stores=stores)
             states = life.stored if stores else [life.state]
-            scores = usual.score_of_most_usual(states), examination.score_of_most_usual(states)
+            scores = usual.score_of_likeliest(states), examination.score_of_likeliest(states)
             played.append(_played(drift, level, scores, stream, life))
     return played
 
@@ -96,25 +95,11 @@ def _played(
     )
 
 
-def _fine_tuned(real: FloatArray, rows: FloatArray) -> Learned:
-    """A state that has learned from rows of a stream (T1)."""
+def _fine_tuned(real: FloatArray, rows: FloatArray, *, alone: bool) -> Learned:
+    """A state that has learned from rows of a stream (T1), for rows like these alone or for all."""
 
     def learned(state: State, recent: slice) -> State:
-        after = state.calibrated.recalibrated(rows[recent])
+        after = state.calibrated.recalibrated(rows[recent], alone=alone)
         return state if after is state.calibrated else State.of(after, real, rows)
 
     return learned
-
-
-def _remembered(learned: Learned) -> Learned:
-    """The same, which does nothing twice: levels B and C learn alike up to their parting."""
-    known: dict[tuple[int, int, int], tuple[Calibrated, State]] = {}
-
-    def again(state: State, recent: slice) -> State:
-        key = (id(state.calibrated), recent.start, recent.stop)
-        if key not in known:
-            # The method is kept, so that no other one gets its id.
-            known[key] = state.calibrated, learned(state, recent)
-        return known[key][1]
-
-    return again

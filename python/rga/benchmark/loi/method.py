@@ -66,8 +66,14 @@ class Calibrated(Protocol):
     def simulate(self, contexts: FloatArray) -> FloatArray:
         """What the twin of this method lets expect at contexts, float[n, sensors]."""
 
-    def recalibrated(self, recent: FloatArray) -> "Calibrated":
-        """The method after it has also learned from measured rows, float[n, sensors]."""
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> "Calibrated":
+        """The method after it has also learned from measured rows, float[n, sensors].
+
+        Args:
+            recent: the rows.
+            alone: whether it is for rows like the recent ones only, since states that are stored
+                stand for the others; a method may learn for all rows nevertheless.
+        """
 
 
 #: learns

@@ -26,7 +26,8 @@ class Sizes:
         settle: rows from an alarm on that are gathered for a recalibration, 30 at least; also a
             block of test rows that one stored state is chosen for.
         recall: rows from an alarm on by which stored states are tried.
-        harm: a recalibration is taken back where it makes a gap so many times as large.
+        harm: a recalibration is taken back where it makes the gap of a sensor, in the mean of its
+            logs, so many times as large.
         repository: what level C stores: `measured` rows with the method as it was calibrated on
             them, or, as in the `paper`, simulated rows around the contexts inferred.
     """
@@ -124,5 +125,5 @@ def shorter(seed: int, rows: tuple[str, ...]) -> Setting:
         manners=("same",),
         drifts=("none", "sensor", "recurring"),
         rows=rows,
-        sizes=Sizes(source=512, test=120),
+        sizes=Sizes(source=512, unlabelled=100, test=120),
     )

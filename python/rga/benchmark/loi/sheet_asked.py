@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from rga.benchmark.loi.floors import FLOORS
-from rga.benchmark.loi.found import Values, coverage, lives, mean, mean_lives, scores
+from rga.benchmark.loi.found import Values, coverage, lives, mean, mean_lives, scores, whole
 from rga.benchmark.loi.levels import LEVELS
 from rga.benchmark.loi.lived import Played
 from rga.benchmark.loi.rows import METHODS, ORACLE, PAPERS
@@ -61,7 +61,9 @@ def _levels(result: Result, row: str) -> list[list[str]]:
     figures = [
         ("Error on drifted rows, B against A", once, b, a, _drifted, "-20 %; -30 %"),
         ("Error on ordinary rows, B against A", once, b, a, _ordinary, "no loss"),
-        ("Error on recurrence, C against B", [RECURRING], c, b, _drifted, "less"),
+        ("Error on recurrence, C against B", [RECURRING], c, b, whole(_error), "less"),
+        ("Error on drifted rows, C against B", once, c, b, _drifted, ""),
+        ("RG on recurrence, C against B", [RECURRING], c, b, whole(_rg), ""),
         ("recalibrations on recurrence, C against B", [RECURRING], c, b, _learned, "; -50 %"),
     ]
     return [
@@ -103,6 +105,10 @@ def _told(values: Values, form: str) -> str:
 
 def _error(score: Score) -> float | None:
     return score.error
+
+
+def _rg(score: Score) -> float:
+    return score.rg
 
 
 def _drifted(played: Played) -> float | None:

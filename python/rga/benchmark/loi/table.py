@@ -18,9 +18,10 @@ RG: mean squared gap over rows and sensors. Tables of levels are on test rows of
 measured under usual conditions, the other under the drift.
 
 Level A calibrates once. B watches the gap with `SyncMonitor`, gathers rows after an alarm and
-recalibrates; a recalibration that makes the gap of the first rows or of the latest ones larger is
-taken back. C also stores every state, takes one up without learning where it explains the rows
-behind an alarm, and infers each block of test rows by the state to which their gaps are most usual.
+recalibrates for all rows; a recalibration by which the first rows or the latest ones are less
+likely is taken back. C also stores every state, so that each one is for its own rows alone, takes
+one up without learning where it explains the rows behind an alarm, and infers each block of test
+rows by the state after which what it leaves of them is likeliest.
 
 AD: rows from a change to its alarm, both counted, over the changes that were seen, whose share
 stands beside it. ARL: rows watched under usual conditions over false alarms, at all drifts

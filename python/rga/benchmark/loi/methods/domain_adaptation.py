@@ -51,7 +51,7 @@ class Adapted:
         """What the model tells, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         """Learned again from the measured rows and the recent ones."""
         return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
 

@@ -13,9 +13,6 @@ from rga.inference.unknowns import Unknowns
 from rga.model import Model
 from rga.model.parameter import FloatArray
 
-#: of the rows of the calibration, so many stay beside recent ones
-KEPT = 60
-
 
 @dataclass(frozen=True)
 class JointModes(Modes):
@@ -27,11 +24,16 @@ class JointModes(Modes):
 
     joint: Joint | None = None
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
-        """The unknowns found again; sensors that no longer fit weigh less."""
-        kept = self.problem.real[:: max(1, len(self.problem.real) // KEPT)]
-        problem = replace(self.problem, real=np.vstack([kept, recent]))
-        return _learned(problem, self.joint)
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
+        """The unknowns found again.
+
+        For all rows, sensors that have changed weigh less. For recent rows alone, what they
+        have changed by is found; the structure is known beforehand but for what may have moved.
+        """
+        if alone:
+            return _learned(replace(self.problem, real=recent), prior=self.joint)
+        problem = replace(self.problem, real=np.vstack([self.problem.real, recent]))
+        return _learned(problem, start=self.joint)
 
 
 _KNOWN: dict[str, Unknowns] = {}
@@ -48,10 +50,12 @@ def unknowns_of(model: Model) -> Unknowns:
 
 def joint_posterior(problem: Problem) -> Calibrated:
     """Contexts and unknowns in one posterior."""
-    return _learned(problem, None)
+    return _learned(problem)
 
 
-def _learned(problem: Problem, start: Joint | None) -> JointModes:
+def _learned(
+    problem: Problem, *, start: Joint | None = None, prior: Joint | None = None
+) -> JointModes:
     found = infer_jointly(
         unknowns_of(problem.model),
         problem.real,
@@ -59,6 +63,7 @@ def _learned(problem: Problem, start: Joint | None) -> JointModes:
         problem.source.contexts,
         load_tests=problem.load_tests if len(problem.load_tests) else None,
         start=start,
+        prior=prior,
     )
     twin = found.twin
     simulated = Rows(problem.source.contexts, twin.simulate(problem.source.contexts))

@@ -49,8 +49,8 @@ class Modes:
         """What the twin tells, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
-        """Learned again from the measured rows and the recent ones."""
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
+        """Learned again from the measured rows and the recent ones; these alone are too few."""
         if self.learn is None:
             return self
         return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))

@@ -55,14 +55,15 @@ class LearnedNetwork:
         """What the model of the problem simulates."""
         return self.problem.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> "LearnedNetwork":
-        """Fine-tuned on old and recent real rows together, with the source beside them.
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> "LearnedNetwork":
+        """Fine-tuned on old and recent real rows, or on these alone, the source beside them.
 
         A network that learns from the source alone stays as it is.
         """
         if not _adapts(self.settings):
             return self
-        problem = replace(self.problem, real=np.concatenate([self.problem.real, recent]))
+        rows = recent if alone else np.concatenate([self.problem.real, recent])
+        problem = replace(self.problem, real=rows)
         return learn(self.settings, problem, self.network)
 
 

@@ -52,7 +52,7 @@ class NeuralPosterior:
         """What the model tells, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         """The same: it learns from simulated rows alone."""
         return self
 

@@ -38,9 +38,9 @@ class Polished:
         """What the model of the problem simulates."""
         return self.problem.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         """The same with the network recalibrated."""
-        network = self.network.recalibrated(recent)
+        network = self.network.recalibrated(recent, alone=alone)
         return self if network is self.network else Polished(self.problem, network)
 
 

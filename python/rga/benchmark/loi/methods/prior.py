@@ -26,7 +26,7 @@ class Prior:
         """What the model tells, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         """The same: there is nothing to learn."""
         return self
 

@@ -48,7 +48,7 @@ class Filtered:
         """What the model tells, float[n, sensors]."""
         return self.modes.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray) -> Calibrated:
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         """The same filter with the memory of the recent rows."""
         return relearned(self.modes, recent, self.filter)
 
