@@ -172,6 +172,35 @@ def test_missing_readings_are_left_out(model: Model, other: Model) -> None:
     assert error(model, found.rows.contexts, contexts) < 0.2
 
 
+@pytest.mark.parametrize("happened", [True, False])
+def test_what_has_happened_since_is_found(model: Model, other: Model, happened: bool) -> None:
+    """A support settles and a sensor lies; or nothing happens, and nothing is found."""
+    unknowns, noise, source = Unknowns(model), noise_of(model), drawn(model, 300, 19)
+    first = infer_jointly(unknowns, measured(other, drawn(model, 80, 20), 21), noise, source)
+    settled, liar = [part.name for part in unknowns.parts].index("settlement of east"), 7
+    values = first.values.copy()
+    values[settled] = -0.004 * happened
+    contexts = drawn(model, 30, 22)
+    recent = measured(other, contexts, 23)
+    table = dict(zip(model.context, contexts.T, strict=True))
+    at = Simulator(unknowns.at(values)).predict(table)
+    before = Simulator(unknowns.at(first.values)).predict(table)
+    recent += happened * (at - before)
+    recent[:, liar] += 0.5 * happened
+    found = infer_jointly(unknowns, recent, noise, source, prior=first)
+    moved = found.values[settled] - first.values[settled]
+    assert moved == pytest.approx(-0.004 * happened, abs=3e-4)
+    offset = found.offsets - first.offsets
+    assert offset[liar] == pytest.approx(0.5 * happened, abs=0.02)
+    assert np.abs(np.delete(offset, liar)).max() < 0.02
+    assert error(model, found.rows.contexts, contexts) < 0.1
+    if happened:
+        alone = infer_jointly(unknowns, recent, noise, source, start=first)
+        assert error(model, found.rows.contexts, contexts) < error(
+            model, alone.rows.contexts, contexts
+        )
+
+
 def test_derivatives_are_those_of_the_readings(model: Model) -> None:
     contexts, unknowns = drawn(model, 6, 15), Unknowns(model)
     values = unknowns.centre + 0.3 * unknowns.spread
@@ -229,3 +258,11 @@ def test_bad_input_gets_one_clear_error(
     }
     with pytest.raises(InputError, match=message):
         infer_jointly(Unknowns(model), **given)  # type: ignore[arg-type]
+
+
+def test_an_earlier_result_is_taken_in_one_way(model: Model) -> None:
+    given = np.zeros((3, 24)), noise_of(model), drawn(model, 40, 24)
+    unknowns = Unknowns(model)
+    first = infer_jointly(unknowns, measured(model, drawn(model, 20, 25), 26), *given[1:])
+    with pytest.raises(InputError, match="begun from and known"):
+        infer_jointly(unknowns, *given, start=first, prior=first)

@@ -97,9 +97,12 @@ def infer_jointly(
 
     Raises:
         InputError: a table of another shape, no row, a noise that is not positive, or contexts
-            that are not finite.
+            that are not finite; or both `start` and `prior`.
     """
     _check(unknowns, readings, noise, source, load_tests)
+    if start is not None and prior is not None:
+        problem = "an earlier result cannot be both begun from and known beforehand"
+        raise InputError(problem, "joint inference", "give start or prior")
     beforehand = Beforehand.fresh(unknowns, len(noise))
     if prior is not None:
         beforehand = Beforehand.later(prior.parameters, prior.sure, len(prior.values))

@@ -158,7 +158,9 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
         if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1)):
             pass
         elif waited == sizes.settle:
-            rows = slice(since, row + 1), slice(raised, row + 1)
+            # A state for its own rows must not learn from those before the change.
+            begun = raised if stores else since
+            rows = slice(begun, row + 1), slice(raised, row + 1)
             _learn(life, *rows, sizes, learned, alone=stores)
         else:
             continue
