@@ -1,0 +1,66 @@
+"""A benchmark that is killed at any time goes on, and tells what it would have told."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from rga.benchmark.ledger import NAME
+from rga.benchmark.loi.play import Outcome
+from rga.benchmark.loi.run import measure
+from rga.benchmark.loi.setting import Setting, Sizes
+
+SETTING = Setting(
+    seed=11,
+    splits=2,
+    gaps=("all",),
+    manners=("same",),
+    drifts=("none", "sensor"),
+    rows=("noise", "true context", "prior mean", "MAP"),
+    sizes=Sizes(source=64, unlabelled=40, stream=60, test=20),
+)
+TASKS = 2 * 2 * 4
+#: `RGA_TEST_KILLS=50` kills more often
+KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
+
+
+def outcomes(folder: Path, workers: int) -> list[Outcome]:
+    """Of all tasks, without the times."""
+    found = measure(SETTING, folder=folder, workers=workers).outcomes
+    return [replace(one, learning=None, inference=None) for one in found]
+
+
+def lines(folder: Path) -> int:
+    """That the ledger has, a cut one included."""
+    path = folder / NAME
+    return len(path.read_bytes().splitlines()) if path.exists() else 0
+
+
+def test_a_run_killed_at_random_tells_the_same(tmp_path: Path) -> None:
+    generator = np.random.default_rng()
+    folder = tmp_path / "killed"
+    kept = []
+    for number in range(KILLS):
+        after = 1 + number * (TASKS - 2) // KILLS
+        process = subprocess.Popen([sys.executable, __file__, str(folder)], start_new_session=True)
+        until = time.monotonic() + 120.0
+        while lines(folder) < after and process.poll() is None and time.monotonic() < until:
+            time.sleep(0.002)
+        time.sleep(generator.uniform(0.0, 0.2))
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        kept.append(lines(folder))
+    assert 0 < kept[0] < TASKS, "the first kill came too late to cut anything off"
+    assert sorted(kept) == kept
+    assert outcomes(folder, 1) == outcomes(tmp_path / "whole", 1)
+    assert lines(folder) == TASKS
+
+
+if __name__ == "__main__":
+    outcomes(Path(sys.argv[1]), 2)
