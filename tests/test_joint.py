@@ -217,9 +217,12 @@ def test_derivatives_are_those_of_the_readings(model: Model) -> None:
     assert by_contexts.shape == (*here.shape, 4)
 
 
-def test_the_model_with_its_unknowns_is_a_model_file(model: Model, tmp_path: Path) -> None:
+@pytest.mark.parametrize("moved", [0.5, 0.0])
+def test_the_model_with_its_unknowns_is_a_model_file(
+    model: Model, tmp_path: Path, moved: float
+) -> None:
     unknowns = Unknowns(model)
-    extended = unknowns.at(unknowns.centre + 0.5 * unknowns.spread)
+    extended = unknowns.at(unknowns.centre + moved * unknowns.spread)
     write_model(extended, tmp_path / "model.json")
     again = read_model(json.loads((tmp_path / "model.json").read_text()), "again")
     table = dict(zip(model.context, drawn(model, 5, 16).T, strict=True))

@@ -61,10 +61,17 @@ def write_model(model: Model, path: Path) -> None:
 
 
 def model_content(model: Model) -> dict[str, Any]:
-    """The model as it stands in a file: keys that have their default are left out."""
+    """The model as it stands in a file: keys that have their default are left out.
+
+    An effect keeps what it was given, since one that is given nothing is refused.
+    """
     content = model.model_dump(mode="json", exclude_defaults=True)
     content["effects"] = {
-        name: {"kind": effect.kind, **effect.model_dump(mode="json", exclude_defaults=True)}
+        name: {
+            "kind": effect.kind,
+            **effect.model_dump(mode="json", exclude_defaults=True),
+            **effect.model_dump(mode="json", exclude_unset=True),
+        }
         for name, effect in model.effects.items()
     }
     for name, member in model.members.items():
