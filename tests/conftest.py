@@ -227,3 +227,19 @@ def small_stream(
         return folder
 
     return write
+
+
+@pytest.fixture
+def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """The methods of the levels of integration, for a while."""
+    from loi_tasks import nearest
+    from rga.benchmark.loi.rows import METHODS, Row
+
+    methods = {
+        "prior mean": METHODS["prior mean"],
+        "nearest": Row(nearest),
+        "absent": Row(nearest, needs=("no_such_package",)),
+    }
+    for module in ("run", "play", "lived", "sheet_asked"):
+        monkeypatch.setattr(f"rga.benchmark.loi.{module}.METHODS", methods)
+    return methods

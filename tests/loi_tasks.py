@@ -1,0 +1,44 @@
+"""Tasks of the levels of integration, and methods that are quick to learn."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from rga.benchmark.loi.drift import DRIFTS
+from rga.benchmark.loi.method import Calibrated, Estimate, Problem
+from rga.benchmark.loi.setting import DRIFTING, Sizes, Task
+from rga.model.parameter import FloatArray
+
+SIZES = Sizes(source=64, unlabelled=60, stream=160, test=40)
+RANGES = np.array([[0.0, 1.0], [-30.0, 30.0], [3.0, 5.5], [10.0, 12.0]])
+
+
+def task(manner: str = DRIFTING, row: str = "nearest", split: int = 0, **changes: Any) -> Task:
+    return replace(Task(3, split, "all", manner, row, DRIFTS, SIZES), **changes)
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """The contexts of the simulated row that is most like the reading, less a level learned."""
+
+    problem: Problem
+    level: FloatArray
+    learned: list[int] = field(default_factory=list)
+
+    def infer(self, readings: FloatArray) -> Estimate:
+        source = self.problem.source
+        far = ((readings[:, None] - self.level - source.readings) ** 2).sum(axis=2)
+        value = source.contexts[far.argmin(axis=1)]
+        return Estimate(value, np.full(value.shape, np.inf))
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        return self.problem.simulate(contexts) + self.level
+
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
+        off = recent - self.simulate(self.infer(recent).value)
+        return replace(self, level=self.level + off.mean(axis=0), learned=[len(recent)])
+
+
+def nearest(problem: Problem) -> Calibrated:
+    return Nearest(problem, np.zeros(len(problem.noise)))

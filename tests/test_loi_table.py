@@ -1,0 +1,177 @@
+"""The ledger, the tables and the command of the levels of integration."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from loi_tasks import SIZES, nearest, task
+from rga.benchmark.ledger import NAME
+from rga.benchmark.loi import setting
+from rga.benchmark.loi.contexts import MANNERS
+from rga.benchmark.loi.lived import Played
+from rga.benchmark.loi.play import Outcome, play
+from rga.benchmark.loi.rows import ORACLE, PAPERS, Row
+from rga.benchmark.loi.run import Result, measure
+from rga.benchmark.loi.score import Score
+from rga.benchmark.loi.setting import DRIFTING, Setting, Task
+from rga.benchmark.loi.sheet_asked import asked
+from rga.benchmark.loi.sheets_levels import order
+from rga.benchmark.loi.table import about, markdown
+from rga.benchmark.machine import machine, versions
+from rga.errors import InputError
+
+LITTLE = Setting(
+    seed=3,
+    splits=2,
+    few=1,
+    gaps=("noise only", "all"),
+    manners=("same", "shifted"),
+    drifts=("none", "sensor"),
+    rows=("noise", "true context", "prior mean", "nearest", "absent"),
+    sizes=SIZES,
+)
+
+
+def test_a_run_that_was_killed_goes_on(few_methods: dict[str, Row], tmp_path: Path) -> None:
+    whole = measure(LITTLE, folder=tmp_path / "whole")
+    assert len(whole.outcomes) == (4 + 2) * 4
+    lines = (tmp_path / "whole" / NAME).read_text(encoding="utf-8").splitlines()
+    cut = tmp_path / "cut"
+    cut.mkdir()
+    (cut / NAME).write_text("\n".join([*lines[:9], lines[9][:40]]), encoding="utf-8")
+    shown: list[float] = []
+    again = measure(LITTLE, folder=cut, progress=shown.append)
+    assert len(shown) == len(lines) - 9
+    assert shown[-1] == 1.0
+    assert again.outcomes == whole.outcomes
+    pages = [markdown(replace(one, outcomes=_timeless(one)), "again") for one in (whole, again)]
+    assert pages[0] == pages[1]
+    assert "absent is left out: no_such_package not installed" in about(whole)
+    other = measure(replace(LITTLE, seed=4, splits=1, drifts=()))
+    assert other.outcomes[0].score != whole.outcomes[0].score
+
+
+def _timeless(result: Any) -> list[Any]:
+    return [replace(one, learning=None, inference=None) for one in result.outcomes]
+
+
+def test_a_method_beside_others_is_told_of(few_methods: dict[str, Row]) -> None:
+    found = measure(replace(LITTLE, splits=1, gaps=("all",), manners=("same",)))
+    page = markdown(found, "rga benchmark loi")
+    assert "| true context |" in page
+    assert "| 0.405 / 297 |" in page
+    assert "The paper's order cannot be told" in page
+    by_row = {one.row: one.score for one in found.outcomes if one.manner == "same"}
+    assert by_row["prior mean"].error == pytest.approx(1.0, abs=0.15)
+    assert "†" not in page.partition("## RG")[2].partition("##")[0].replace("†:", "")
+
+
+def made(errors: dict[str, tuple[float, float, float]]) -> Result:
+    """A result of two splits, from the Errors of each method at the levels."""
+    outcomes = []
+    for split in (0, 1):
+        for row, by_level in errors.items():
+            found = [Score(rg=100.0 * one, error=one + 0.01 * split) for one in by_level]
+            learned = {"A": 0, "B": 4, "C": 1}
+            played = tuple(
+                Played(drift, level, found[0], one, recalibrations=learned[level])
+                for drift in ("sensor", "recurring")
+                for level, one in zip(learned, found, strict=True)
+            )
+            for manner in ("same", DRIFTING):
+                lived_through = played if manner == DRIFTING else ()
+                name = f"{split}{row}{manner}"
+                outcomes.append(Outcome(name, split, "all", manner, row, found[0], lived_through))
+    some = Setting(gaps=("all",), drifts=("none", "sensor", "recurring"))
+    return Result(machine(), versions(), some, tuple(errors), {}, outcomes)
+
+
+def test_the_papers_order_is_told_where_it_is_and_where_it_is_not() -> None:
+    ordered = (PAPERS["with physics"], PAPERS["residual loss"], PAPERS["without physics"])
+    falling = {row: (0.3 + k, 0.2 + k, 0.1 + k) for k, row in enumerate(ordered)}
+    assert "appears here in Error and RG at every level" in order(made(falling))
+    rising = dict(zip(ordered, list(falling.values())[::-1], strict=True))
+    assert "does not appear here as a whole: nowhere" in order(made(rising))
+    mixed = dict(falling)
+    mixed[ordered[0]] = (0.3, 9.0, 9.0)
+    assert "only in Error at A, RG at A" in order(made(mixed))
+
+
+def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatch) -> None:
+    methods = {
+        "poor": Row(nearest),
+        "good": Row(nearest),
+        "labelled": Row(nearest, load_tests=20),
+        ORACLE: Row(nearest, oracle=True),
+    }
+    monkeypatch.setattr("rga.benchmark.loi.sheet_asked.METHODS", methods)
+    errors = {
+        "poor": (0.9, 0.9, 0.9),
+        "good": (0.5, 0.4, 0.2),
+        "labelled": (0.3, 0.3, 0.3),
+        ORACLE: (0.2, 0.2, 0.2),
+    }
+    told = {figure: found for figure, found, _ in asked(made(errors)).rows}
+    assert told["(1 - Error) / (1 - floor): good, no load tests"].startswith("0.62")
+    assert told["(1 - Error) / (1 - floor): labelled, 20 load tests"].startswith("0.87")
+    assert told["Error on drifted rows, B against A: good"].startswith("-20%")
+    assert told["Error on ordinary rows, B against A: good"].startswith("+0%")
+    assert told["Error on recurrence, C against B: good"].startswith("-22%")
+    assert told["recalibrations on recurrence, C against B: good"].startswith("-75%")
+    assert not any("physics" in figure for figure in told)
+
+
+def test_wrong_rows_and_drifts_are_refused(few_methods: dict[str, Row], tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no row 'wizard'"):
+        measure(replace(LITTLE, rows=("wizard",)))
+    with pytest.raises(InputError, match="no drift 'sabotage'"):
+        measure(replace(LITTLE, rows=("prior mean",), drifts=("sabotage",)))
+    (tmp_path / NAME).write_text("nonsense\n", encoding="utf-8")
+    with pytest.raises(InputError, match="line 1"):
+        measure(LITTLE, folder=tmp_path)
+
+
+def test_tasks_have_names_of_their_own() -> None:
+    tasks = Setting().tasks(("a", "b"))
+    assert len({one.id for one in tasks}) == len(tasks) == 2 * (10 * 2 + Setting.few * (5 + 3))
+    paper = replace(tasks[0], sizes=replace(tasks[0].sizes, repository="paper"))
+    assert paper.id != tasks[0].id
+    assert {one.manner for one in tasks} == {*MANNERS, DRIFTING}
+
+
+def test_the_command(
+    rga: Any, tmp_path: Path, few_methods: dict[str, Row], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    little = replace(LITTLE, splits=1, gaps=("all",), manners=("same",))
+    monkeypatch.setattr(
+        setting, "shorter", lambda seed, rows: replace(little, seed=seed, rows=("noise", "nearest"))
+    )
+    folder, file = tmp_path / "out", tmp_path / "found.json"
+    given = ("--quick", "--seed", "3", "--workers", "1", "-o", folder, "--json", file)
+    ran = rga("benchmark", "loi", *given)
+    assert ran.code == 0, ran.err
+    assert "nearest" in ran.out
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"loi.md", "methods.png", "levels.png", NAME}
+    content = json.loads(file.read_text(encoding="utf-8"))
+    assert content["command"] == "rga benchmark loi --quick --seed 3"
+    assert {one["row"] for one in content["outcomes"]} == {"noise", "nearest"}
+    monkeypatch.setattr("rga.benchmark.loi.run.play", play_nothing)
+    assert rga("benchmark", "loi", *given).code == 0
+    wrong = rga("benchmark", "loi", "--quick", "--repository", "attic")
+    assert wrong.code == 2
+    assert "give one of measured, paper" in wrong.err
+
+
+def play_nothing(task: Task) -> None:
+    raise AssertionError(f"{task.id} is in the ledger")
+
+
+def test_a_method_that_learned_is_timed(few_methods: dict[str, Row]) -> None:
+    outcome = play(task("same"))
+    assert outcome.learning is not None
+    assert outcome.inference is not None
+    assert outcome == play(task("same"))
