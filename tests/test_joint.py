@@ -244,13 +244,20 @@ def test_a_context_that_no_sensor_sees_is_told(model: Model) -> None:
     [
         ({"readings": np.zeros((3, 2))}, "readings have the shape"),
         ({"readings": np.full((3, 24), np.nan)}, "no row to infer from"),
+        ({"readings": np.full((3, 24), "loud")}, "readings are no numbers"),
+        ({"readings": [[1.0, 2.0], [3.0]]}, "readings are no numbers"),
+        ({"readings": np.full((3, 24), 1j)}, "readings are no numbers"),
+        ({"readings": np.full((3, 24), -999.0)}, "'U0 z' reads -999, and the model simulates"),
         ({"noise": np.zeros(24)}, "noise of the sensors"),
+        ({"noise": np.full(24, np.inf)}, "noise of the sensors"),
+        ({"noise": 0.3}, "noise of the sensors"),
+        ({"prior": "yesterday's"}, "earlier result is not of this model"),
         ({"source": np.full((3, 4), np.inf)}, "source are not all finite"),
         ({"load_tests": Rows(np.zeros((2, 4)), np.zeros((3, 24)))}, "3 rows of readings and 2"),
     ],
 )
 def test_bad_input_gets_one_clear_error(
-    model: Model, change: dict[str, FloatArray], message: str
+    model: Model, change: dict[str, object], message: str
 ) -> None:
     assert len(model.sensors) == 24
     given = {
@@ -261,6 +268,33 @@ def test_bad_input_gets_one_clear_error(
     }
     with pytest.raises(InputError, match=message):
         infer_jointly(Unknowns(model), **given)  # type: ignore[arg-type]
+
+
+def test_a_model_without_contexts_or_with_its_unknowns_is_refused(model: Model) -> None:
+    silent = model.model_copy(update={"context": {}, "effects": {}})
+    with pytest.raises(InputError, match="no context to infer"):
+        infer_jointly(Unknowns(silent), np.zeros((3, 24)), noise_of(model), np.zeros((3, 0)))
+    unknowns = Unknowns(model)
+    with pytest.raises(InputError, match="holds unknowns already"):
+        Unknowns(unknowns.at(unknowns.centre))
+
+
+def test_intervals_of_other_rows_hold_their_contexts(model: Model, other: Model) -> None:
+    noise, source = noise_of(model), drawn(model, 300, 27)
+    given = measured(other, drawn(model, 80, 28), 29).tolist()
+    found = infer_jointly(Unknowns(model), given, noise, source)
+    contexts = drawn(model, 60, 30)
+    readings = measured(other, contexts, 31)
+    readings[0] = np.nan
+    mode = found.infer(readings)
+    held = np.abs(mode.value - contexts) <= 1.645 * mode.spread
+    assert held[1:].mean() > 0.8
+    _, scale = standard(np.array([one.range for one in model.context.values()]))
+    assert (mode.spread[1:].mean(axis=0) < 0.5 * scale).any()
+    # A row without readings is as unsure as before.
+    np.testing.assert_allclose(mode.spread[0], scale, rtol=0.2)
+    with pytest.raises(InputError, match="readings have the shape"):
+        found.infer(readings[:, :3])
 
 
 def test_an_earlier_result_is_taken_in_one_way(model: Model) -> None:

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from loi_tasks import SIZES, Nearest, nearest, task
-from rga.benchmark.loi.data import calibration_of, stream_of
+from rga.benchmark.loi.data import Stream, calibration_of, stream_of
 from rga.benchmark.loi.examination import Examination
 from rga.benchmark.loi.levels import Learned, State, live, most_likely
-from rga.benchmark.loi.lived import lived
+from rga.benchmark.loi.lived import Played, lived
 from rga.benchmark.loi.method import Calibrated, Estimate, Problem
 from rga.benchmark.loi.methods.modes import maximum_posterior
 from rga.benchmark.loi.novel import with_novel
 from rga.benchmark.loi.rows import Row
-from rga.benchmark.loi.setting import Sizes
+from rga.benchmark.loi.setting import Sizes, Task
 from rga.model.parameter import FloatArray
 
 
@@ -185,6 +185,42 @@ def test_recalibration_helps_and_c_keeps_what_was_before() -> None:
     # What the sensors show now is not what they showed: B forgets, and C does not.
     assert b.ordinary.rg > 2.0 * a.ordinary.rg
     assert c.ordinary == a.ordinary
+
+
+def test_no_level_looks_at_labels(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Other true contexts change Errors, and nothing that was decided."""
+    few = replace(SIZES, stream=90, unlabelled=32, test=20, harm=100.0)
+    given = task(gap="noise only", drifts=("sensor",), sizes=few)
+    known = calibration_of(given)
+    method = Levelled(maximum_posterior(known.problem), np.zeros(84))
+
+    def played() -> list[Played]:
+        usual = Examination(known.test, known.problem.ranges, few.settle)
+        return lived(given, known, method, usual)
+
+    def unlabelled(found: list[Played]) -> list[tuple[object, ...]]:
+        return [
+            (one.delays, one.alarms, one.recalibrations, one.taken_back, one.recalled,
+             one.ordinary.rg, one.drifted.rg)
+            for one in found
+        ]  # fmt: skip
+
+    def mislabelled(given: Task, drift: str) -> Stream:
+        stream = stream_of(given, drift)
+        wrong = [
+            replace(one, contexts=np.random.default_rng(1).permutation(one.contexts, axis=0))
+            for one in (stream.rows, stream.drifted)
+        ]
+        return replace(stream, rows=wrong[0], drifted=wrong[1])
+
+    right = played()
+    monkeypatch.setattr("rga.benchmark.loi.lived.stream_of", mislabelled)
+    wrong = played()
+    assert any(one.recalibrations for one in right)
+    assert unlabelled(right) == unlabelled(wrong)
+    assert all(
+        one.drifted.error != other.drifted.error for one, other in zip(right, wrong, strict=True)
+    )
 
 
 def test_the_papers_repository_learns_from_simulations_around_what_is_novel() -> None:

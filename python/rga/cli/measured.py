@@ -9,6 +9,7 @@ from rich.console import Console, RenderableType
 
 from rga.cli.output import whole_directory, write_json
 from rga.cli.progress import shown_progress
+from rga.errors import InputError
 
 #: of a table, in a terminal that is narrower and in a file
 WIDTH = 140
@@ -54,6 +55,9 @@ def measured(
         output: directory for the page and the figures.
         json: file for what programs read; "-": the terminal.
     """
+    if json not in (None, "-") and Path(json).is_dir():
+        # Said before the work is done.
+        raise InputError("the output is a directory", json, "give a file")
     with nullcontext() if output is None else whole_directory(output) as draft:
         with shown_progress() as progress:
             result = measure(lambda done: progress(name, done))

@@ -11,7 +11,10 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.inference.corrected import CorrectedTwin
+from rga.inference.guess import QuadraticGuess
+from rga.inference.joint_input import PLACE, check_plausible, joint_noise, joint_rows, table_of
 from rga.inference.joint_search import Beforehand, Search
+from rga.inference.posterior_mode import Mode, posterior_mode
 from rga.inference.rows import Rows
 from rga.inference.unknowns import Unknowns
 from rga.model.parameter import FloatArray
@@ -38,6 +41,7 @@ class Joint:
         variance: of what readings still differ by from the twin, float[sensors].
         doubt: covariance of readings because unknowns are not sure, float[sensors, sensors].
         rows: measured rows with the contexts found; load tests are not among them.
+        source: contexts to start from, float[m, contexts].
     """
 
     unknowns: Unknowns
@@ -48,6 +52,24 @@ class Joint:
     variance: FloatArray
     doubt: FloatArray
     rows: Rows
+    source: FloatArray
+
+    def infer(self, readings: FloatArray) -> Mode:
+        """Contexts of rows, of others than these as well, with their standard deviations.
+
+        Args:
+            readings: float[n, sensors], NaN where missing.
+
+        Raises:
+            InputError: a table of another shape, or no numbers.
+        """
+        table, twin = table_of("readings", readings, len(self.gains)), self.twin
+        simulated = Rows(self.source, twin.simulate(self.source))
+        deviation = np.sqrt(np.diagonal(self.covariance))
+        guess = QuadraticGuess(simulated, deviation, twin.ranges, seed=0)
+        return posterior_mode(
+            twin.simulate, twin.jacobian, table, self.covariance, twin.ranges, guess(table)
+        )
 
     @property
     def parameters(self) -> FloatArray:
@@ -96,13 +118,15 @@ def infer_jointly(
         progress: told the share that is done.
 
     Raises:
-        InputError: a table of another shape, no row, a noise that is not positive, or contexts
-            that are not finite; or both `start` and `prior`.
+        InputError: a table of another shape or no numbers, no row, a noise that is not positive,
+            contexts that are not finite, a reading that is no measurement, an earlier result of
+            another model, or both `start` and `prior`.
     """
-    _check(unknowns, readings, noise, source, load_tests)
-    if start is not None and prior is not None:
-        problem = "an earlier result cannot be both begun from and known beforehand"
-        raise InputError(problem, "joint inference", "give start or prior")
+    readings, source, load_tests = joint_rows(unknowns, readings, source, load_tests)
+    noise = joint_noise(unknowns, noise)
+    _check_earlier(unknowns, start, prior)
+    for table in (readings, *([] if load_tests is None else [load_tests.readings])):
+        check_plausible(unknowns, table, noise)
     beforehand = Beforehand.fresh(unknowns, len(noise))
     if prior is not None:
         beforehand = Beforehand.later(prior.parameters, prior.sure, len(prior.values))
@@ -118,41 +142,23 @@ def infer_jointly(
                 progress((number + step / steps) / rounds)
             if not search.step():
                 break
-    return _told(search)
+    return _told(search, source)
 
 
-def _check(
-    unknowns: Unknowns,
-    readings: FloatArray,
-    noise: FloatArray,
-    source: FloatArray,
-    load_tests: Rows | None,
-) -> None:
-    sensors, contexts = len(unknowns.model.sensors), len(unknowns.model.context)
-    tables = {"readings": (readings, sensors), "source": (source, contexts)}
-    if load_tests is not None:
-        tables["readings of load tests"] = (load_tests.readings, sensors)
-        tables["contexts of load tests"] = (load_tests.contexts, contexts)
-        if len(load_tests.readings) != len(load_tests.contexts):
+def _check_earlier(unknowns: Unknowns, start: Joint | None, prior: Joint | None) -> None:
+    if start is not None and prior is not None:
+        problem = "an earlier result cannot be both begun from and known beforehand"
+        raise InputError(problem, PLACE, "give start or prior")
+    for earlier in (start, prior):
+        if earlier is None:
+            continue
+        if not isinstance(earlier, Joint) or earlier.unknowns.names != unknowns.names:
             raise InputError(
-                f"there are {len(load_tests.readings)} rows of readings and "
-                f"{len(load_tests.contexts)} of contexts", "load tests", "give both of each"
-            )  # fmt: skip
-    for name, (table, columns) in tables.items():
-        if table.ndim != 2 or table.shape[1] != columns:
-            shape = list(table.shape)
-            remedy = f"give float[rows, {columns}]"
-            raise InputError(f"{name} have the shape {shape}", "joint inference", remedy)
-        if "readings" not in name and not np.isfinite(table).all():
-            raise InputError(f"{name} are not all finite", "joint inference", "leave such rows out")
-    if not np.isfinite(readings).any() or len(source) == 0:
-        raise InputError("there is no row to infer from", "joint inference", "give some")
-    if noise.shape != (sensors,) or not (noise > 0).all():
-        remedy = f"give {sensors} standard deviations above 0"
-        raise InputError("the noise of the sensors is not known", "joint inference", remedy)
+                "the earlier result is not of this model", PLACE, "give what was found for it"
+            )
 
 
-def _told(search: Search) -> Joint:
+def _told(search: Search, source: FloatArray) -> Joint:
     """What was found, with how sure it is."""
     search.solve()
     values, gains, offsets = search.split(search.value)
@@ -168,4 +174,5 @@ def _told(search: Search) -> Joint:
         variance=search.variance,
         doubt=moved @ moved.T / max(len(search.slopes), 1),
         rows=Rows(search.contexts[: search.many], search.readings[: search.many]),
+        source=source,
     )

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from rga.inference.bending import with_bending
+from rga.errors import InputError
+from rga.inference.bending import BENDING, with_bending
 from rga.model import Model, model_content, read_model
 from rga.model.parameter import FloatArray, listed
 from rga.simulation import Simulator
@@ -74,6 +75,9 @@ class Unknowns:
     Args:
         model: as it was given.
 
+    Raises:
+        InputError: the model is one that was found with its unknowns.
+
     Attributes:
         model: as it was given.
         parts: the unknowns.
@@ -88,16 +92,33 @@ class Unknowns:
             *_stretches(model), *_joints(self._bending), *_bearings(model), *_settlements(model),
             *_sides(model),
         ]  # fmt: skip
+        twice = [part.name for part in self.parts if part.name in model.effects]
+        if twice or BENDING in model.groups:
+            raise InputError(
+                f"the model holds unknowns already, {(twice or [BENDING])[0]!r} among them",
+                "unknowns",
+                "give the model without them, and what was found as `start` or `prior`",
+            )
         self.centre = np.array([part.centre for part in self.parts])
         self.spread = np.array([part.spread for part in self.parts])
         self.low, self.high = np.array([part.bounds for part in self.parts]).reshape(-1, 2).T
 
+    @property
+    def names(self) -> list[str]:
+        """Of contexts and unknowns."""
+        return [*self.model.context, *(part.name for part in self.parts)]
+
+    @cached_property
+    def spread_contexts(self) -> FloatArray:
+        """Contexts spread over their ranges, float[SAMPLE, contexts]."""
+        low, high = np.array([one.range for one in self.model.context.values()]).T
+        share = qmc.Sobol(len(low), scramble=True, rng=0).random(SAMPLE)
+        return np.asarray(low + (high - low) * share)
+
     @cached_property
     def sample(self) -> tuple[FloatArray, FloatArray]:
         """`bend` at contexts spread over their ranges."""
-        low, high = np.array([one.range for one in self.model.context.values()]).T
-        share = qmc.Sobol(len(low), scramble=True, rng=0).random(SAMPLE)
-        return self.bend(low + (high - low) * share)
+        return self.bend(self.spread_contexts)
 
     def at(self, values: FloatArray) -> Model:
         """The model extended by the unknowns at values, float[unknowns]."""

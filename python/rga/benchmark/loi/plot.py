@@ -10,6 +10,7 @@ from rga.benchmark.loi.found import lives, mean, mean_lives, scores
 from rga.benchmark.loi.levels import LEVELS
 from rga.benchmark.loi.rows import ORACLE
 from rga.benchmark.loi.run import Result
+from rga.benchmark.loi.sheets_levels import NULL
 
 
 def plot(result: Result, folder: Path) -> None:
@@ -45,20 +46,21 @@ def methods(result: Result) -> Canvas:
                 )
         axes.grid(alpha=0.25)
     floor = errors.get(ORACLE)
-    left.axvline(1.0, color="0.6", lw=1, ls=":")
+    left.axvline(1.0, color="0.6", lw=1, ls=":", label="middle of the ranges")
     if floor is not None:
-        left.axvline(floor.value, color="0.3", lw=1, ls="--")
+        left.axvline(floor.value, color="0.3", lw=1, ls="--", label=f"floor: {ORACLE}")
     for name, style in zip(FLOORS, (":", "--", "-."), strict=True):
         one = gaps.get(name)
         if one is not None:
-            right.axvline(one.value, color="0.4", lw=1, ls=style, label=name)
+            right.axvline(one.value, color="0.4", lw=1, ls=style, label=f"floor: {name}")
     left.set_yticks(range(len(own)), own)
     left.set_ylim(-0.6, len(own) - 0.4)
-    left.set(xlabel="Error [-]; 1: the middle of the ranges", xlim=(0.0, None))
+    left.set(xlabel="Error [-]", xlim=(0.0, None))
+    left.legend(fontsize=8)
     right.set(xlabel="RG [mm²]", xscale="log")
     if right.get_legend_handles_labels()[1]:
         right.legend(fontsize=8)
-    canvas.suptitle(f"Level A, gap: {gap}, contexts: {manner}")
+    canvas.suptitle(f"Level A, gap: {gap}, contexts: {manner}; bars: 90 % intervals over splits")
     return canvas
 
 
@@ -69,9 +71,10 @@ def levels(result: Result) -> Canvas:
     rows = -(-len(drifts) // columns)
     canvas = Canvas(figsize=(4.4 * columns, 3.4 * rows + 1.2), layout="constrained")
     panels = canvas.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
-    streamed = [one.row for one in result.outcomes if one.played and one.row not in FLOORS]
+    played = [one.row for one in result.outcomes if one.played and one.row not in FLOORS]
+    streamed = list(dict.fromkeys(played))
     for axes, drift in zip(panels, drifts, strict=False):
-        for number, row in enumerate(dict.fromkeys(streamed)):
+        for number, row in enumerate(streamed):
             found = [
                 mean(
                     mean_lives(
@@ -81,20 +84,28 @@ def levels(result: Result) -> Canvas:
                 )
                 for level in LEVELS
             ]
-            axes.plot(
-                range(len(LEVELS)),
+            # Beside each other, so that none hides another.
+            axes.errorbar(
+                np.arange(len(LEVELS)) + 0.03 * (number - len(streamed) / 2.0),
                 [np.nan if one is None else one.value for one in found],
-                "osD^v"[number // 10 % 5] + "-",
+                [0.0 if one is None else one.reach or 0.0 for one in found],
+                fmt="osD^v"[number // 10 % 5] + "-",
                 color=f"C{number % 10}",
                 label=row,
                 ms=4,
                 lw=1,
+                capsize=2,
             )
-        axes.set(title=drift, xticks=range(len(LEVELS)), xticklabels=LEVELS)
+        title = "nothing comes (null twin)" if drift == NULL else drift
+        axes.set(title=title, xticks=range(len(LEVELS)), xticklabels=LEVELS, ylim=(0.0, None))
         axes.grid(alpha=0.25)
     for axes in panels[len(drifts) :]:
         axes.set_visible(False)
-    panels[0].set_ylabel("Error on drifted rows [-]")
+    for axes in panels[::columns]:
+        axes.set_ylabel("Error on drifted rows [-]")
+    for axes in panels[max(0, len(drifts) - columns) : len(drifts)]:
+        axes.set_xlabel("level of integration")
+    canvas.suptitle("Error on rows under each drift, by level; bars: 90 % intervals over splits")
     handles, labels = panels[0].get_legend_handles_labels()
     canvas.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
     return canvas

@@ -58,11 +58,12 @@ def _levels(result: Result, row: str) -> list[list[str]]:
         return mean_lives(lives(result.outcomes, row, drifts, level), number)
 
     a, b, c = LEVELS
+    them = ", ".join(once)
     figures = [
-        ("Error on drifted rows, B against A", once, b, a, _drifted, "-20 %; -30 %"),
-        ("Error on ordinary rows, B against A", once, b, a, _ordinary, "no loss"),
+        (f"Error on drifted rows ({them}), B against A", once, b, a, _drifted, "-20 %; -30 %"),
+        (f"Error on ordinary rows ({them}), B against A", once, b, a, _ordinary, "no loss"),
         ("Error on recurrence, C against B", [RECURRING], c, b, whole(_error), "less"),
-        ("Error on drifted rows, C against B", once, c, b, _drifted, ""),
+        (f"Error on drifted rows ({them}), C against B", once, c, b, _drifted, ""),
         ("RG on recurrence, C against B", [RECURRING], c, b, whole(_rg), ""),
         ("recalibrations on recurrence, C against B", [RECURRING], c, b, _learned, "; -50 %"),
     ]

@@ -125,7 +125,8 @@ def _worth(result: Result, name: str, drifts: Sequence[str]) -> Sheet:
         ]
         cells = ["" if one is None else one.told(form) for one, form in differences]
         rows.append([row, *cells])
-    return Sheet(f"What recalibration changes: drifts {name}", headings, rows)
+    title = f"What recalibration changes: drifts {name} ({', '.join(drifts)})"
+    return Sheet(title, headings, rows)
 
 
 def _streamed(result: Result) -> list[str]:

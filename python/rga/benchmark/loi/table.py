@@ -52,7 +52,7 @@ def about(result: Result) -> list[str]:
 
 def terminal(result: Result) -> Group:
     """For rich."""
-    return Group(*(one.terminal() for one in sheets(result)), order(result))
+    return Group(*(one.terminal() for one in sheets(result)), order(result), "", NOTES)
 
 
 def markdown(result: Result, command: str) -> str:
