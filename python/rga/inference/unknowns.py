@@ -266,45 +266,33 @@ def _joints(model: Model) -> Iterator[Unknown]:
 
 def _bearings(model: Model) -> Iterator[Unknown]:
     """Upright stiffness of supports that the model takes as rigid."""
-    softened = {
-        name
-        for effect in model.effects.values()
-        if effect.kind == "support_flexibility"
-        for name in listed(getattr(effect, "support"))  # noqa: B009
-    }
-    for name, support in model.supports.items():
-        if "uz" in support.fixed and name not in softened:
-            yield Unknown(
-                f"bearing {name}",
-                {"kind": "support_flexibility", "support": name, "dof": "uz"},
-                "stiffness",
-                {"log10": True},
-                BEARING,
-                BEARING_SPREAD,
-                (BEARING - 3.0, BEARING + 3.0),
-            )
+    for name, place in _upright(model, "support_flexibility"):
+        bounds = (BEARING - 3.0, BEARING + 3.0)
+        yield Unknown(
+            f"bearing {name}", place, "stiffness", {"log10": True}, BEARING, BEARING_SPREAD, bounds
+        )
 
 
 def _settlements(model: Model) -> Iterator[Unknown]:
     """Upright settlement of supports."""
-    settled = {
+    for name, place in _upright(model, "support_settlement"):
+        yield Unknown(
+            f"settlement of {name}", place, "displacement", {}, 0.0, SETTLEMENT, (-SUNK, SUNK),
+            straight=True,
+        )  # fmt: skip
+
+
+def _upright(model: Model, kind: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Supports that hold uz and have no effect of a kind yet, each with that effect's place."""
+    taken = {
         name
         for effect in model.effects.values()
-        if effect.kind == "support_settlement"
+        if effect.kind == kind
         for name in listed(getattr(effect, "support"))  # noqa: B009
     }
     for name, support in model.supports.items():
-        if "uz" in support.fixed and name not in settled:
-            yield Unknown(
-                f"settlement of {name}",
-                {"kind": "support_settlement", "support": name, "dof": "uz"},
-                "displacement",
-                {},
-                0.0,
-                SETTLEMENT,
-                (-SUNK, SUNK),
-                straight=True,
-            )
+        if "uz" in support.fixed and name not in taken:
+            yield name, {"kind": kind, "support": name, "dof": "uz"}
 
 
 def _sides(model: Model) -> Iterator[Unknown]:
