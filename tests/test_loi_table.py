@@ -117,10 +117,10 @@ def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatc
     told = {figure: found for figure, found, _ in asked(made(errors)).rows}
     assert told["(1 - Error) / (1 - floor): good, no load tests"].startswith("0.62")
     assert told["(1 - Error) / (1 - floor): labelled, 20 load tests"].startswith("0.87")
-    assert told["Error on drifted rows (sensor), B against A: good"].startswith("-20%")
-    assert told["Error on ordinary rows (sensor), B against A: good"].startswith("+0%")
-    assert told["Error on recurrence, C against B: good"].startswith("-22%")
-    assert told["recalibrations on recurrence, C against B: good"].startswith("-75%")
+    assert told["Error on drifted rows (sensor), B against A: good"].startswith("-19.8%")
+    assert told["Error on ordinary rows (sensor), B against A: good"].startswith("+0.0%")
+    assert told["Error on recurrence, C against B: good"].startswith("-22.0%")
+    assert told["recalibrations on recurrence, C against B: good"].startswith("-75.0%")
     assert not any("physics" in figure for figure in told)
 
 

@@ -97,10 +97,12 @@ def levels(result: Result) -> Canvas:
                 capsize=2,
             )
         title = "nothing comes (null twin)" if drift == NULL else drift
-        axes.set(title=title, xticks=range(len(LEVELS)), xticklabels=LEVELS, ylim=(0.0, None))
+        axes.set(title=title, xticks=range(len(LEVELS)), xticklabels=LEVELS)
         axes.grid(alpha=0.25)
     for axes in panels[len(drifts) :]:
         axes.set_visible(False)
+    # Panels share it.
+    panels[0].set_ylim(0.0, None)
     for axes in panels[::columns]:
         axes.set_ylabel("Error on drifted rows [-]")
     for axes in panels[max(0, len(drifts) - columns) : len(drifts)]:

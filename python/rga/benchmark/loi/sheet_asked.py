@@ -45,7 +45,7 @@ def asked(result: Result) -> Sheet:
         _first(result, PAPERS[one], lambda score: score.rg)
         for one in ("with physics", "without physics")
     )
-    found = _told(_change(physics, plain), "+.0%")
+    found = _told(_change(physics, plain), "+.1%")
     rows.append(["RG with physics against without, level A", found, "-42 %; -80 %"])
     return Sheet("What is asked", ["figure", "found", "at least; aim"], [r for r in rows if r[1]])
 
@@ -70,7 +70,7 @@ def _levels(result: Result, row: str) -> list[list[str]]:
     return [
         [
             f"{name}: {row}",
-            _told(_change(of(drifts, now, number), of(drifts, then, number)), "+.0%"),
+            _told(_change(of(drifts, now, number), of(drifts, then, number)), "+.1%"),
             wanted,
         ]
         for name, drifts, now, then, number, wanted in figures
