@@ -123,7 +123,7 @@ def shorter(seed: int, rows: tuple[str, ...]) -> Setting:
         few=1,
         gaps=("all",),
         manners=("same",),
-        drifts=("none", "sensor", "recurring"),
+        drifts=("none", "recurring"),
         rows=rows,
         sizes=Sizes(source=512, unlabelled=100, test=120),
     )
