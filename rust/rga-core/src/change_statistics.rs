@@ -21,7 +21,7 @@ use banks::{Banks, Found};
 use recent::Recent;
 use reference::Work;
 pub use reference::{Reference, ReferenceArrays};
-use sixteen::{Lanes, OnSixteen, on_sixteen};
+use sixteen::{BEAT, Lanes, OnSixteen, on_sixteen};
 
 /// Beyond this a reading is taken for a fault of its source.
 const LARGEST: f64 = 1e60;
@@ -124,31 +124,31 @@ impl ChangeStatistics {
                 &format!("its shape must be [n, {sensors}]"),
             ));
         }
-        // Before anything changes; NaN is not above.
-        let beyond = |value: &f64| value.abs() > LARGEST;
-        if rows
-            .values
-            .iter()
-            .fold(false, |any, value| any | beyond(value))
-        {
-            let at = rows.values.iter().position(beyond).unwrap_or_default();
-            let row = self.rows + (at / sensors) as u64;
-            return Err(Refusal::new(
-                format!("the value is {:?}", rows.values[at]),
-                &format!("row {row} of the stream, sensor {}", at % sensors),
-                &format!("give numbers within {LARGEST:e} in size, and NaN for a missing value"),
-            ));
-        }
         let mut alarms = vec![false; rows.len()];
-        on_sixteen(
-            arch,
-            Advance {
-                statistics: self,
-                rows: rows.values,
-                alarms: &mut alarms,
-            },
-        );
+        let mut refused = false;
+        let advance = Advance {
+            statistics: self,
+            rows: rows.values,
+            alarms: &mut alarms,
+            refused: &mut refused,
+        };
+        on_sixteen(arch, advance);
+        if refused {
+            return Err(self.beyond(rows.values));
+        }
         Ok(alarms)
+    }
+
+    fn beyond(&self, values: &[f64]) -> Refusal {
+        let sensors = self.reference.sensors();
+        let beyond = values.iter().position(|value| value.abs() > LARGEST);
+        let at = beyond.unwrap_or_default();
+        let row = self.rows + (at / sensors) as u64;
+        Refusal::new(
+            format!("the value is {:?}", values[at]),
+            &format!("row {row} of the stream, sensor {}", at % sensors),
+            &format!("give numbers within {LARGEST:e} in size, and NaN for a missing value"),
+        )
     }
 }
 
@@ -156,38 +156,91 @@ struct Advance<'a> {
     statistics: &'a mut ChangeStatistics,
     rows: &'a [f64],
     alarms: &'a mut [bool],
+    /// Nothing has changed: a value is too large.
+    refused: &'a mut bool,
 }
 
 impl OnSixteen for Advance<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
+        let (mut rows, mut alarms) = (self.rows, self.alarms);
+        let (beyond, missing) = oddities(rows);
+        *self.refused = beyond;
+        if beyond {
+            return;
+        }
         let own = self.statistics;
         let sensors = own.reference.sensors();
-        let mut work = Work::new(sensors);
-        for (readings, alarm) in self.rows.chunks_exact(sensors).zip(self.alarms) {
-            let gaps = own.reference.scores(lanes, readings, &mut work);
-            if own.rows < own.end_of_evidence() {
-                own.recent.push(&work.scores[..sensors]);
+        let mut work = Work::new(&own.reference);
+        let mut found = [[0.0; _]; BEAT];
+        while !alarms.is_empty() {
+            let count = own.banks.rows_to_beat().min(alarms.len());
+            let (readings, alarm);
+            (readings, rows) = rows.split_at(count * sensors);
+            (alarm, alarms) = alarms.split_at_mut(count);
+            own.take(
+                lanes,
+                readings,
+                missing,
+                alarm,
+                &mut work,
+                &mut found[..count],
+            );
+        }
+    }
+}
+
+impl ChangeStatistics {
+    /// Takes rows of one beat.
+    #[inline(always)]
+    fn take<L: Lanes>(
+        &mut self,
+        lanes: L,
+        readings: &[f64],
+        missing: bool,
+        alarms: &mut [bool],
+        work: &mut Work,
+        found: &mut [Found],
+    ) {
+        let gaps = self.reference.scores(lanes, readings, missing, work);
+        let signature = self.reference.signature();
+        self.banks
+            .advance(lanes, &work.scores, signature, gaps, found);
+        for (row, (alarm, found)) in alarms.iter_mut().zip(found).enumerate() {
+            if self.rows < self.end_of_evidence() {
+                self.recent.push(&work.scores, row);
             }
-            let signature = own.reference.signature();
-            let found = own.banks.advance(lanes, &work.scores, signature, gaps);
-            let peaks = L::vectors_mut(&mut own.peaks).iter_mut();
-            let limits = L::vectors(&own.thresholds);
+            let peaks = L::vectors_mut(&mut self.peaks).iter_mut();
+            let limits = L::vectors(&self.thresholds);
             let mut raised = false;
-            for ((peak, value), limit) in peaks.zip(L::vectors(&found)).zip(limits) {
+            for ((peak, value), limit) in peaks.zip(L::vectors(found)).zip(limits) {
                 *peak = lanes.max(*peak, *value);
                 raised |= lanes.any_reaches(*value, *limit);
             }
-            if raised && own.alarm.is_none() {
-                own.alarm = Some(Alarm {
-                    row: own.rows,
-                    statistic: farthest(&found, &own.thresholds),
+            if raised && self.alarm.is_none() {
+                self.alarm = Some(Alarm {
+                    row: self.rows,
+                    statistic: farthest(found, &self.thresholds),
                 });
             }
-            *alarm = own.alarm.is_some();
-            own.rows += 1;
+            *alarm = self.alarm.is_some();
+            self.rows += 1;
         }
     }
+}
+
+/// Whether some value is too large, and whether some is missing.
+#[inline(always)]
+fn oddities(values: &[f64]) -> (bool, bool) {
+    let mut usual = true;
+    for value in values {
+        usual &= value.abs() <= LARGEST;
+    }
+    if usual {
+        return (false, false);
+    }
+    let beyond = values.iter().any(|value| value.abs() > LARGEST);
+    (beyond, values.iter().any(|value| value.is_nan()))
 }
 
 /// The statistic that is farthest above its threshold.

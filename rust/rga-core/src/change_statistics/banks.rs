@@ -17,13 +17,16 @@
 
 mod beat;
 mod likelihood;
-mod row;
+mod rows;
 mod sums;
 
-use super::sixteen::{Lanes, SIXTEEN, sixteens};
+use std::slice;
 
-/// Rows of a beat, and beats of a bar.
-const BEAT: u64 = 4;
+use likelihood::Several;
+
+use super::sixteen::{BEAT, Block, Lanes, SIXTEEN, sixteens};
+
+/// Beats of a bar.
 const BAR: u64 = 2;
 
 /// Steps d in the scores of rows, of beats and of bars.
@@ -55,6 +58,12 @@ const AVERAGES: usize = ROW_AVERAGES.len() + BEAT_AVERAGES.len();
 const _: () = assert!(STEPS + SPREADS + AVERAGES == SIXTEEN);
 const _: () = assert!(2 * SUMS * SUM_STEPS.len() == SIXTEEN);
 
+/// Where statistics of rows begin among all; those of beats lie before the steps, and behind the
+/// averages.
+const OF_ROW_STEPS: usize = STEPS - ROW_STEPS.len();
+const OF_SPREADS: usize = STEPS;
+const OF_AVERAGES: usize = STEPS + SPREADS;
+
 /// Two sixteens; what is behind the last statistic means nothing.
 pub type Found = [f32; 2 * SIXTEEN];
 
@@ -65,6 +74,7 @@ const SLOW: usize = 1 + 2 + 2 + SPREADS + BEAT_AVERAGES.len();
 #[derive(Debug, Clone, PartialEq)]
 pub struct Banks {
     sensors: usize,
+    several: Several,
     /// `[sixteens, QUICK, 16]`
     pub(super) quick: Vec<f32>,
     /// `[sixteens, SLOW, 16]`
@@ -79,6 +89,7 @@ impl Banks {
         let width = sixteens(sensors) * SIXTEEN;
         Self {
             sensors,
+            several: Several::new(sensors),
             quick: vec![0.0; width * QUICK],
             slow: vec![0.0; width * SLOW],
             sums: vec![0.0; SIXTEEN],
@@ -86,28 +97,57 @@ impl Banks {
         }
     }
 
-    /// Takes the scores of a row, whole sixteens with NaN where they are missing, and gives the
-    /// statistics; one that is not looked at in this row is 0.
+    /// Rows until a beat is full.
+    pub fn rows_to_beat(&self) -> usize {
+        BEAT - (self.rows % BEAT as u64) as usize
+    }
+
+    /// Takes the scores of rows of one beat, NaN where they are missing, and gives the statistics
+    /// of each; one that is not looked at in a row is 0.
     #[inline(always)]
     pub fn advance<L: Lanes>(
         &mut self,
         lanes: L,
-        scores: &[f32],
+        scores: &[Block],
         signature: &[f32],
         gaps: bool,
-    ) -> Found {
-        self.rows += 1;
-        let mut found = [0.0; 2 * SIXTEEN];
-        let (of_sensors, of_sums) = found.split_at_mut(SIXTEEN);
-        let (steps, rest) = of_sensors.split_at_mut(STEPS);
-        let (spreads, averages) = rest.split_at_mut(SPREADS);
-        let (quick_averages, slow_averages) = averages.split_at_mut(ROW_AVERAGES.len());
-        let rows = &mut steps[2..];
-        let totals = self.each_row(lanes, scores, signature, gaps, rows, quick_averages);
-        L::vectors_mut(of_sums)[0] = self.watch_sums(lanes, totals);
-        if self.rows.is_multiple_of(BEAT) {
-            self.each_beat(lanes, &mut steps[..2], spreads, slow_averages);
+        found: &mut [Found],
+    ) {
+        found.fill([0.0; _]);
+        if found.len() == BEAT && !gaps {
+            self.take::<L, BEAT, false>(lanes, scores, signature, 0, found);
+            self.watch_beat::<L, true>(lanes, &mut found[BEAT - 1]);
+            return;
         }
-        found
+        for (row, found) in found.iter_mut().enumerate() {
+            let one = slice::from_mut(found);
+            if gaps {
+                self.take::<L, 1, true>(lanes, scores, signature, row, one);
+            } else {
+                self.take::<L, 1, false>(lanes, scores, signature, row, one);
+            }
+            if self.rows.is_multiple_of(BEAT as u64) {
+                self.watch_beat::<L, false>(lanes, found);
+            }
+        }
+    }
+
+    /// N rows, one or all of a beat, from one on. `GAPS`: some scores are missing.
+    #[inline(always)]
+    fn take<L: Lanes, const N: usize, const GAPS: bool>(
+        &mut self,
+        lanes: L,
+        scores: &[Block],
+        signature: &[f32],
+        first: usize,
+        found: &mut [Found],
+    ) {
+        let totals = self.watch_averages::<L, N, GAPS>(lanes, scores, signature, first, found);
+        self.watch_steps::<L, N, GAPS>(lanes, scores, first, found);
+        for (totals, found) in totals.into_iter().zip(found) {
+            let of_sums = &mut found[SIXTEEN..];
+            L::vectors_mut(of_sums)[0] = self.watch_sums(lanes, totals);
+        }
+        self.rows += N as u64;
     }
 }

@@ -1,5 +1,7 @@
 //! The latest scores: what an alarm is explained by.
 
+use super::sixteen::{Block, SIXTEEN};
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recent {
     sensors: usize,
@@ -21,13 +23,19 @@ impl Recent {
     }
 
     #[inline(always)]
-    pub fn push(&mut self, scores: &[f32]) {
+    pub fn push(&mut self, scores: &[Block], row: usize) {
         let rows = self.rows();
         if rows == 0 {
             return;
         }
         let place = &mut self.ring[self.next * self.sensors..][..self.sensors];
-        place.copy_from_slice(scores);
+        let (sixteens, rest) = place.as_chunks_mut::<SIXTEEN>();
+        for (place, block) in sixteens.iter_mut().zip(scores) {
+            *place = block[row];
+        }
+        if let Some(block) = scores.get(sixteens.len()) {
+            rest.copy_from_slice(&block[row][..rest.len()]);
+        }
         self.next = if self.next + 1 == rows {
             0
         } else {

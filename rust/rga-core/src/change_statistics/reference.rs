@@ -4,18 +4,18 @@
 //! differs by is bent to a normal score, by a function that is linear between knots, and the
 //! scores of a row are mixed so that sensors go together no more.
 
-use super::sixteen::{Lanes, SIXTEEN, sixteens};
+mod bending;
+mod memory;
+mod mixing;
+
+use memory::any_missing;
+
+use super::sixteen::{BEAT, Block, Lanes, SIXTEEN, sixteens};
 use crate::gaussian_window::Refusal;
 use crate::input::Array;
 
 /// Scores are never beyond this: one reading alone says no more.
 pub const LARGEST_SCORE: f32 = 6.0;
-
-/// Readings further from their level, in units, are taken for this.
-const FARTHEST: f32 = 1e3;
-
-/// Sweeps that fill missing scores with what the others of the row let expect.
-const SWEEPS: usize = 8;
 
 /// p sensors
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +52,7 @@ pub struct Reference {
 struct Derived {
     /// `[p]` how far back deviations have a weight
     reach: Vec<u64>,
+    units: Vec<f64>,
     /// `[1 + 1 + 2 knots, 16]` for each sixteen: offset, slope, and knots with their bends
     bending: Vec<f32>,
     /// `[sixteens, p, 16]` columns of W; empty: W is the identity.
@@ -140,6 +141,8 @@ impl Reference {
             last.map_or(0, |lag| lag as u64 + 1)
         };
         let reach = (0..sensors).map(reach).collect();
+        let mut units = self.units.clone();
+        units.resize(sixteens(sensors) * SIXTEEN, 0.0);
         let mut bending = Vec::new();
         let mut signature = Vec::new();
         for first in (0..sensors).step_by(SIXTEEN) {
@@ -164,6 +167,7 @@ impl Reference {
         }
         self.derived = Derived {
             reach,
+            units,
             bending,
             columns,
             signature,
@@ -199,228 +203,116 @@ impl Reference {
         self.weights.len() / self.sensors()
     }
 
-    /// Independent scores of a row, NaN where they are missing; and whether any is.
+    /// Independent scores of rows, those of a beat at most, NaN where they are missing; and whether
+    /// any is. `missing`: readings may be.
     #[inline(always)]
-    pub fn scores<L: Lanes>(&mut self, lanes: L, readings: &[f64], work: &mut Work) -> bool {
+    pub fn scores<L: Lanes>(
+        &mut self,
+        lanes: L,
+        readings: &[f64],
+        missing: bool,
+        work: &mut Work,
+    ) -> bool {
         let sensors = self.sensors();
-        self.innovations(readings, &mut work.innovations);
-        let scores = &mut work.scores;
-        let innovations = work.innovations.iter().zip(&self.units);
-        for (score, (innovation, units)) in scores.iter_mut().zip(innovations) {
-            *score = (innovation * units) as f32;
+        let mut gaps = false;
+        let rows = readings.chunks_exact(sensors).len();
+        for row in 0..rows {
+            let readings = &readings[row * sensors..][..sensors];
+            if !self.past.is_empty() {
+                self.expect(&mut work.expected[..sensors]);
+            }
+            self.scale(readings, row, work);
+            if !work.settled || missing && any_missing(readings) {
+                let spoil =
+                    |sensor: usize| work.scores[sensor / SIXTEEN][row][sensor % SIXTEEN] = f32::NAN;
+                self.remember_with_gaps(readings, &work.expected, spoil);
+                work.settled = self.settled();
+                gaps = true;
+            } else if !self.past.is_empty() {
+                self.remember(readings);
+            }
         }
-        let gaps = any_missing(&work.innovations);
-        self.bend(lanes, scores);
-        if !self.derived.columns.is_empty() {
+        if rows == BEAT && !gaps {
+            self.finish::<L, BEAT, false>(lanes, work, 0);
+            return false;
+        }
+        for row in 0..rows {
             if gaps {
-                self.mix_with_gaps(lanes, scores, &mut work.mixed);
-                self.cut(lanes, scores);
+                self.finish::<L, 1, true>(lanes, work, row);
             } else {
-                self.mix(lanes, &scores[..sensors], &mut work.mixed);
-                scores[..sensors].copy_from_slice(&work.mixed[..sensors]);
-                self.cut(lanes, scores);
+                self.finish::<L, 1, false>(lanes, work, row);
             }
         }
         gaps
     }
 
-    /// What readings differ by from what the ones before them let expect.
+    /// Readings less the expected ones, in units.
     #[inline(always)]
-    fn innovations(&mut self, readings: &[f64], found: &mut [f64]) {
-        let (sensors, order) = (self.sensors(), self.order());
-        for ((found, reading), level) in found.iter_mut().zip(readings).zip(&self.level) {
-            *found = reading - level;
-        }
-        if order == 0 {
-            return;
-        }
-        let unsettled = self.unsettled.iter().fold(0, |any, rows| any | rows);
-        if unsettled > 0 || any_missing(found) {
-            self.innovations_with_gaps(found);
-            return;
-        }
-        for lag in 1..order {
-            let (weights, past) = (&self.weights[lag * sensors..], &self.past[lag * sensors..]);
-            for ((found, weight), past) in found.iter_mut().zip(weights).zip(past) {
-                *found -= weight * past;
-            }
-        }
-        self.past.copy_within(..(order - 1) * sensors, sensors);
-        let deviations = readings.iter().zip(&self.level);
-        let latest = self.past[..sensors].iter_mut().zip(&self.weights);
-        for ((found, (latest, weight)), (reading, level)) in
-            found.iter_mut().zip(latest).zip(deviations)
-        {
-            *found -= weight * *latest;
-            *latest = reading - level;
+    fn scale(&self, readings: &[f64], row: usize, work: &mut Work) {
+        let (sixteens, rest) = readings.as_chunks();
+        let mut last = [0.0; SIXTEEN];
+        last[..rest.len()].copy_from_slice(rest);
+        let readings = sixteens.iter().chain([&last]);
+        let (expected, _) = work.expected.as_chunks::<SIXTEEN>();
+        let (units, _) = self.derived.units.as_chunks::<SIXTEEN>();
+        let by_sixteen = readings.zip(expected).zip(units).zip(&mut work.scores);
+        for (((readings, expected), units), block) in by_sixteen {
+            block[row] = scaled(readings, expected, units);
         }
     }
 
-    /// A missing reading is taken for the expected one; those that it would have helped to
-    /// predict are not judged.
-    #[inline(never)]
-    fn innovations_with_gaps(&mut self, found: &mut [f64]) {
-        let (sensors, order) = (self.sensors(), self.order());
-        for (sensor, found) in found.iter_mut().enumerate() {
-            let deviation = *found;
-            let mut expected = 0.0;
-            for lag in (0..order).rev() {
-                let at = lag * sensors + sensor;
-                expected += self.weights[at] * self.past[at];
-                if lag > 0 {
-                    self.past[at] = self.past[at - sensors];
-                }
-            }
-            let unsettled = &mut self.unsettled[sensor];
-            if deviation.is_nan() {
-                self.past[sensor] = expected;
-                *unsettled = self.derived.reach[sensor];
-            } else {
-                self.past[sensor] = deviation;
-                *found = deviation - expected;
-                if *unsettled > 0 {
-                    *unsettled -= 1;
-                    *found = f64::NAN;
-                }
-            }
-        }
-    }
-
-    /// From units to scores.
+    /// N rows of units, from one on, become independent scores.
     #[inline(always)]
-    fn bend<L: Lanes>(&self, lanes: L, scores: &mut [f32]) {
-        let width = self.derived.bending.len() / scores.len() * SIXTEEN;
-        let bending = self.derived.bending.chunks_exact(width).map(L::vectors);
-        for (score, bending) in L::vectors_mut(scores).iter_mut().zip(bending) {
-            let units = lanes.max(*score, lanes.splat(-FARTHEST));
-            let units = lanes.min(units, lanes.splat(FARTHEST));
-            let mut bent = lanes.add(bending[0], lanes.mul(bending[1], units));
-            for knot in bending[2..].chunks_exact(2) {
-                let beyond = lanes.max(units, knot[0]);
-                bent = lanes.add(bent, lanes.mul(knot[1], beyond));
-            }
-            *score = lanes.select(lanes.equal(*score, *score), bent, *score);
-        }
-        self.cut(lanes, scores);
-    }
-
-    /// To what a baseline can tell of; what is no number stays none.
-    #[inline(always)]
-    fn cut<L: Lanes>(&self, lanes: L, scores: &mut [f32]) {
-        let largest = self.largest[0] as f32;
-        for score in L::vectors_mut(scores) {
-            let cut = lanes.max(*score, lanes.splat(-largest));
-            let cut = lanes.min(cut, lanes.splat(largest));
-            *score = lanes.select(lanes.equal(*score, *score), cut, *score);
-        }
-    }
-
-    /// W times scores.
-    #[inline(always)]
-    fn mix<L: Lanes>(&self, lanes: L, scores: &[f32], mixed: &mut [f32]) {
-        let sensors = scores.len();
-        // Sums that do not wait for each other.
-        for (columns, mixed) in self
-            .derived
-            .columns
-            .chunks(TOGETHER * SIXTEEN * sensors)
-            .zip(mixed.chunks_mut(TOGETHER * SIXTEEN))
-        {
-            let (columns, mixed) = (L::vectors(columns), L::vectors_mut(mixed));
-            if mixed.len() == TOGETHER {
-                let sums = product::<L, TOGETHER>(lanes, columns, scores);
-                mixed.copy_from_slice(&sums);
-            } else {
-                for (columns, mixed) in columns.chunks_exact(sensors).zip(mixed) {
-                    [*mixed] = product(lanes, columns, scores);
-                }
-            }
-        }
-    }
-
-    /// Missing scores take the values that are likeliest beside the others: those that make the
-    /// sum of squares of the independent scores least, found one after the other.
-    #[inline(always)]
-    fn mix_with_gaps<L: Lanes>(&self, lanes: L, scores: &mut [f32], mixed: &mut [f32]) {
-        let sensors = self.sensors();
-        let missing: Vec<usize> = (0..sensors).filter(|at| scores[*at].is_nan()).collect();
-        for sensor in &missing {
-            scores[*sensor] = 0.0;
-        }
-        self.mix(lanes, &scores[..sensors], mixed);
-        for _ in 0..SWEEPS {
-            for sensor in &missing {
-                let own = &self.mixing[sensor * sensors..][..sensors];
-                let along = own
-                    .iter()
-                    .zip(&*mixed)
-                    .map(|(w, score)| w * f64::from(*score));
-                let length: f64 = own.iter().map(|w| w * w).sum();
-                let step = -along.sum::<f64>() / length;
-                for (score, w) in mixed.iter_mut().zip(own) {
-                    *score += (step * w) as f32;
-                }
-            }
-        }
-        scores[..sensors].copy_from_slice(&mixed[..sensors]);
-        for sensor in missing {
-            scores[sensor] = f32::NAN;
+    fn finish<L: Lanes, const N: usize, const GAPS: bool>(
+        &self,
+        lanes: L,
+        work: &mut Work,
+        first: usize,
+    ) {
+        self.bend::<L, N, GAPS>(lanes, &mut work.scores, first);
+        if !self.derived.columns.is_empty() {
+            self.mix::<L, N, GAPS>(lanes, &mut work.scores, &mut work.mixed, first);
         }
     }
 }
 
-/// Sixteens whose sums are formed together.
-const TOGETHER: usize = 6;
-
-/// N sixteens of W times scores.
 #[inline(always)]
-fn product<L: Lanes, const N: usize>(
-    lanes: L,
-    columns: &[L::Numbers],
-    scores: &[f32],
-) -> [L::Numbers; N] {
-    let mut sums = [lanes.splat(0.0); N];
-    for (column, score) in scores.iter().enumerate() {
-        let score = lanes.splat(*score);
-        for (band, sum) in sums.iter_mut().enumerate() {
-            let weighted = lanes.mul(columns[band * scores.len() + column], score);
-            *sum = lanes.add(*sum, weighted);
-        }
+fn scaled(
+    readings: &[f64; SIXTEEN],
+    expected: &[f64; SIXTEEN],
+    units: &[f64; SIXTEEN],
+) -> [f32; SIXTEEN] {
+    let mut scores = [0.0; SIXTEEN];
+    for lane in 0..SIXTEEN {
+        scores[lane] = ((readings[lane] - expected[lane]) * units[lane]) as f32;
     }
-    sums
+    scores
 }
 
-/// What one row is worked out in.
+/// What the rows of a beat are worked out in.
 #[derive(Debug, Clone)]
 pub struct Work {
-    innovations: Vec<f64>,
-    /// Whole sixteens; NaN behind the last sensor.
-    pub scores: Vec<f32>,
-    mixed: Vec<f32>,
+    /// Readings that predict the next ones are known.
+    settled: bool,
+    /// Whole sixteens, NaN behind the last sensor.
+    expected: Vec<f64>,
+    /// NaN behind the last sensor.
+    pub scores: Vec<Block>,
+    mixed: Vec<Block>,
 }
 
 impl Work {
-    pub fn new(sensors: usize) -> Self {
-        let padded = sixteens(sensors) * SIXTEEN;
+    pub fn new(reference: &Reference) -> Self {
+        let sensors = reference.sensors();
+        let mut expected = reference.level.clone();
+        expected.resize(sixteens(sensors) * SIXTEEN, f64::NAN);
         Self {
-            innovations: vec![0.0; sensors],
-            scores: vec![f32::NAN; padded],
-            mixed: vec![0.0; padded],
+            settled: reference.settled(),
+            expected,
+            scores: vec![[[f32::NAN; _]; _]; sixteens(sensors)],
+            mixed: vec![[[0.0; _]; _]; sixteens(sensors)],
         }
     }
-}
-
-/// A number times 0 is 0, and what is none stays none: eight sums of that, side by side.
-#[inline(always)]
-fn any_missing(values: &[f64]) -> bool {
-    let (eights, rest) = values.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for eight in eights {
-        for (sum, value) in sums.iter_mut().zip(eight) {
-            *sum += value * 0.0;
-        }
-    }
-    sums.iter().chain(rest).any(|value| value.is_nan())
 }
 
 /// Single precision, filled up to sixteen with zeros.

@@ -1,8 +1,8 @@
 //! Likelihood ratios, and what they make of the statistics.
 
-use super::{BEAT, SPREADS};
+use super::SPREADS;
 use crate::change_statistics::powers::powers;
-use crate::change_statistics::sixteen::Lanes;
+use crate::change_statistics::sixteen::{BEAT, Lanes};
 
 /// Number of sensors that q stands for.
 const SEVERAL: f32 = 5.0;
@@ -30,78 +30,90 @@ pub fn grown<L: Lanes>(
 /// (rows + R) L
 #[inline(always)]
 pub fn replaced<L: Lanes>(lanes: L, state: L::Numbers, ratio: L::Numbers, rows: f32) -> L::Numbers {
-    lanes.mul(lanes.add(state, lanes.splat(rows)), ratio)
+    if rows == 1.0 {
+        lanes.mul_add(state, ratio, ratio)
+    } else {
+        lanes.mul(lanes.add(state, lanes.splat(rows)), ratio)
+    }
 }
 
 /// Likelihood ratios of a standard deviation s of sqrt(2), 2 and 1/2 times what it was, from the
 /// sum T of the squares of so many scores of a beat: s^-count times powers of e whose exponents are
-/// T / 4, 3 T / 8 and - 3 T / 2.
+/// T / 4, 3 T / 8 and - 3 T / 2. `WHOLE`: the scores are those of all rows of the beat.
 #[inline(always)]
-pub fn spread_ratios<L: Lanes>(
+pub fn spread_ratios<L: Lanes, const WHOLE: bool>(
     lanes: L,
     squares: L::Numbers,
     count: L::Numbers,
 ) -> [L::Numbers; SPREADS] {
-    let small = lanes.mul(squares, lanes.splat(1.0 / 512.0));
-    let (grow, shrink) = powers(lanes, small, 0);
-    let (grow_64, shrink_256) = (squared(lanes, grow, 6), squared(lanes, shrink, 8));
-    let grow_128 = squared(lanes, grow_64, 1);
+    let (grow, shrink) = powers(lanes, lanes.mul(squares, lanes.splat(1.0 / 8.0)));
+    let (grow_2, shrink_4) = (square(lanes, grow), square(lanes, square(lanes, shrink)));
     let mut ratios = [
-        grow_128,
-        lanes.mul(grow_128, grow_64),
-        lanes.mul(squared(lanes, shrink_256, 1), shrink_256),
+        grow_2,
+        lanes.mul(grow_2, grow),
+        lanes.mul(square(lanes, shrink_4), shrink_4),
     ];
     for (ratio, factor) in ratios.iter_mut().zip([0.5f32.sqrt(), 0.5, 2.0]) {
         let mut power = lanes.splat(factor.powi(BEAT as i32));
-        for fewer in 1..BEAT as i32 {
-            let same = lanes.equal(count, lanes.splat(fewer as f32));
-            power = lanes.select(same, lanes.splat(factor.powi(fewer)), power);
+        if !WHOLE {
+            for fewer in 1..BEAT as i32 {
+                let same = lanes.equal(count, lanes.splat(fewer as f32));
+                power = lanes.select(same, lanes.splat(factor.powi(fewer)), power);
+            }
         }
         *ratio = lanes.mul(*ratio, power);
     }
     ratios
 }
 
-/// Squared so many times.
 #[inline(always)]
-fn squared<L: Lanes>(lanes: L, mut number: L::Numbers, times: usize) -> L::Numbers {
-    for _ in 0..times {
-        number = lanes.mul(number, number);
-    }
-    number
+fn square<L: Lanes>(lanes: L, number: L::Numbers) -> L::Numbers {
+    lanes.mul(number, number)
 }
 
 /// The mixture over which sensors have changed.
-pub struct Several<L: Lanes> {
-    lanes: L,
-    unchanged: L::Numbers,
-    changed: L::Numbers,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Several {
+    unchanged: f32,
+    changed: f32,
+    /// Largest 1 + u^2 / WIDE: that of the largest factor.
+    largest: f32,
 }
 
-impl<L: Lanes> Several<L> {
-    #[inline(always)]
-    pub fn new(lanes: L, sensors: usize) -> Self {
+impl Several {
+    pub fn new(sensors: usize) -> Self {
         let share = (SEVERAL / sensors as f32).min(0.5);
+        let (unchanged, changed) = (1.0 - share, share / FLAT);
+        let largest = (LARGEST_FACTOR - unchanged) / changed;
         Self {
-            lanes,
-            unchanged: lanes.splat(1.0 - share),
-            changed: lanes.splat(share / FLAT),
+            unchanged,
+            changed,
+            // A root of order 16.
+            largest: (0..4).fold(largest, |power, _| power.sqrt()),
         }
     }
 
     /// Of an average over what has `rows` each.
     #[inline(always)]
-    pub fn factor(&self, average: L::Numbers, forget: f32, rows: f32) -> L::Numbers {
-        let lanes = self.lanes;
+    pub fn factor<L: Lanes>(
+        &self,
+        lanes: L,
+        average: L::Numbers,
+        forget: f32,
+        rows: f32,
+    ) -> L::Numbers {
         // The variance of the average is forget / (2 - forget) / rows.
         let scale = (2.0 - forget) / forget * rows / WIDE;
-        let scaled = lanes.mul(lanes.mul(average, average), lanes.splat(scale));
-        let mut power = lanes.add(scaled, lanes.splat(1.0));
-        power = lanes.min(power, lanes.splat(3.0));
+        let square = lanes.mul(average, average);
+        let mut power = lanes.mul_add(square, lanes.splat(scale), lanes.splat(1.0));
+        power = lanes.min(power, lanes.splat(self.largest));
         for _ in 0..4 {
             power = lanes.mul(power, power);
         }
-        let factor = lanes.add(lanes.mul(power, self.changed), self.unchanged);
-        lanes.min(factor, lanes.splat(LARGEST_FACTOR))
+        lanes.mul_add(
+            power,
+            lanes.splat(self.changed),
+            lanes.splat(self.unchanged),
+        )
     }
 }

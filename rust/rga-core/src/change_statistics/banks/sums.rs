@@ -15,9 +15,9 @@ impl Banks {
         for (number, sum) in sums.into_iter().enumerate() {
             let sum = lanes.splat(sum.clamp(-LARGEST_SCORE, LARGEST_SCORE));
             let sizes = by_lane(number, |size, sign| sign * size);
-            sized = lanes.add(sized, lanes.mul(L::vectors(&sizes)[0], sum));
+            sized = lanes.mul_add(L::vectors(&sizes)[0], sum, sized);
         }
-        let (power, _) = powers(lanes, sized, 6);
+        let (power, _) = powers(lanes, sized);
         let mut scales = [0.0; SIXTEEN];
         for number in 0..SUMS {
             let own = by_lane(number, |size, _| (-size * size / 2.0).exp());

@@ -1,0 +1,82 @@
+//! What readings are expected to be, from the ones before them.
+
+use super::Reference;
+
+impl Reference {
+    /// Readings that the next row lets expect, `[p]`.
+    #[inline(always)]
+    pub(super) fn expect(&self, expected: &mut [f64]) {
+        let sensors = self.sensors();
+        expected.copy_from_slice(&self.level);
+        for (weights, past) in self
+            .weights
+            .chunks_exact(sensors)
+            .zip(self.past.chunks_exact(sensors))
+        {
+            for ((expected, weight), past) in expected.iter_mut().zip(weights).zip(past) {
+                *expected += weight * past;
+            }
+        }
+    }
+
+    /// Whether the deviations that predict the next readings are known.
+    pub(super) fn settled(&self) -> bool {
+        self.unsettled.iter().all(|rows| *rows == 0)
+    }
+
+    /// Takes a row of which nothing is missing, nor was when it counts.
+    #[inline(always)]
+    pub(super) fn remember(&mut self, readings: &[f64]) {
+        let sensors = self.sensors();
+        let earlier = self.past.len() - sensors;
+        self.past.copy_within(..earlier, sensors);
+        let deviations = readings.iter().zip(&self.level);
+        for (past, (reading, level)) in self.past.iter_mut().zip(deviations) {
+            *past = reading - level;
+        }
+    }
+
+    /// A missing reading is taken for the expected one; those that it would have helped to
+    /// predict are not judged: their scores, told by `spoil`, are none.
+    #[inline(never)]
+    pub(super) fn remember_with_gaps(
+        &mut self,
+        readings: &[f64],
+        expected: &[f64],
+        mut spoil: impl FnMut(usize),
+    ) {
+        let (sensors, order) = (self.sensors(), self.order());
+        for (sensor, reading) in readings.iter().enumerate() {
+            for lag in (1..order).rev() {
+                self.past[lag * sensors + sensor] = self.past[(lag - 1) * sensors + sensor];
+            }
+            let unsettled = &mut self.unsettled[sensor];
+            let taken = if reading.is_nan() {
+                *unsettled = self.derived.reach[sensor];
+                expected[sensor]
+            } else {
+                if *unsettled > 0 {
+                    *unsettled -= 1;
+                    spoil(sensor);
+                }
+                *reading
+            };
+            if order > 0 {
+                self.past[sensor] = taken - self.level[sensor];
+            }
+        }
+    }
+}
+
+/// A number times 0 is 0, and what is none stays none: eight sums of that, side by side.
+#[inline(always)]
+pub(super) fn any_missing(values: &[f64]) -> bool {
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for eight in eights {
+        for (sum, value) in sums.iter_mut().zip(eight) {
+            *sum += value * 0.0;
+        }
+    }
+    sums.iter().chain(rest).any(|value| value.is_nan())
+}
