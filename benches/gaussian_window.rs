@@ -6,6 +6,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use pulp::{Arch, Simd, WithSimd};
 use rga_core::{Array, GaussianWindow, WindowRule};
 
 const SENSORS: usize = 84;
@@ -28,6 +29,25 @@ fn squares(count: usize) -> Vec<f64> {
         .collect()
 }
 
+/// All bits of values, on the widest vectors.
+struct Read<'a>(&'a [f64]);
+
+impl WithSimd for Read<'_> {
+    type Output = [u64; 64];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> [u64; 64] {
+        let (lanes, _) = self.0.as_chunks::<64>();
+        let mut sums = [0; 64];
+        for lane in lanes {
+            for (sum, value) in sums.iter_mut().zip(lane) {
+                *sum ^= value.to_bits();
+            }
+        }
+        sums
+    }
+}
+
 fn bench(criterion: &mut Criterion) {
     let rows = squares(ROWS * SENSORS);
     let mut alarms = vec![false; rows.len()];
@@ -35,12 +55,7 @@ fn bench(criterion: &mut Criterion) {
     group.throughput(Throughput::Bytes(8 * rows.len() as u64));
     group.sample_size(20);
     group.bench_function("read", |bencher| {
-        bencher.iter(|| {
-            let (lanes, _) = black_box(rows.as_slice()).as_chunks::<64>();
-            lanes.iter().fold([0u64; 64], |sums, lane| {
-                std::array::from_fn(|at| sums[at] ^ lane[at].to_bits())
-            })
-        });
+        bencher.iter(|| Arch::new().dispatch(Read(black_box(&rows))));
     });
     let mut window = GaussianWindow::new(RULE).expect("the rule is sound");
     group.bench_function("update_many", |bencher| {

@@ -77,6 +77,37 @@ impl Block {
         }
     }
 
+    /// Tests the only row of a tile, which holds no infinite value, and lets it into the windows.
+    /// False: it takes `take` for that, and nothing has changed.
+    #[inline(always)]
+    pub fn step<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
+        let Task {
+            lanes,
+            weights,
+            frozen,
+            ..
+        } = *task;
+        if !self.walks(task) {
+            return false;
+        }
+        let own = part.first..part.first + WIDTH;
+        let cell = tile.place(0, self.lag[0]) * tile.blocks + part.block;
+        let cell = &mut tile.windows[cell].0;
+        let moments = Moments::load(lanes, &self.moments);
+        let values = &tile.values[own.clone()];
+        prefetch(values, TILE * tile.sensors);
+        let value = lanes.load(values);
+        let moved = moments.moved(lanes, &weights, value, lanes.load(cell));
+        let exceeds = lanes.bits(moments.exceeded(lanes, &weights, value));
+        if !lanes.all(moved.sound(lanes, &weights)) || frozen && exceeds != 0 {
+            return false;
+        }
+        lanes.store(value, cell);
+        mark(&mut tile.alarms[own], exceeds);
+        moved.store(lanes, &mut self.moments);
+        true
+    }
+
     /// Whether `walk` can take rows.
     #[inline(always)]
     pub fn walks<L: Lanes>(&self, task: &Task<L>) -> bool {
@@ -135,15 +166,16 @@ impl Block {
         within.then_some(row)
     }
 
-    /// Sums full windows of lanes, given by their bits, from what they hold.
+    /// Sums full windows of lanes, given by their bits, from what they hold; windows are
+    /// `[places, blocks]`, and this block is `own` of them.
     ///
     /// The shift is the value nearest to the mean: values that are alike leave no rounding, and
     /// M Q - S^2 is then at least half of M Q.
     #[inline(never)]
-    pub fn sum_anew(&mut self, tile: &Tile, part: Part, bits: u64) {
-        let values = || tile.windows[part.block..].iter().step_by(tile.blocks);
-        let count = tile.places as f64;
-        let first = tile.windows[part.block].0;
+    pub fn sum_anew(&mut self, windows: &[Eight], blocks: usize, own: usize, bits: u64) {
+        let values = || windows[own..].iter().step_by(blocks);
+        let count = (windows.len() / blocks) as f64;
+        let first = windows[own].0;
         let (mut mean, mut shift) = ([0.0; WIDTH], first);
         let (mut sum, mut square) = ([0.0; WIDTH], [0.0; WIDTH]);
         for value in values() {

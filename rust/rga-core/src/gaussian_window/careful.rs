@@ -98,7 +98,7 @@ impl<L: Lanes> NullaryFnOnce for Careful<'_, '_, L> {
             }
             if due != 0 {
                 moments.store(lanes, &mut block.moments);
-                block.sum_anew(tile, part, due);
+                block.sum_anew(tile.windows, tile.blocks, part.block, due);
                 moments = Moments::load(lanes, &block.moments);
             }
             row += 1;

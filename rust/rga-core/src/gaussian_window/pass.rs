@@ -2,9 +2,9 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::block::Task;
+use super::block::{Block, Task};
 use super::moments::Weights;
-use super::tile::{Part, TILE, Tile, WIDTH};
+use super::tile::{TILE, Tile, WIDTH};
 use super::{GaussianWindow, LAPS, LARGEST};
 use crate::lanes::{Lanes, Packs};
 
@@ -34,32 +34,32 @@ impl WithSimd for Pass<'_> {
 impl Pass<'_> {
     #[inline(always)]
     fn through<L: Lanes>(self, lanes: L) -> bool {
-        if self.checked && !within(self.values) {
+        if self.checked && !within(lanes, self.values) {
             return false;
         }
-        let GaussianWindow {
-            rule,
-            rows: seen,
-            slot: next,
-            blocks,
-            ring: windows,
-            ..
-        } = self.window;
+        let window = self.window;
+        let rule = window.rule;
         let task = Task {
             lanes,
-            weights: Weights::new(lanes, rule),
+            weights: Weights::new(lanes, &rule),
             persistence: rule.persistence,
             frozen: rule.frozen,
         };
-        let (sensors, places, count) = (rule.sensors(), rule.earlier(), blocks.len());
-        let part = |block| Part {
-            block,
-            first: rule.first(block),
-        };
-        let mut broad = (sensors < WIDTH).then(Broad::default);
+        let sensors = rule.sensors();
         let (mut values, mut alarms) = (self.values, self.alarms);
+        let mut stepped = 0;
+        if self.checked && values.len() == sensors && sensors >= WIDTH {
+            stepped = window.step(&task, values, alarms);
+            if stepped == window.blocks.len() {
+                window.close(1);
+                return true;
+            }
+        }
+        let mut broad = (sensors < WIDTH).then(Broad::default);
         while !values.is_empty() {
-            let rows = TILE.min(places - *next).min(values.len() / sensors);
+            let rows = TILE
+                .min(rule.earlier() - window.slot)
+                .min(values.len() / sensors);
             let (own, marks);
             (own, values) = values.split_at(rows * sensors);
             (marks, alarms) = alarms.split_at_mut(rows * sensors);
@@ -67,36 +67,72 @@ impl Pass<'_> {
                 Some(broad) => broad.widen(own, sensors),
                 None => (own, &mut *marks),
             };
-            let mut tile = Tile {
-                values,
-                alarms,
-                rows,
-                sensors: sensors.max(WIDTH),
-                windows: &mut *windows,
-                places,
-                blocks: count,
-                slot: *next,
-            };
-            for (at, block) in blocks.iter_mut().enumerate() {
-                if !block.take(&task, &mut tile, part(at)) {
+            let (mut tile, blocks) = window.tile(values, alarms, rows);
+            for (at, block) in blocks.iter_mut().enumerate().skip(stepped) {
+                if !block.take(&task, &mut tile, rule.part(at)) {
                     return false;
                 }
             }
-            *seen += rows as u64;
-            *next += rows;
-            if *next == places {
-                *next = 0;
-                if (*seen / places as u64).is_multiple_of(LAPS) {
-                    for (at, block) in blocks.iter_mut().enumerate() {
-                        block.sum_anew(&tile, part(at), u64::MAX);
-                    }
-                }
-            }
+            window.close(rows);
             if let Some(broad) = &broad {
                 broad.narrow(marks, sensors);
             }
         }
         true
+    }
+}
+
+impl GaussianWindow {
+    /// Tests a row and lets it into the windows, one block after the other, until one needs more
+    /// care: tells how many have taken it.
+    #[inline(always)]
+    fn step<L: Lanes>(&mut self, task: &Task<L>, row: &[f64], alarms: &mut [bool]) -> usize {
+        let rule = self.rule;
+        let (mut tile, blocks) = self.tile(row, alarms, 1);
+        let mut taken = 0;
+        for (at, block) in blocks.iter_mut().enumerate() {
+            if !block.step(task, &mut tile, rule.part(at)) {
+                break;
+            }
+            taken += 1;
+        }
+        taken
+    }
+
+    #[inline(always)]
+    fn tile<'a>(
+        &'a mut self,
+        values: &'a [f64],
+        alarms: &'a mut [bool],
+        rows: usize,
+    ) -> (Tile<'a>, &'a mut [Block]) {
+        let tile = Tile {
+            values,
+            alarms,
+            rows,
+            sensors: self.rule.sensors().max(WIDTH),
+            windows: &mut self.ring,
+            places: self.rule.earlier(),
+            blocks: self.blocks.len(),
+            slot: self.slot,
+        };
+        (tile, &mut self.blocks)
+    }
+
+    /// All blocks have taken these rows.
+    fn close(&mut self, rows: usize) {
+        let places = self.rule.earlier();
+        self.rows += rows as u64;
+        self.slot += rows;
+        if self.slot == places {
+            self.slot = 0;
+            if (self.rows / places as u64).is_multiple_of(LAPS) {
+                let count = self.blocks.len();
+                for (at, block) in self.blocks.iter_mut().enumerate() {
+                    block.sum_anew(&self.ring, count, at, u64::MAX);
+                }
+            }
+        }
     }
 }
 
@@ -126,10 +162,15 @@ impl Broad {
 
 /// Whether no value is too large; NaN is not.
 #[inline(always)]
-fn within(values: &[f64]) -> bool {
-    let mut beyond = false;
-    for value in values {
-        beyond |= value.abs() > LARGEST;
+fn within<L: Lanes>(lanes: L, values: &[f64]) -> bool {
+    let (eights, rest) = values.as_chunks::<WIDTH>();
+    let (zero, largest) = (lanes.splat(0.0), lanes.splat(LARGEST));
+    let mut near = lanes.equal(zero, zero);
+    for eight in eights {
+        let size = lanes.abs(lanes.load(eight));
+        near = lanes.and(near, lanes.at_most(size, largest));
     }
-    !beyond
+    let near = lanes.all(near) && rest.iter().all(|value| value.abs() <= LARGEST);
+    // What is not near may be missing.
+    near || !values.iter().any(|value| value.abs() > LARGEST)
 }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::LARGEST;
-use super::tile::WIDTH;
+use super::tile::{Part, WIDTH};
 
 /// Input that cannot be used: what is wrong, where, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -70,6 +70,13 @@ impl WindowRule {
     /// The first sensor of a block: the last block overlaps another, so that its lanes are full.
     pub(super) fn first(&self, block: usize) -> usize {
         (block * WIDTH).min(self.sensors().saturating_sub(WIDTH))
+    }
+
+    pub(super) fn part(&self, block: usize) -> Part {
+        Part {
+            block,
+            first: self.first(block),
+        }
     }
 
     /// M, the number of values before the one under test.

@@ -198,11 +198,11 @@ impl<L: Lanes, const N: usize> Totals<L, N> {
             }
         }
         let [sum, squares, ..] = state;
-        for row in 0..N {
-            let square = lanes.mul(scores[row], scores[row]);
-            *sum = lanes.add(*sum, scores[row]);
+        for (row, score) in scores.into_iter().enumerate() {
+            let square = lanes.mul(score, score);
+            *sum = lanes.add(*sum, score);
             *squares = lanes.add(*squares, square);
-            self.alike[row] = lanes.mul_add(weight, scores[row], self.alike[row]);
+            self.alike[row] = lanes.mul_add(weight, score, self.alike[row]);
             self.squares[row] = lanes.add(self.squares[row], square);
         }
         for (number, (forget, _)) in ROW_AVERAGES.into_iter().enumerate() {
