@@ -11,60 +11,53 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.signal import lfilter
-from scipy.stats import gumbel_r
 
 from rga.detection.reference import Reference
 from rga.detection.statistic import STATISTICS
 from rga.model.parameter import FloatArray
 
-#: streams, and rows of each
+#: streams, and rows of each at least and at most
 STREAMS = 128
-ROWS = 10_000
-#: rows that are drawn at once
-CHUNK = 2_000
+LEAST_ROWS, MOST_ROWS = 2_000, 10_000
+#: blocks of a stream, whose largest values are looked at
+BLOCKS = 20
+#: how many of the largest of these values tell how a tail falls: a twentieth of all, and a fifth
+TAILS = (STREAMS, 4 * STREAMS)
+#: a statistic that is as large as it can get has no tail: it raises no alarm
+LEAST_SCALE = 0.1
 #: correlations with the row before for which streams are simulated
 MEMORIES = (0.0, 0.3, 0.6, 0.8, 0.9, 0.95)
 #: that stand for readings whose memory is larger by so much at most
 WITHIN = 0.05
 
+SHARES = np.array([statistic.share for statistic in STATISTICS])
+
 
 @dataclass(frozen=True)
 class Calibration:
-    """How large statistics become by chance: the log of the largest has a Gumbel distribution.
+    """How large statistics become by chance: false alarms get rarer with a power of the threshold.
+
+    Where the log of each threshold is location + scale * (height - log(share)), false alarms of all
+    statistics together come exp(-height) times in `rows` rows.
 
     Attributes:
-        location, scale: of each statistic in a stream of `rows` rows, float[statistics].
-        common: location and scale of all together, in logs of the number of false alarms that a
-            value stands for.
+        location, scale: of each statistic, float[statistics].
         rows: of a stream.
     """
 
     location: FloatArray
     scale: FloatArray
-    common: tuple[float, float]
     rows: int
 
     def thresholds(self, arl0: float) -> FloatArray:
         """Of the statistics, where a false alarm comes once in so many rows on average."""
-        location, scale = self.common
-        level = location + scale * np.log(arl0 / self.rows)
-        found = np.exp(self.location + self.scale * (level - np.log(SHARES)))
+        found = np.exp(self.location + self.scale * (np.log(arl0 / self.rows) - np.log(SHARES)))
         return np.asarray(np.minimum(found, np.finfo(np.float32).max))
 
     def chance(self, peaks: FloatArray, rows: int) -> float:
         """Probability that chance alone lifts some statistic so high within so many rows."""
-        location, scale = self.common
-        height = (joint(peaks[None], self.location, self.scale)[0] - location) / scale
+        height = heights(logs(peaks)[None], self.location, self.scale)[0]
         return float(-np.expm1(-np.exp(-height) * rows / self.rows))
-
-
-SHARES = np.array([statistic.share for statistic in STATISTICS])
-
-
-def joint(peaks: FloatArray, location: FloatArray, scale: FloatArray) -> FloatArray:
-    """The largest of all statistics on one scale, float[streams]; peaks: float[streams, ...]."""
-    heights = (np.log(np.maximum(peaks, 1e-30)) - location) / scale
-    return np.asarray((heights + np.log(SHARES)).max(axis=1))
 
 
 @lru_cache(maxsize=64)
@@ -73,6 +66,10 @@ def calibration(
 ) -> Calibration:
     """Simulate streams without a change.
 
+    Every statistic has a tail of its own, which gives it a scale of heights: logs of how rare a
+    value is. The largest height of all is as rare, but for what statistics have in common. That
+    moves it, and is found from streams as a whole, since large values come in clusters.
+
     Args:
         sensors: in a row.
         baseline_rows: rows that a reference is learned from; None: it is known.
@@ -80,38 +77,79 @@ def calibration(
         arl0: rows between false alarms that thresholds will be asked for.
         seed: of the simulation.
     """
-    rows = int(np.clip(arl0, CHUNK, ROWS))
-    peaks = np.array(
-        [
-            simulated_peaks(sensors, baseline_rows, memory, rows, np.random.default_rng(sequence))
-            for sequence in np.random.SeedSequence(seed).spawn(STREAMS)
-        ]
+    block = int(np.clip(arl0, LEAST_ROWS, MOST_ROWS)) // BLOCKS
+    peaks = logs(
+        np.concatenate(
+            [
+                simulated_peaks(
+                    sensors, baseline_rows, memory, block, np.random.default_rng(sequence)
+                )
+                for sequence in np.random.SeedSequence(seed).spawn(STREAMS)
+            ]
+        )
     )
-    logs = np.log(np.maximum(peaks, 1e-30))
-    # Moments of a Gumbel distribution.
-    scale = np.sqrt(6.0) / np.pi * logs.std(axis=0)
-    location = logs.mean(axis=0) - np.euler_gamma * scale
-    common = gumbel_r.fit(joint(peaks, location, scale))
-    return Calibration(location, scale, (float(common[0]), float(common[1])), rows)
+    location, scale = tails(peaks)
+    largest = heights(peaks, location, scale).reshape(STREAMS, BLOCKS).max(axis=1)
+    # Maximum likelihood: the largest of a stream has a Gumbel distribution of scale 1.
+    common = -np.log(np.exp(-largest).mean())
+    return Calibration(location + scale * common, scale, block * BLOCKS)
+
+
+def logs(peaks: FloatArray) -> FloatArray:
+    """Logarithms of statistics, which are 0 before they are first looked at."""
+    return np.asarray(np.log(np.maximum(peaks, 1e-30)))
+
+
+def tails(peaks: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Location and scale of exponential tails (Hill, Annals of Statistics 3, 1975).
+
+    Scores are cut, and a few baselines are worse than the rest: tails bend. The heavier of two
+    looks at a tail is taken.
+
+    Args:
+        peaks: logs of the largest values of all blocks, float[STREAMS * BLOCKS, statistics].
+
+    Returns:
+        What is exceeded once in a stream, and the mean excess, float[statistics] each.
+    """
+    ordered = np.sort(peaks, axis=0)
+    excess = [(ordered[-count:] - ordered[-count - 1]).mean(axis=0) for count in TAILS]
+    return ordered[-STREAMS - 1], np.maximum(np.max(excess, axis=0), LEAST_SCALE)
+
+
+def heights(peaks: FloatArray, location: FloatArray, scale: FloatArray) -> FloatArray:
+    """The largest of all statistics on one scale, float[n]; peaks: logs, float[n, statistics]."""
+    return np.asarray(((peaks - location) / scale + np.log(SHARES)).max(axis=1))
 
 
 def simulated_peaks(
     sensors: int,
     baseline_rows: int | None,
     memory: float,
-    rows: int,
+    block: int,
     generator: np.random.Generator,
 ) -> FloatArray:
-    """The largest value of each statistic in a stream without a change."""
+    """The largest values of the statistics in the blocks of a stream without a change.
+
+    Args:
+        sensors, baseline_rows, memory: as above.
+        block: rows.
+        generator: of random numbers.
+
+    Returns:
+        float[BLOCKS, statistics]
+    """
     draw = Noise(sensors, memory, generator)
     if baseline_rows is None:
         reference = Reference.known(sensors)
     else:
         reference = Reference.learn(draw.rows(baseline_rows))
     statistics = reference.statistics(np.full(len(STATISTICS), np.inf), 0)
-    for first in range(0, rows, CHUNK):
-        statistics.update_many(draw.rows(min(CHUNK, rows - first)))
-    return np.asarray(statistics.take_peaks(), dtype=float)
+    peaks = np.empty((BLOCKS, len(STATISTICS)))
+    for own in peaks:
+        statistics.update_many(draw.rows(block))
+        own[:] = statistics.take_peaks()
+    return peaks
 
 
 class Noise:
