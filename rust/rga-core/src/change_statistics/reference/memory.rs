@@ -3,16 +3,13 @@
 use super::Reference;
 
 impl Reference {
-    /// Readings that the next row lets expect, `[p]`.
+    /// What the next readings are expected to be, `[p]`.
     #[inline(always)]
     pub(super) fn expect(&self, expected: &mut [f64]) {
         let sensors = self.sensors();
         expected.copy_from_slice(&self.level);
-        for (weights, past) in self
-            .weights
-            .chunks_exact(sensors)
-            .zip(self.past.chunks_exact(sensors))
-        {
+        let weights = self.weights.chunks_exact(sensors);
+        for (weights, past) in weights.zip(self.past.chunks_exact(sensors)) {
             for ((expected, weight), past) in expected.iter_mut().zip(weights).zip(past) {
                 *expected += weight * past;
             }
@@ -24,7 +21,7 @@ impl Reference {
         self.unsettled.iter().all(|rows| *rows == 0)
     }
 
-    /// Takes a row of which nothing is missing, nor was when it counts.
+    /// Takes a row of which nothing is missing.
     #[inline(always)]
     pub(super) fn remember(&mut self, readings: &[f64]) {
         let sensors = self.sensors();
