@@ -218,18 +218,16 @@ impl Reference {
         let rows = readings.chunks_exact(sensors).len();
         for row in 0..rows {
             let readings = &readings[row * sensors..][..sensors];
-            if !self.past.is_empty() {
-                self.expect(&mut work.expected[..sensors]);
-            }
             self.scale(readings, row, work);
             if !work.settled || missing && any_missing(readings) {
                 let spoil =
                     |sensor: usize| work.scores[sensor / SIXTEEN][row][sensor % SIXTEEN] = f32::NAN;
                 self.remember_with_gaps(readings, &work.expected, spoil);
                 work.settled = self.settled();
+                self.expect(&mut work.expected[..sensors]);
                 gaps = true;
             } else if !self.past.is_empty() {
-                self.remember(readings);
+                self.remember(readings, &mut work.expected);
             }
         }
         if rows == BEAT && !gaps {
@@ -305,6 +303,7 @@ impl Work {
     pub fn new(reference: &Reference) -> Self {
         let sensors = reference.sensors();
         let mut expected = reference.level.clone();
+        reference.expect(&mut expected);
         expected.resize(sixteens(sensors) * SIXTEEN, f64::NAN);
         Self {
             settled: reference.settled(),

@@ -3,13 +3,23 @@
 use super::Reference;
 
 impl Reference {
-    /// What the next readings are expected to be, `[p]`.
+    /// What the next readings are expected to be, `[p]`; of an order above 0.
     #[inline(always)]
     pub(super) fn expect(&self, expected: &mut [f64]) {
+        let deviations = self.weights.iter().zip(&self.past);
+        let by_sensor = expected.iter_mut().zip(&self.level).zip(deviations);
+        for ((expected, level), (weight, past)) in by_sensor {
+            *expected = level + weight * past;
+        }
+        self.expect_from_earlier(expected);
+    }
+
+    /// Adds what all but the latest deviations let expect.
+    #[inline(always)]
+    fn expect_from_earlier(&self, expected: &mut [f64]) {
         let sensors = self.sensors();
-        expected.copy_from_slice(&self.level);
-        let weights = self.weights.chunks_exact(sensors);
-        for (weights, past) in weights.zip(self.past.chunks_exact(sensors)) {
+        for first in (sensors..self.past.len()).step_by(sensors) {
+            let (weights, past) = (&self.weights[first..], &self.past[first..]);
             for ((expected, weight), past) in expected.iter_mut().zip(weights).zip(past) {
                 *expected += weight * past;
             }
@@ -21,16 +31,22 @@ impl Reference {
         self.unsettled.iter().all(|rows| *rows == 0)
     }
 
-    /// Takes a row of which nothing is missing.
+    /// Takes a row of which nothing is missing, and tells what the next one is expected to be.
     #[inline(always)]
-    pub(super) fn remember(&mut self, readings: &[f64]) {
-        let sensors = self.sensors();
+    pub(super) fn remember(&mut self, readings: &[f64], expected: &mut [f64]) {
+        let sensors = readings.len();
         let earlier = self.past.len() - sensors;
-        self.past.copy_within(..earlier, sensors);
-        let deviations = readings.iter().zip(&self.level);
-        for (past, (reading, level)) in self.past.iter_mut().zip(deviations) {
-            *past = reading - level;
+        if earlier > 0 {
+            self.past.copy_within(..earlier, sensors);
         }
+        let (level, weights) = (&self.level[..sensors], &self.weights[..sensors]);
+        let (past, expected) = (&mut self.past[..sensors], &mut expected[..sensors]);
+        for sensor in 0..sensors {
+            let deviation = readings[sensor] - level[sensor];
+            past[sensor] = deviation;
+            expected[sensor] = level[sensor] + weights[sensor] * deviation;
+        }
+        self.expect_from_earlier(expected);
     }
 
     /// A missing reading is taken for the expected one; those that it would have helped to
