@@ -24,6 +24,15 @@ def test_a_stationary_baseline_is_not_doubted(world: str) -> None:
     assert sum(doubted(noise(world, BASELINE, seed)) for seed in range(40)) <= 3
 
 
+def test_many_sensors_that_go_together_are_doubted_only_where_one_changes() -> None:
+    generator = np.random.default_rng(4)
+    for _ in range(6):
+        rows = generator.normal(size=(1000, 84)) + generator.normal(size=(1000, 1))
+        assert not doubted(rows)
+        rows[500:, 3] += 1.0
+        assert doubted(rows)
+
+
 def drift(rows: Rows) -> None:
     rows[:, 2] += np.linspace(0.0, 2.5, len(rows)) * rows[:, 2].std()
 

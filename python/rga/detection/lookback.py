@@ -1,5 +1,7 @@
 """Did the baseline itself change?"""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.stats import kstwobign, norm
 
@@ -24,13 +26,21 @@ def changed(reference: Reference, baseline: FloatArray, simulated: Calibration) 
         baseline: float[rows, sensors], NaN where missing.
         simulated: what the statistics reach by chance.
     """
-    never = np.full(len(STATISTICS), np.inf)
-    statistics = reference.statistics(never, len(baseline))
-    statistics.update_many(baseline)
-    sudden = simulated.chance(np.asarray(statistics.take_peaks(), dtype=float), len(baseline))
-    scores = statistics.recent().astype(float)
+    # What sensors have in common was learned from these rows: it leaves them a variance below 1.
+    _, scores = watched(reference, baseline)
+    size = np.sqrt(np.nanmean(scores**2))
+    peaks, scores = watched(replace(reference, mixing=reference.mixing / size), baseline)
+    sudden = simulated.chance(peaks, len(baseline))
     looks = sudden, wandering(scores), wandering(scores**2), alike_neighbours(baseline)
     return min(1.0, len(looks) * min(looks))
+
+
+def watched(reference: Reference, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The largest values of the statistics, float[statistics], and the scores, as rows."""
+    never = np.full(len(STATISTICS), np.inf)
+    statistics = reference.statistics(never, len(rows))
+    statistics.update_many(rows)
+    return np.asarray(statistics.take_peaks(), dtype=float), statistics.recent().astype(float)
 
 
 def wandering(values: FloatArray) -> float:

@@ -67,7 +67,14 @@ class Setting:
 
     def faults_estimated(self) -> list[Fault]:
         """That are measured where the noise is estimated."""
-        return [Step(size, count) for count in self.counts for size in (0.5, 1.0)]
+        return [
+            *(Step(size, count) for count in self.counts for size in (0.5, 1.0)),
+            Drift(0.01),
+            Spread(2.0),
+            Step(5.0),
+            Stuck(0.0),
+            Spikes(8.0),
+        ]
 
     def undisturbed(self, purpose: str, fill: int, streams: int) -> Case:
         """Streams without a change, counted from where a detector is filled."""
