@@ -7,6 +7,9 @@ from typing import Any
 import polars as pl
 import pytest
 
+from rga.cli.settings import read_settings
+from rga.errors import InputError
+
 GOOD = "time,D1,S1\n0,1,2\n1,1,2\n2,1,2\n"
 
 #: record, mapping, and what the error must say
@@ -189,6 +192,22 @@ def test_settings(setting: str, model_file: Path, rga: Callable[..., Any]) -> No
     outcome = rga("whatif", model_file, "--set", setting)
     assert outcome.code == 2
     one_line(outcome.err)
+
+
+RUN_SETTINGS = {
+    "no interval": ('{"policy": "event", "interval": 5}', "policy 'event' has no interval"),
+    "unknown": ('{"wind": 3}', "wind: Extra"),
+    "inner": ('{"training": {"steps": 0}}', "training.steps: Input"),
+}
+
+
+@pytest.mark.parametrize("case", RUN_SETTINGS)
+def test_settings_of_a_run(case: str, tmp_path: Path) -> None:
+    content, expected = RUN_SETTINGS[case]
+    (tmp_path / "settings.json").write_text(content, encoding="utf-8")
+    with pytest.raises(InputError) as refusal:
+        read_settings(tmp_path / "settings.json", None)
+    assert str(refusal.value).startswith(expected)
 
 
 def test_outputs(tmp_path: Path, model_file: Path, rga: Callable[..., Any]) -> None:

@@ -307,6 +307,9 @@ def test_rows_between_false_alarms() -> None:
         given: dict[str, Any] = {"alarms": 1, "per": "day", "rate": 1.0, **arguments}
         with pytest.raises(InputError, match="give"):
             rows_between(**given)
+    for alarms, rate in ((1e-320, 1.0), (1.0, 1e308), (1000.0, 1e-3)):
+        with pytest.raises(InputError, match="100 to 1e\\+12 are possible"):
+            rows_between(alarms, per="day", rate=rate)
 
 
 def test_an_alarm_stays_explained_by_the_rows_around_it() -> None:

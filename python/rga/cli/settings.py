@@ -39,9 +39,10 @@ def read_settings(path: Path | None, level: str | None) -> "Settings":
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key = ".".join(str(part) for part in first["loc"])
+        place = f"{key}: " if key else ""
         message = first["msg"].removeprefix("Value error, ")
         known = ", ".join(Settings.model_fields)
-        raise InputError(f"{key}: {message}", where, f"the settings are {known}") from None
+        raise InputError(f"{place}{message}", where, f"the settings are {known}") from None
 
 
 def _parse(path: Path) -> dict[str, object]:

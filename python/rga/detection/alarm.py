@@ -36,7 +36,8 @@ class Alarm:
         sensors: that have changed, the clearest first; their columns.
         probability: that each of them has changed.
         change: of their readings by now, in the unit of the readings; of a variance the factor
-            on the standard deviation.
+            on the standard deviation. Scores are cut where a baseline cannot tell any more, so
+            that a change beyond some three standard deviations is told as being as large as that.
         since: row of the likeliest onset.
         since_ci90: rows between which it lies, nine times in ten.
     """

@@ -236,7 +236,8 @@ def rows_between(
         rate: rows per second [Hz].
 
     Raises:
-        InputError: a number that is not above 0, or no such time.
+        InputError: a number that is not above 0, no such time, or fewer than 100 rows between
+            alarms or more than 1e12.
 
     Examples:
         >>> rows_between(1, per="month", rate=1.0)
@@ -247,7 +248,11 @@ def rows_between(
     for name, value in (("alarms", alarms), ("rate", rate)):
         if not (_is_number(value) and np.isfinite(value) and value > 0):
             raise InputError(f"{name} is {value!r}", name, "give a number above 0")
-    return SECONDS[per] * rate / alarms
+    rows = SECONDS[per] * rate / alarms
+    if not LEAST <= rows <= MOST:
+        what = f"{alarms!r} alarms per {per} at {rate!r} Hz are {rows:g} rows between alarms"
+        raise InputError(what, "alarms and rate", f"{LEAST:g} to {MOST:g} are possible")
+    return rows
 
 
 def _is_number(value: object) -> bool:
