@@ -86,6 +86,10 @@ def test_few_rows_are_waited_for() -> None:
     found = watched(restored, rows, 10, 10)
     assert found is not None
     assert 198 <= found.since <= found.row <= 215
+    twin = residuals(step=0.0)
+    quiet = Monitored(CHANNELS, Settings())
+    quiet.begin_again(0, twin[:10])
+    assert watched(quiet, twin, 10, 10) is None
 
 
 def test_channels_without_readings_are_never_told() -> None:

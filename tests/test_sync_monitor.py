@@ -190,6 +190,7 @@ def test_the_same_seed_gives_the_same_bits() -> None:
 
 def test_any_layout_is_read() -> None:
     rows = np.round(8 * noise("white", 400, 3)) / 8
+    assert not SyncMonitor(rows[:300], arl0=300).update_many(rows[300:]).any()
     rows[390:, 1] += 8
     expected = SyncMonitor(rows[:300], arl0=300)
     alarms = expected.update_many(rows[300:])
@@ -208,6 +209,7 @@ def alarms_of(rows: Rows) -> NDArray[np.bool_]:
 
 def test_scale_and_level_do_not_matter() -> None:
     rows = noise("white", 500, 3)
+    assert not alarms_of(rows).any()
     rows[400:, 2] += 1.5
     alarms = alarms_of(rows)
     assert alarms[-1]
@@ -317,6 +319,9 @@ def test_an_alarm_stays_explained_by_the_rows_around_it() -> None:
     generator = np.random.default_rng(0)
     monitor = SyncMonitor(generator.normal(size=(500, 3)), arl0=2000)
     stream = generator.normal(size=(9000, 3))
+    quiet = pickle.loads(pickle.dumps(monitor))
+    assert not quiet.update_many(stream[:400]).any()
+    assert quiet.alarm is None
     stream[300:, 1] += 2.0
     told = []
     for chunk in (9000, 700):
