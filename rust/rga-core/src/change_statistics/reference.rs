@@ -219,14 +219,18 @@ impl Reference {
         for row in 0..rows {
             let readings = &readings[row * sensors..][..sensors];
             self.scale(readings, row, work);
-            if !work.settled || missing && any_missing(readings) {
+            let gap = !work.settled || missing && any_missing(readings);
+            gaps |= gap;
+            if self.past.is_empty() {
+                continue;
+            }
+            if gap {
                 let spoil =
                     |sensor: usize| work.scores[sensor / SIXTEEN][row][sensor % SIXTEEN] = f32::NAN;
                 self.remember_with_gaps(readings, &work.expected, spoil);
                 work.settled = self.settled();
                 self.expect(&mut work.expected[..sensors]);
-                gaps = true;
-            } else if !self.past.is_empty() {
+            } else {
                 self.remember(readings, &mut work.expected);
             }
         }

@@ -74,9 +74,7 @@ impl Reference {
                 }
                 *reading
             };
-            if order > 0 {
-                self.past[sensor] = taken - self.level[sensor];
-            }
+            self.past[sensor] = taken - self.level[sensor];
         }
     }
 }
