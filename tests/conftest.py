@@ -12,8 +12,10 @@ import pytest
 from rga.benchmark.truth import Case
 from rga.cli import main
 from rga.diagnosis import Findings, diagnose
-from rga.model import load_model
-from rga.records import load_record
+from rga.model import Model, load_model, read_effect, read_model
+from rga.records import Record, load_record
+from rga.simulation import Simulator
+from safe_words import check
 
 
 class Outcome(NamedTuple):
@@ -46,7 +48,9 @@ def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Find
         folder = tmp_path_factory.mktemp("case")
         case.write(folder)
         model = load_model(folder / "model.json")
-        return diagnose(model, load_record(folder / "record.csv", model))
+        findings = diagnose(model, load_record(folder / "record.csv", model))
+        check(findings)
+        return findings
 
     return diagnosis
 
@@ -181,8 +185,6 @@ def small_stream(
     It tests the loop, not the finding: the record is the simulator's own, with gains and noise. A
     heavy load comes and goes in rows 60 to 89; from row 105 on a bearing is 2 mm lower (`sinks`).
     """
-    from rga.model import read_effect, read_model
-    from rga.simulation import Simulator
 
     def write(*, drifts: bool = True, sinks: bool = True, rows: int = 150) -> Path:
         draw = np.random.default_rng(3)
@@ -227,6 +229,43 @@ def small_stream(
         return folder
 
     return write
+
+
+@pytest.fixture(scope="session")
+def measured_bridge(small_bridge: dict[str, Any]) -> dict[str, Any]:
+    """A model file: the small bridge, its loads measured too."""
+    content: dict[str, Any] = json.loads(json.dumps(small_bridge))
+    for load in ("west load", "east load"):
+        content["context"][load]["noise"] = 0.1
+    return content
+
+
+@pytest.fixture(scope="session")
+def measured_record() -> Callable[..., Record]:
+    """A record of the measured bridge: 100 rows of the simulator's own, with noise.
+
+    It tests what is done with findings, not the finding.
+    """
+
+    def record(model: Model, *hidden: dict[str, Any], rows: int = 100) -> Record:
+        draw = np.random.default_rng(4)
+        time = 600.0 * np.arange(rows)
+        contexts = {
+            "temperature": 10 + 6 * np.sin(2 * np.pi * time / 86400),
+            "west load": 20 + 30 * draw.random(rows),
+            "east load": 20 + 30 * draw.random(rows),
+        }
+        effects = {str(k): read_effect(one, "hidden") for k, one in enumerate(hidden)}
+        readings = Simulator(model.extended(effects)).predict({"time": time, **contexts})
+        noise = np.array([sensor.noise for sensor in model.sensors.values()], dtype=float)
+        readings = readings + noise * draw.standard_normal(readings.shape)
+        measured = {
+            name: column + model.context[name].noise * draw.standard_normal(rows)
+            for name, column in contexts.items()
+        }
+        return Record(time, 0.0, "seconds", tuple(model.sensors), readings, measured)
+
+    return record
 
 
 @pytest.fixture

@@ -117,6 +117,8 @@ OTHER_EFFECTS: list[dict[str, Any]] = [
     {"kind": "member_load", "member": ["beam"], "trapezoid": [0.5, 3.0, 1e3, 2e3], "axis": "z"},
     {"kind": "member_load", "member": "left", "point": [0, 1e3, 2e3], "x": 1.0},
     {"kind": "member_stiffness", "group": "bars", "factor": 0.9},
+    {"kind": "bending_stiffness", "group": "deck", "factor": 0.9},
+    {"kind": "end_flexibility", "group": "deck", "at_end": "j", "stiffness": 1e7},
     {"kind": "rigid_end_zone", "group": "deck", "length": 0.2},
     {"kind": "sensor_bias", "sensor": "D1", "offset": 0.1},
     {"kind": "sensor_drift", "sensor": "D1", "rate": 0.1, "onset": 600.0},

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import rga
+from safe_words import check
 
 CASES = Path(__file__).parents[2] / "shared" / "measured" / "practice"
 pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="the practice cases are not here")
@@ -17,7 +18,9 @@ def diagnosed(case: str) -> tuple[dict[str, Any], rga.Findings]:
     model = rga.load_model(folder / "model.json")
     record = rga.load_record(folder / "record.csv", model)
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
-    return truth, rga.diagnose(model, record)
+    findings = rga.diagnose(model, record)
+    check(findings)
+    return truth, findings
 
 
 @pytest.mark.parametrize("case", ["01", "02"])

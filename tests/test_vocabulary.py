@@ -26,7 +26,7 @@ CONTEXTS: dict[str, NDArray[np.float64]] = {
 
 
 def bridge(**effects: Any) -> Model:
-    """Two pinned trusses of two panels, 4 m apart, with a floor of frame members."""
+    """Two pinned trusses of two panels, 4 m apart, with girders and a stringer that bend."""
     nodes = {
         f"{name}{side}": [x, y, z]
         for side, y in (("s", -2.0), ("n", 2.0))
@@ -50,6 +50,14 @@ def bridge(**effects: Any) -> Model:
             "kind": "frame",
             "groups": ["floor"],
             "releases": {"i": ["rx"], "j": ["rx"]},
+        }
+    for first, last in ("ab", "bc"):
+        members[f"stringer {first}{last}"] = {
+            "nodes": [f"{first}s", f"{last}s"],
+            "section": "girder",
+            "material": "iron",
+            "kind": "frame",
+            "groups": ["stringer"],
         }
     down = {"unit": "mm", "kind": "displacement"}
     content = {
@@ -78,7 +86,13 @@ def bridge(**effects: Any) -> Model:
         "effects": {
             "warmth": {
                 "kind": "temperature",
-                "groups": {"bottom": 1.0, "webs": 0.8, "bracing": 1.2, "floor": 1.0},
+                "groups": {
+                    "bottom": 1.0,
+                    "webs": 0.8,
+                    "bracing": 1.2,
+                    "floor": 1.0,
+                    "stringer": 1.0,
+                },
                 "delta": {"context": "temperature", "minus": 10.0},
             },
             "people": {
@@ -157,16 +171,20 @@ def forms(of: str, one: Any, *others: Any, **fixed: Any) -> tuple[dict[str, Any]
 
 
 BARS = (*forms("member", "bs-tn", "bn-ts"), *forms("group", "bottom", "bracing"))
+FRAMES = (*forms("member", "bs-bn", "as-an"), *forms("group", "floor"))
 GROUPS = forms("group", "bottom", "bracing")
 WIND = {"direction": (0, 1, 0), "context": "wind"}
 CASES = [
     Case("elastic_modulus", "factor", forms("material", "steel", "iron"), 0.8, 1.0),
     Case("member_stiffness", "factor", BARS, 0.7, 1.0),
+    Case("bending_stiffness", "factor", FRAMES, 0.7, 1.0),
     Case("stiffness_temperature", "rate", GROUPS, -0.01),
     Case("stiffness_temperature", "rate", GROUPS, 0.01, more=(("kink", 15.0),)),
     Case("added_axial_area", "area", GROUPS, 0.002),
     Case("floor_participation", "area", GROUPS, 0.003, more=(("connector_stiffness", 1e8),)),
     Case("joint_rigidity", "stiffness", GROUPS, 1e6),
+    Case("end_flexibility", "stiffness", FRAMES, 1e6, None),
+    Case("end_flexibility", "stiffness", FRAMES, 1e6, None, more=(("at_end", "i"),)),
     Case("rigid_end_zone", "length", forms("group", "floor"), 0.4),
     Case("joint_slip", "slip", BARS, 2e-4),
     Case("tension_only", "slack", BARS[:3], 1e-4, None),
@@ -210,7 +228,7 @@ CASES = [
     Case("clock_lag", "time", ({}, *forms("sensor", "D1", "S1")), 1000.0),
 ]
 #: a tension that keeps a rod taut, and a spring that is no softer than the support
-ALMOST = {"support_flexibility": 1e20}
+ALMOST = {"support_flexibility": 1e20, "end_flexibility": 1e20}
 
 
 def name_of(case: Case) -> str:

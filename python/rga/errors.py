@@ -1,5 +1,7 @@
 """Errors that a user meets."""
 
+from pathlib import Path
+
 
 class InputError(ValueError):
     """Input that cannot be used: what is wrong, where, and how to mend it.
@@ -19,3 +21,32 @@ class InputError(ValueError):
 
 class UnstableStructureError(InputError):
     """A structure that can move without resistance, with the node and the direction that move."""
+
+
+class ReportError(RuntimeError):
+    """A report that could not be drawn, of findings that are written all the same.
+
+    >>> str(ReportError("KeyError: 'S1'", "out"))
+    "the report could not be drawn (KeyError: 'S1'): out/findings.json and out/model.json are whole"
+    """
+
+    def __init__(self, reason: str, directory: str | Path) -> None:
+        self.reason, self.directory = reason, Path(directory)
+        # The parts are the arguments, so that the error passes from process to process.
+        super().__init__(reason, directory)
+
+    def __str__(self) -> str:
+        findings, model = (self.directory / name for name in ("findings.json", "model.json"))
+        return f"the report could not be drawn ({self.reason}): {findings} and {model} are whole"
+
+
+def in_short(error: Exception) -> str:
+    """An error in one line, for what goes on without it.
+
+    >>> in_short(KeyError("S1"))
+    "KeyError: 'S1'"
+    >>> in_short(InputError("the span is 0", "model", "give another"))
+    'the span is 0 (model): give another'
+    """
+    said = " ".join(str(error).split())
+    return said if isinstance(error, InputError) else f"{type(error).__name__}: {said}"

@@ -3,6 +3,8 @@
 import ctypes
 import os
 import platform
+import subprocess
+import sys
 from ctypes.util import find_library
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -13,6 +15,13 @@ from threadpoolctl import threadpool_info
 from rga import _core
 
 PACKAGES = ("rga", "numpy", "scipy", "scikit-sparse", "PyNiteFEA", "river", "bottleneck")
+#: tells the BLAS of what the benchmarks compute with
+ASKED = """
+import scipy.linalg
+from rga.benchmark.machine import cholmod, loaded
+cholmod()
+print(loaded())
+"""
 
 
 def machine() -> dict[str, Any]:
@@ -29,9 +38,29 @@ def machine() -> dict[str, Any]:
 def versions() -> dict[str, str | None]:
     """Of packages and libraries; None for what is not installed."""
     found = {"Python": platform.python_version(), **{name: _version(name) for name in PACKAGES}}
+    return {**found, "CHOLMOD": cholmod(), "BLAS": _blas()}
+
+
+def loaded() -> str:
+    """The BLAS libraries that this process has loaded."""
     blas = [one for one in threadpool_info() if one["user_api"] == "blas"]
     described = [f"{one['internal_api']} {one['version']} {one['architecture']}" for one in blas]
-    return {**found, "CHOLMOD": _cholmod(), "BLAS": ", ".join(described)}
+    return ", ".join(sorted(described))
+
+
+def _blas() -> str:
+    """Those of NumPy, SciPy and CHOLMOD, whatever else this process has loaded by now.
+
+    So a process that loads these alone tells them.
+    """
+    asked = subprocess.run(
+        [sys.executable, "-c", ASKED],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return asked.stdout.strip()
 
 
 def _processor() -> str:
@@ -56,7 +85,7 @@ def _version(name: str) -> str | None:
         return None
 
 
-def _cholmod() -> str | None:
+def cholmod() -> str | None:
     """The version that the library itself tells."""
     path = find_library("cholmod")
     if path is None:

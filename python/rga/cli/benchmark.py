@@ -36,6 +36,14 @@ CaseName = Annotated[
         "--case", metavar="ID", help="Only draw this case, and write it to the directory."
     ),
 ]
+Generator = Annotated[
+    str,
+    typer.Option(
+        "--generator",
+        metavar="NAME",
+        help="What makes the cases: bridges, or field (other structures, welded, tared, broken).",
+    ),
+]
 Splits = Annotated[int, typer.Option("--splits", min=1, help="Random splits of the full gap.")]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
@@ -49,6 +57,19 @@ Stored = Annotated[
         help="What level C stores: measured (rows and states) or paper (simulated rows).",
     ),
 ]
+Fewest = Annotated[bool, typer.Option("--quick", help="18 broken records of 100 rows.")]
+Broken = Annotated[int, typer.Option("-n", "--draws", min=1, help="Records with broken channels.")]
+Foreign = Annotated[
+    Path | None,
+    typer.Option(
+        "--data",
+        metavar="DIR",
+        help="Records of others beside the drawn ones: practice/NN, rdso45m/record_40kmh.txt.",
+    ),
+]
+CrossingModel = Annotated[
+    Path, typer.Option("--crossing", metavar="MODEL", help="Model file of the crossing in --data.")
+]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 
@@ -60,6 +81,7 @@ def _benchmarks() -> None:
 @benchmark.command()
 def diagnosis(
     draws: Draws = 3000,
+    generator: Generator = "bridges",
     seed: Seed = 1,
     workers: Workers = 2,
     dask: DaskAddress = None,
@@ -72,12 +94,12 @@ def diagnosis(
     """The blind challenge: effects hidden by seed, each beside its null twin."""
     from dataclasses import asdict
 
-    from rga.benchmark.challenge import design
+    from rga.benchmark.challenge import design, field_design
     from rga.cli.output import whole_directory, whole_file, write_json
     from rga.cli.progress import shown_progress
 
     if case is not None:
-        drawn = design.Draw.parse(case)
+        drawn = field_design.draw_of(case)
         if output is None:
             raise InputError("there is no place for the case", "--case", "give a directory with -o")
         with whole_directory(output) as draft:
@@ -91,7 +113,11 @@ def diagnosis(
     from rga.benchmark.challenge.tables import tables
     from rga.benchmark.ledger import versions
 
-    chosen = design.draws(seed, design.QUICK if quick else draws)
+    if generator not in field_design.GENERATORS:
+        remedy = f"give one of {', '.join(field_design.GENERATORS)}"
+        raise InputError(f"there is no generator {generator!r}", "--generator", remedy)
+    kind = field_design.GENERATORS[generator]
+    chosen = design.draws(seed, design.QUICK if quick else draws, kind)
     with shown_progress() as progress:
         outcomes = run(
             chosen,
@@ -111,6 +137,7 @@ def diagnosis(
     if json is not None:
         content = {
             "seed": seed,
+            "generator": generator,
             "versions": versions(),
             "figures": [{**asdict(one), "judged": one.judged} for one in figures(outcomes)],
             "outcomes": [asdict(one) for one in outcomes],
@@ -228,6 +255,52 @@ def detector(
         lambda progress: measure(setting, workers=workers, progress=progress),
         table,
         draw,
+        content,
+        output=output,
+        json=json,
+    )
+
+
+@benchmark.command()
+def faults(
+    draws: Broken = 340,
+    quick: Fewest = False,
+    data: Foreign = None,
+    crossing: CrossingModel = Path("examples/rdso45m/model.json"),
+    seed: Seed = 1,
+    workers: Workers = 2,
+    dask: DaskAddress = None,
+    minutes: Minutes = None,
+    output: KeptIn = None,
+    json: JsonTarget = None,
+) -> None:
+    """What a diagnosis makes of records in which channels are broken, as loggers show it."""
+    from dataclasses import asdict
+
+    from rga.benchmark.faults import base, table, trial
+    from rga.benchmark.faults.comparison import comparisons
+    from rga.benchmark.faults.run import Result, measure
+    from rga.cli.measured import measured
+    from rga.cli.output import write_json
+
+    def content(result: Result) -> dict[str, Any]:
+        compared = [asdict(one) for one in comparisons(result.outcomes)]
+        return {**asdict(result), "comparisons": compared}
+
+    rows = trial.QUICK_ROWS if quick else trial.ROWS
+    model = crossing if crossing.is_file() else None
+    given = [] if data is None else base.foreign(data, model, rows)
+    chosen = trial.trials(seed, trial.QUICK if quick else draws, rows, given)
+    option = "" if quick else f" --draws {draws}"
+    option += "" if data is None else " --data DIR"
+    measured(
+        "faults",
+        _command("faults", quick, seed) + option,
+        lambda progress: measure(
+            chosen, folder=output, workers=workers, dask=dask, minutes=minutes, progress=progress
+        ),
+        table,
+        lambda result, folder: write_json(content(result), str(folder / "faults.json")),
         content,
         output=output,
         json=json,

@@ -5,6 +5,7 @@ from pathlib import Path
 import typer
 
 from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory, RecordFile, Seed
+from rga.errors import ReportError
 
 
 def diagnose(
@@ -37,10 +38,14 @@ def diagnose_into(
     # Not needed before the input is known to be good, and slow to import.
     from rga.diagnosis import diagnose
 
+    fault: ReportError | None = None
     with whole_directory(output) as draft:
         with shown_progress() as progress:
             findings = diagnose(structure, measured, seed=seed, progress=progress)
-        findings.write(draft)
+        try:
+            findings.write(draft)
+        except ReportError as error:
+            fault = error
         content = json.loads((draft / "findings.json").read_text(encoding="utf-8"))
     for warning in findings.warnings:
         if warning not in measured.warnings:
@@ -49,4 +54,7 @@ def diagnose_into(
         write_json(content, target)
     if target != "-":
         typer.echo(f"Verdict: {findings.verdict}. {findings.sentence()}")
+    if fault is not None:
+        raise ReportError(fault.reason, output) from fault
+    if target != "-":
         typer.echo(f"The report is {output / 'report.html'}.")

@@ -9,7 +9,7 @@ from rga.diagnosis.search import RIVAL
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
-from rga.planning.candidates import LoadTest, added_sensors, settings, stands
+from rga.planning.candidates import added_sensors, settings, stands
 from rga.planning.explanation import Explanation
 from rga.planning.separation import (
     LIKELY,
@@ -73,8 +73,8 @@ class Advice:
         except InputError:
             return ""
         options = [
-            *((f"measuring {one.words}", one.cost) for one in site.added),
-            *((self._words(one), one.cost) for one in site.tests),
+            *((one.advice, one.cost) for one in site.added),
+            *((one.advice(self._truck), one.cost) for one in site.tests),
         ]
         by_tests = self._by_tests(site, pair)
         separation = np.concatenate([self._by_sensors(site, pair), by_tests]).tolist()
@@ -89,10 +89,6 @@ class Advice:
             "no single added sensor or load test; the best is "
             f"{options[best][0]} ({_figures(separation[best])})"
         )
-
-    def _words(self, test: LoadTest) -> str:
-        words = f"a load test, {test.words},"
-        return words if test.position is None else f"{words} axles [kN] @ [m] {self._truck},"
 
     def _by_sensors(self, site: Site, pair: Pair) -> FloatArray:
         """d_perp with each added sensor alone, in operation."""

@@ -1,10 +1,12 @@
 """The part of a record that a diagnosis works on, beside the contexts it has to believe."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from rga.diagnosis.row_covariance import BoolArray
+from rga.diagnosis.tare import Tare
 from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
@@ -95,8 +97,7 @@ class Data:
         readings: float[rows, sensors], zero where missing.
         observed: bool[rows, sensors].
         belief: what is believed of the contexts.
-        zero: contexts of rows whose mean was taken off every channel, `time` [s] included,
-            float[rows] each; of no length where nothing was taken off.
+        tare: the rows whose mean was taken off every channel.
     """
 
     sensors: tuple[str, ...]
@@ -104,7 +105,7 @@ class Data:
     readings: FloatArray
     observed: BoolArray
     belief: Belief
-    zero: Values
+    tare: Tare
     _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, init=False, compare=False)
     _tried: dict[tuple[Vicinity, str, bool], tuple[FloatArray, bool]] = field(
         default_factory=dict, init=False, compare=False
@@ -125,7 +126,7 @@ class Data:
         return self.read(simulator, self.respond(simulator, changes))
 
     def respond(self, simulator: Simulator, changes: Values | None = None) -> Response:
-        """The response at the believed contexts, the zero rows in front."""
+        """The response at the believed contexts and in the zero rows, in the order of time."""
         return simulator.respond(self._contexts(changes or {}))
 
     def about(self, simulator: Simulator) -> Vicinity:
@@ -169,46 +170,93 @@ class Data:
                 del known[next(iter(known))]
         return known[key]
 
-    def change(self, about: Vicinity, effect: Effect) -> tuple[IntArray, FloatArray]:
+    def change(self, about: Vicinity, effect: Effect) -> tuple[IntArray, FloatArray, FloatArray]:
         """What an effect changes about a simulation, nearly, on the channels that it touches.
 
+        Nothing is taken off for the zero.
+
         Returns:
-            Numbers of the channels, int[c], and their change, float[rows, c].
+            Numbers of the channels, int[c], their change, float[rows, c], and that in the zero
+            rows, float[zero rows, c].
 
         Raises:
             InputError: the effect cannot be simulated.
         """
         if effect.on_sensors:
             changed = about.read_with(effect)
-            touched = (changed != about.read).any(0)[self.columns]
-            channels = np.flatnonzero(touched)
-            columns = [self.columns[channel] for channel in channels]
-            return channels, self._told(changed[:, columns]) - self._told(about.read[:, columns])
-        nearly, _ = about.nearly({"trial": effect})
-        change = self._told(nearly[:, self.columns]) - self._told(about.read[:, self.columns])
-        channels = np.flatnonzero(change.any(0))
-        return channels, change[:, channels]
+        else:
+            changed, _ = about.nearly({"trial": effect})
+        touched = (changed != about.read).any(0)[self.columns]
+        channels = np.flatnonzero(touched)
+        columns = [self.columns[channel] for channel in channels]
+        zero, rows = self._parted(_finite(changed[:, columns]) - _finite(about.read[:, columns]))
+        return channels, rows, zero
+
+    def weights(self, effect: Effect) -> tuple[FloatArray, FloatArray]:
+        """Share of an effect in the rows, float[rows], and in the zero rows, float[zero rows]."""
+        both = np.concatenate([self.tare.time, self.time])[self._order]
+        zero, rows = self._parted(effect.weight(both))
+        return rows, zero
+
+    def untared(self, simulator: Simulator) -> tuple[FloatArray, FloatArray]:
+        """Simulated channels with nothing taken off for the zero.
+
+        Returns:
+            float[rows, sensors], and that in the zero rows, float[zero rows, sensors].
+        """
+        shown = simulator.read(self.respond(simulator))[:, self.columns]
+        zero, rows = self._parted(_finite(shown))
+        return rows, zero
+
+    def at_zero(self, simulator: Simulator, moved: Values | None = None) -> FloatArray:
+        """Simulated channels in the zero rows by themselves, float[zero rows, sensors].
+
+        Args:
+            simulator: of a model with these sensors.
+            moved: what is added to some of the contexts there.
+        """
+        table = {name: self._at_zero(name, column) for name, column in self.belief.table.items()}
+        table |= {name: table[name] + step for name, step in (moved or {}).items()}
+        return _finite(simulator.read(simulator.respond(table))[:, self.columns])
+
+    def taken_off(self, zero: FloatArray) -> FloatArray:
+        """What values in the zero rows, float[zero rows, sensors], take off, float[sensors]."""
+        return self.tare.mean(zero, self.columns)
 
     def _told(self, simulated: FloatArray) -> FloatArray:
         """Channels less their mean over the zero rows; zero where unknown."""
-        if not np.isfinite(simulated).all():
-            simulated = np.nan_to_num(simulated)
-        leading = len(self.zero["time"])
-        return simulated[leading:] - simulated[:leading].mean(0) if leading else simulated
+        zero, rows = self._parted(_finite(simulated))
+        return rows - self.taken_off(zero)
+
+    @cached_property
+    def _order(self) -> IntArray:
+        """Zero rows, then the others, in the order of time: effects may remember."""
+        return np.argsort(np.concatenate([self.tare.time, self.time]), kind="stable")
+
+    def _parted(self, simulated: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The zero rows and the others of a simulation of both."""
+        leading = len(self.tare)
+        if not leading:
+            return simulated[:0], simulated
+        parted = np.empty_like(simulated)
+        parted[self._order] = simulated
+        return parted[:leading], parted[leading:]
 
     def _contexts(self, changes: Values) -> Values:
         table = {**self.belief.table, **changes}
-        if len(self.zero["time"]):
-            table = {name: self._with_zero(name, column) for name, column in table.items()}
-        return table
+        if not len(self.tare):
+            return table
+        return {
+            name: np.concatenate([self._at_zero(name, column), column])[self._order]
+            for name, column in table.items()
+        }
 
-    def _with_zero(self, name: str, column: FloatArray) -> FloatArray:
-        """A context with its values at the zero rows in front; a line is prolonged to them."""
-        leading = self.zero[name]
+    def _at_zero(self, name: str, column: FloatArray) -> FloatArray:
+        """A context in the zero rows, float[zero rows]; a line is prolonged to them."""
         if name in self.belief.lines and len(column) > 1:
             rate = (column[-1] - column[0]) / (self.time[-1] - self.time[0])
-            leading = column[0] + rate * (self.zero["time"] - self.time[0])
-        return np.concatenate([leading, column])
+            return np.asarray(column[0] + rate * (self.tare.time - self.time[0]))
+        return self.tare.contexts[name]
 
     def rows(self, chosen: BoolArray) -> "Data":
         """Some of the rows."""
@@ -267,6 +315,11 @@ def first_belief(model: Model, time: FloatArray, measured: Values) -> Belief:
         else:
             spread[name] = FIRST_GUESS * (high - low)
     return Belief(table, centre, spread, frozenset(known | latent), frozenset(latent), lines)
+
+
+def _finite(simulated: FloatArray) -> FloatArray:
+    """A simulation, zero where it is unknown."""
+    return simulated if np.isfinite(simulated).all() else np.nan_to_num(simulated)
 
 
 def _filled(time: FloatArray, column: FloatArray, otherwise: float) -> FloatArray:

@@ -123,13 +123,13 @@ def _hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
 def variance(problem: Problem) -> FloatArray:
     """Variance of each reading about a faultless simulation, float[rows, sensors].
 
-    Noise, and the errors of the contexts that were measured.
+    Noise, that of the logger's zero too, and the errors of the contexts that were measured.
     """
     belief = problem.data.belief
     measured = [k for k, name in enumerate(belief.spread) if name not in belief.latent]
     jacobian = problem.covariance.rows.context_jacobian[:, :, measured]
     contexts = (jacobian**2) @ problem.noise.context_sigma[measured] ** 2
-    return np.asarray(problem.noise.deviation**2 + contexts)
+    return np.asarray(problem.noise.deviation**2 + problem.zero_variance + contexts)
 
 
 def _off_axis(

@@ -2,12 +2,14 @@
 
 import json
 from collections.abc import Callable
+from html import escape
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 
 from rga.diagnosis.account import Account
+from rga.errors import ReportError, in_short
 
 Interval = tuple[float, float]
 Verdict = Literal["nothing_wrong", "named", "ambiguous", "partial", "unknown", "unidentifiable"]
@@ -59,7 +61,9 @@ class Cause(Part):
         log_odds: against leaving this cause out, the number of places and kinds counted.
         d_prime: size of the effect under the whole covariance [-].
         d_perp: the same after projecting off the nearest rival [-].
-        rivals: effects within 4.6 log-odds.
+        rivals: effects within 4.6 log-odds: the nearest of each other kind, the nearest first, then
+            further places of these kinds and of its own.
+        rivals_omitted: how many more there are.
         separated_by: in words: the sensor or load test that would tell it from its rivals.
         why: in words: what in the data shows it.
     """
@@ -72,6 +76,7 @@ class Cause(Part):
     d_prime: float
     d_perp: float
     rivals: list[dict[str, Any]] = []
+    rivals_omitted: int = Field(default=0, ge=0)
     separated_by: str = ""
     why: str = ""
 
@@ -161,7 +166,7 @@ class Findings(Part):
     def write(
         self, directory: str | Path, report: Callable[["Findings", Path], Path] | None = None
     ) -> Path:
-        """Write findings.json, model.json and report.html to a directory.
+        """Write findings.json and model.json to a directory, then report.html.
 
         Every file is written under a temporary name first and then renamed.
 
@@ -171,20 +176,37 @@ class Findings(Part):
 
         Returns:
             The path of the report.
+
+        Raises:
+            ReportError: the report could not be drawn. Findings and model are there, and a line
+                that says so in the place of the report.
         """
         from rga.model import write_model
-        from rga.report import write_report
 
-        directory = Path(directory)
+        directory, extended = Path(directory), self.account.extended
         directory.mkdir(parents=True, exist_ok=True)
         path = directory / "findings.json"
         temporary = path.with_name("findings.json.partial")
         temporary.write_text(self.to_json() + "\n", encoding="utf-8")
-        write_model(self.account.extended, directory / "model.json")
-        shown = (report or write_report)(self, directory / "report.html")
+        write_model(extended, directory / "model.json")
         temporary.replace(path)
-        return shown
+        shown = directory / "report.html"
+        try:
+            return (report or _write_report)(self, shown)
+        except Exception as error:  # of any kind: the findings do not hang on their report
+            fault = ReportError(in_short(error), directory)
+            # A report that stood here is of other findings.
+            said = f"The report could not be drawn: {fault.reason}."
+            shown.write_text(f"<!doctype html><title>No report</title><p>{escape(said)}</p>\n")
+            raise fault from error
 
     def to_json(self) -> str:
         """The content of findings.json."""
         return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False)
+
+
+def _write_report(findings: Findings, path: Path) -> Path:
+    # What draws is loaded when it is needed, and may be what fails.
+    from rga.report import write_report
+
+    return write_report(findings, path)

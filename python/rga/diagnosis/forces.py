@@ -61,7 +61,7 @@ def member_forces(account: Account) -> Forces | None:
     causes = {
         name: effect
         for name, effect in extended.effects.items()
-        if name not in given.effects and not effect.on_sensors
+        if name not in given.effects and not effect.at_sensors()
     }
     if not causes or not account.contexts:
         return None
@@ -110,7 +110,7 @@ def member_forces(account: Account) -> Forces | None:
 def _forces(model: Model, contexts: Values) -> FloatArray:
     """Axial force of every member [N], float[rows, members]."""
     gauges = {name: Sensor(kind="force", member=name, unit="N") for name in model.members}
-    bare = {name: one for name, one in model.effects.items() if not one.on_sensors}
+    bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
     return Simulator(model.model_copy(update={"sensors": gauges, "effects": bare})).predict(
         contexts
     )

@@ -164,7 +164,7 @@ def hold(found: Found, number: int) -> Hold | None:
 def _own_channels(found: Found, number: int) -> set[str]:
     """Channels that a cause is about: without them nothing is left to weigh."""
     one = found.fit.hypotheses[number]
-    if not one.kind.on_sensors:
+    if not one.kind.at_sensors():
         return set()
     return {name for place in one.place.values() for name in listed(place)}
 

@@ -9,7 +9,7 @@ from rga.diagnosis.row_covariance import BoolArray
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 
-BLOCKS = 25
+BLOCKS = 50
 EVERY = 5
 CONFIDENCE = 0.9
 
@@ -24,7 +24,7 @@ class Gain:
 
 
 def held_out_rows(rows: int) -> BoolArray:
-    """Every fifth of twenty-five blocks of rows, bool[rows].
+    """Every fifth of fifty blocks of rows, bool[rows].
 
     >>> held_out_rows(100).sum()
     np.int64(20)

@@ -10,7 +10,7 @@ import polars as pl
 from rga.diagnosis.findings import Findings
 from rga.diagnosis.pipeline import diagnose
 from rga.diagnosis.words import effect_words
-from rga.errors import InputError
+from rga.errors import InputError, ReportError
 from rga.model import Model, load_model
 from rga.records import Record, load_record
 from rga.records.read import read_table
@@ -60,6 +60,14 @@ class _Task:
     seed: int
 
 
+@dataclass(frozen=True)
+class _Done:
+    """The files of a diagnosis, by name, and why its report could not be drawn."""
+
+    files: dict[str, bytes]
+    fault: ReportError | None
+
+
 def diagnose_many(
     bridges: str | Path,
     output: str | Path,
@@ -89,18 +97,24 @@ def diagnose_many(
 
     Raises:
         InputError: the list cannot be used, the output cannot be written, or there is no cluster.
+        ReportError: a report could not be drawn; all else is written.
     """
     listed = _read(Path(bridges))
     output = Path(output)
     _make(output)
     errors: dict[str, Exception] = {}
+    faults: list[ReportError] = []
     told: dict[str, Summary] = {}
     for task, future in finished(_work, _tasks(listed, seed, errors), workers=workers, dask=dask):
         error = future.exception()
         if isinstance(error, Exception):
             errors[task.name] = error
         else:
-            told[task.name] = _keep(task.name, future.result(), output / task.name)
+            done: _Done = future.result()
+            told[task.name] = _keep(task.name, done, output / task.name)
+            faults += (
+                [] if done.fault is None else [ReportError(done.fault.reason, output / task.name)]
+            )
         if progress is not None:
             progress("diagnosing bridges", len({*told, *errors}) / len(listed))
     for name, error in errors.items():
@@ -111,6 +125,8 @@ def diagnose_many(
     for error in errors.values():
         if not isinstance(error, InputError):
             raise error
+    for fault in faults:
+        raise fault
     return summaries
 
 
@@ -126,18 +142,21 @@ def _tasks(bridges: Iterable[_Bridge], seed: int, errors: dict[str, Exception]) 
             yield _Task(bridge.name, model, record, seed)
 
 
-def _work(task: _Task) -> dict[str, bytes]:
-    """The files of a diagnosis, by name."""
+def _work(task: _Task) -> _Done:
     findings = diagnose(task.model, task.record, seed=task.seed)
+    fault = None
     with tempfile.TemporaryDirectory() as folder:
-        findings.write(folder)
-        return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
+        try:
+            findings.write(folder)
+        except ReportError as error:
+            fault = error
+        return _Done({path.name: path.read_bytes() for path in Path(folder).iterdir()}, fault)
 
 
-def _keep(name: str, files: Mapping[str, bytes], directory: Path) -> Summary:
+def _keep(name: str, done: _Done, directory: Path) -> Summary:
     _make(directory)
-    _write(files, directory)
-    findings = Findings.model_validate_json(files["findings.json"])
+    _write(done.files, directory)
+    findings = Findings.model_validate_json(done.files["findings.json"])
     causes = " and ".join(effect_words(cause.effect) for cause in findings.causes)
     return Summary(name, findings.verdict, causes, findings.gap.held_out.gain)
 

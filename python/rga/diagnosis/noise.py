@@ -44,7 +44,7 @@ def unexplainable(residual: FloatArray, observed: BoolArray, basis: FloatArray) 
     """
     span = _orthonormal(basis, max(1, len(residual) // 12))
     left = _left(residual, observed, span)
-    moment = _step(left, observed)
+    moment = _step(left, observed, span)
     if moment is not None:
         # A step would else pass for noise with a long memory, the better the larger it is.
         step = (np.arange(len(residual)) >= moment).astype(float)
@@ -65,14 +65,20 @@ def _left(residual: FloatArray, observed: BoolArray, span: FloatArray) -> FloatA
     return left
 
 
-def _step(left: FloatArray, observed: BoolArray) -> int | None:
-    """The row at which the channels jump most and stay, if any does."""
+def _step(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
+    """The row at which the channels jump most and stay, if any does.
+
+    Args:
+        left: what a fit by the span leaves, float[rows, sensors].
+        observed: bool[rows, sensors].
+        span: of the fit, float[rows, k].
+    """
     best: tuple[float, int] | None = None
     for sensor in range(left.shape[1]):
         rows = np.flatnonzero(observed[:, sensor])
-        column = left[rows, sensor]
+        column, rest = _with_whole_step(left[rows, sensor], span[rows])
         jumps = np.abs(np.diff(column))
-        scale = 1.4826 * float(np.median(jumps)) if len(jumps) else 0.0
+        scale = 1.4826 * float(np.median(np.abs(np.diff(rest)))) if len(jumps) else 0.0
         for place in np.flatnonzero(jumps > JUMP * scale) + 1 if scale > 0 else ():
             if not BESIDE <= place <= len(column) - BESIDE:
                 continue
@@ -81,6 +87,31 @@ def _step(left: FloatArray, observed: BoolArray) -> int | None:
             if shift > JUMP and (best is None or shift > best[0]):
                 best = (shift, int(rows[place]))
     return None if best is None else best[1]
+
+
+def _with_whole_step(left: FloatArray, span: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What a fit leaves, given back what it took of the likeliest step; and less that step.
+
+    The loads fit a large step in part, and what they put there hides it among jumps of their own.
+
+    Args:
+        left: float[readings].
+        span: of the fit, float[readings, k].
+    """
+    readings = len(left)
+    if readings <= max(2 * BESIDE, 2 * span.shape[1]):
+        return left, left
+    basis, _ = np.linalg.qr(span)
+    later = np.cumsum(basis[::-1], axis=0)[::-1]
+    along = np.cumsum(left[::-1])[::-1]
+    own = np.arange(readings, 0, -1) - (later**2).sum(1)
+    # A step that the loads fit whole says nothing.
+    gained = np.where(own > 1.0, along**2 / np.maximum(own, 1.0), 0.0)
+    place = BESIDE + int(np.argmax(gained[BESIDE : readings - BESIDE]))
+    size = along[place] / max(own[place], 1.0)
+    taken = basis @ later[place]
+    step = (np.arange(readings) >= place).astype(float)
+    return left + size * taken, left - size * (step - taken)
 
 
 def estimate_noise(

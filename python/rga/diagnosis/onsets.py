@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from rga.diagnosis.data import Data
 from rga.diagnosis.evidence import Fit, extended
 from rga.diagnosis.hypothesis import Hypothesis, Profile
 from rga.diagnosis.problem import Problem
@@ -52,10 +53,13 @@ def beginnings(problem: Problem, base: Simulator, current: Fit, number: int) -> 
     ]
     others = [one for k, one in enumerate(current.hypotheses) if k != number]
     z = np.delete(current.z, current.slices()[number])
-    without = problem.data.predict(extended(base, others, z))
-    full = problem.data.predict(extended(base, always, current.z))
-    change = np.where(problem.data.observed, full - without, 0.0)
-    rows = len(change)
+    data = problem.data
+    simulator = extended(base, others, z)
+    full, full_zero = data.untared(extended(base, always, current.z))
+    bare, bare_zero = data.untared(simulator)
+    without = bare - data.taken_off(bare_zero)
+    change = _Change(full - bare, data.tare.shares[:, data.columns] * (full_zero - bare_zero))
+    rows = len(full)
     edges = np.unique(np.linspace(0, rows, min(PIECES, rows) + 1).astype(int))
     likely = _judged(problem, change, without, edges)
     best = likely[0]
@@ -76,6 +80,35 @@ def beginnings(problem: Problem, base: Simulator, current: Fit, number: int) -> 
 
 
 @dataclass(frozen=True)
+class _Change:
+    """What the hypothesis changes if it always acts.
+
+    Attributes:
+        rows: with nothing taken off for the zero, float[rows, sensors].
+        taken_off: by each zero row, float[zero rows, sensors].
+    """
+
+    rows: FloatArray
+    taken_off: FloatArray
+
+    def pieces(self, data: Data, edges: IntArray) -> FloatArray:
+        """Its pieces between edges, each with what the zero rows of that time take off.
+
+        Returns:
+            float[pieces, sensors, rows].
+        """
+        pieces = np.zeros((len(edges) - 1, *self.rows.T.shape))
+        for piece, (first, last) in zip(pieces, pairwise(edges), strict=True):
+            piece[:, first:last] = self.rows[first:last].T
+        # Zero rows before the first piece come before every beginning.
+        of_piece = np.searchsorted(data.time[edges[:-1]], data.tare.time, side="right") - 1
+        for number, taken in zip(of_piece, self.taken_off, strict=True):
+            if number >= 0:
+                pieces[number] -= taken[:, None]
+        return np.where(data.observed.T, pieces, 0.0)
+
+
+@dataclass(frozen=True)
 class _Beginning:
     """A beginning at a row, full at another, with its log chance and the rows it stands for."""
 
@@ -87,23 +120,21 @@ class _Beginning:
 
 
 def _judged(
-    problem: Problem, change: FloatArray, without: FloatArray, edges: IntArray
+    problem: Problem, change: _Change, without: FloatArray, edges: IntArray
 ) -> list[_Beginning]:
     """All beginnings at the edges of pieces, the likeliest first."""
     covariance, time = problem.covariance, problem.data.time
-    pieces = np.zeros((len(edges) - 1, *change.T.shape))
-    for piece, (first, last) in zip(pieces, pairwise(edges), strict=True):
-        piece[:, first:last] = change[first:last].T
-    reduced = covariance.reduce(pieces)
+    rows = len(time)
+    reduced = covariance.reduce(change.pieces(problem.data, edges))
     product = covariance.product(reduced, reduced)
     residual = covariance.reduce(problem.residual(without).T[None])
     sums = covariance.product(reduced, residual)[:, 0]
     middle = np.array([time[a:b].mean() for a, b in pairwise(edges)])
     found = []
-    margin = max(2, len(change) // 50)
+    margin = max(2, rows // 50)
     for number, first in enumerate(edges[:-1]):
         # What is there in a few rows only is no beginning.
-        if not margin <= first <= len(change) - margin:
+        if not margin <= first <= rows - margin:
             continue
         width = float(edges[number + 1] - edges[number - 1]) / 2
         step = (np.arange(len(middle)) >= number).astype(float)

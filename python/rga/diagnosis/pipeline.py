@@ -11,22 +11,19 @@ from rga.diagnosis.account import Account
 from rga.diagnosis.bends import bends, with_free_slopes
 from rga.diagnosis.curves import curves, free_channels
 from rga.diagnosis.data import Data
-from rga.diagnosis.explanations import compare, sensor_groups, variance
+from rga.diagnosis.explanations import Tried, compare, sensor_groups
 from rga.diagnosis.findings import Findings
-from rga.diagnosis.heldout import Gain, gain, held_out_rows
+from rga.diagnosis.heldout import held_out_rows
 from rga.diagnosis.hypothesis import hypotheses
+from rga.diagnosis.lack_of_fit import misfits
 from rga.diagnosis.prepare import Prepared, prepare
-from rga.diagnosis.problem import Problem, pose, relaxed, resimulated
 from rga.diagnosis.robustness import (
     with_better_prediction,
     with_hanging_leads,
     without_unhelpful,
 )
-from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.screening import Screening
 from rga.diagnosis.search import (
-    ROUNDS,
-    UNMOVED,
     Found,
     search,
     settled,
@@ -34,6 +31,10 @@ from rga.diagnosis.search import (
     weighed,
     without_needless,
 )
+from rga.diagnosis.spared import spared
+from rga.diagnosis.support import supported
+from rga.diagnosis.verdict import doubts_of, verdict
+from rga.diagnosis.whole_record import WholeRecord
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
@@ -76,39 +77,57 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     start = settled(base, data)
     screening = Screening(start, base, candidates, lambda x: progress("screening", x))
     found = search(start, base, candidates, screening, progress)
-    noise = found.problem
-    found = _confirmed(found, screening, progress)
-    tried = compare(found, screening.first, lambda done: progress("comparing explanations", done))
+    whole = WholeRecord.of(prepared.data, held_out, found.problem)
+
+    def reweighed(left: Found) -> Found:
+        return weighed(left.problem, base, left.fit, screening, progress)
+
+    found, dropped = supported(_confirmed(found, screening, progress), whole, seed, reweighed)
+    failed: list[str] = []
+    no_explanations: list[Tried] = []
+    tried = spared(
+        "the comparison of explanations",
+        lambda: compare(found, screening.first, lambda x: progress("comparing explanations", x)),
+        no_explanations,
+        failed,
+    )
 
     effects = tell.effects_of(found, prepared.record)
     faults = {fault: tell.fault_effect(fault, prepared.record) for fault in prepared.faults}
     named = {tell.cause_name(model, effect): effect for effect in effects}
     broken = {f"fault of {fault.sensor}": effect for fault, effect in faults.items()}
     extended = model.extended({**named, **broken})
-    account = _account(model, extended, prepared, held_out, (start, found), noise)
+    before, believed = whole.simulated(start), whole.believed(found.problem)
+    after = whole.at_zero(found.problem, believed.predict(Simulator(extended)))
+    gained = whole.gain(before, after, seed)
+    account = _account(model, extended, prepared, whole, believed, (before, after), found)
     share = leftover.share_left(found.problem)
-    structure = share > STRUCTURE or bool(bends(found.problem) or curves(found.problem))
     grouped = sensor_groups(model, data.sensors)
-    misfits = tell.misfits(account, grouped)
+    off = misfits(found.problem, found.fit.simulated, grouped)
+    doubts = doubts_of(record.sensors, prepared.faults, found, dropped, off, gained)
+    structure = (
+        bool(doubts) or share > STRUCTURE or bool(bends(found.problem) or curves(found.problem))
+    )
+    pattern = spared(
+        "what the structure that is left goes with",
+        lambda: leftover.in_words(found.problem, leftover.known_contexts(found.problem, measured)),
+        "not known",
+        failed,
+    )
     findings = Findings(
-        verdict=tell.verdict(found, bool(prepared.faults), structure),
-        gap=tell.gap(account, gain_of(account, seed)),
+        verdict=verdict(found, bool(prepared.faults), structure),
+        gap=tell.gap(account, gained),
         causes=[
             *(tell.fault_cause(fault, effect) for fault, effect in faults.items()),
-            *tell.causes(found, effects, prepared.record),
+            *tell.causes(found, effects, prepared.record, failed),
         ],
         unidentifiable=tell.unidentifiable(screening.first),
-        unexplained={
-            "share": share,
-            "looks_like": leftover.in_words(
-                found.problem, leftover.known_contexts(found.problem, measured)
-            ),
-        },
+        unexplained={"share": share, "looks_like": "; ".join([*doubts, pattern])},
         explanations=tell.explanations(tried, found, prepared.record),
         groups=tell.groups(account, grouped),
         contexts=tell.contexts(found.problem, model),
-        warnings=[*prepared.warnings, *misfits.values()],
-        misfits=list(misfits),
+        warnings=[*prepared.warnings, *(one.words for one in off if one.alone), *failed],
+        misfits=list(dict.fromkeys(name for one in off for name in one.channels)),
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,
@@ -150,80 +169,36 @@ def _account(
     model: Model,
     extended: Model,
     prepared: Prepared,
-    held_out: BoolArray,
-    ends: tuple[Problem, Found],
-    noise_of: Problem,
+    whole: WholeRecord,
+    believed: Data,
+    ends: tuple[FloatArray, FloatArray],
+    found: Found,
 ) -> Account:
-    """What was measured and simulated, before and after: the search's `ends`.
+    """What was measured and simulated at both ends of the search: before and after.
 
     The gap is in units of the noise as it was before shared patterns were taken out of it.
     """
-    full = prepared.data
-    start, found = ends
-    at_first = _everywhere(full, start)
-    before = at_first.predict(Simulator(model))
-    believed = at_first if found.problem is start else _everywhere(full, found.problem)
-    after = believed.predict(Simulator(extended))
-    record = prepared.record
+    full, record = prepared.data, prepared.record
     columns = [record.sensors.index(name) for name in full.sensors]
     rejected = np.array([name not in full.sensors for name in record.sensors])
 
-    def placed(values: FloatArray, otherwise: float = np.nan) -> FloatArray:
-        out = np.full((len(values), len(record.sensors)), otherwise)
-        out[:, columns] = values
+    def placed(values: FloatArray) -> FloatArray:
+        out = np.full((*values.shape[:-1], len(record.sensors)), np.nan)
+        out[..., columns] = values
         return out
 
-    spread = np.sqrt(variance(noise_of))
-    noise = np.empty_like(full.readings)
-    noise[~held_out] = spread
-    noise[held_out] = np.sqrt((spread**2).mean(0))
-    sigma = np.full(len(record.sensors), np.nan)
-    sigma[columns] = noise_of.noise.deviation
     readings = placed(np.where(full.observed, full.readings, np.nan))
-
+    before, after = map(placed, ends)
     return Account(
         model=model,
         extended=extended,
         record=replace(record, readings=np.where(rejected, record.readings, readings)),
-        held_out=held_out,
+        held_out=whole.held_out,
         rejected=rejected,
-        before=placed(before),
-        after=placed(after),
-        sigma=sigma,
-        noise=placed(noise),
+        before=before,
+        after=after,
+        sigma=placed(whole.deviation),
+        noise=placed(whole.noise),
         contexts=believed.belief.table,
         found=found,
     )
-
-
-def _everywhere(full: Data, part: Problem) -> Data:
-    """All rows with their latent contexts.
-
-    Lines are prolonged. What is latent row by row can only come from the readings of the row: on
-    held-out rows the model infers it as it would in use.
-    """
-    changes = {}
-    belief = part.data.belief
-    clock = part.data.time - part.data.time[0]
-    for name in belief.lines:
-        line = np.polyfit(clock, belief.table[name], 1)
-        changes[name] = np.polyval(line, full.time - part.data.time[0])
-    whole = replace(full, belief=full.belief.with_values(changes))
-    if not belief.latent:
-        return whole
-    problem = pose(part.simulator, whole, factors=part.factors)
-    for _ in range(ROUNDS):
-        inferred = relaxed(problem).belief.table
-        latent = {name: column for name, column in inferred.items() if name in belief.latent}
-        before, whole = whole, replace(whole, belief=whole.belief.with_values(latent))
-        if whole.belief.distance(before.belief) < UNMOVED:
-            break
-        problem = resimulated(problem, part.simulator, whole)
-    return whole
-
-
-def gain_of(account: Account, seed: int) -> Gain:
-    """Gain by the readings of the held-out rows."""
-    left = (account.record.readings - account.after) / account.noise
-    change = (account.after - account.before) / account.noise
-    return gain(left, change, account.held_out, seed)

@@ -1,15 +1,20 @@
 """From a record to the data that a diagnosis works on: rows, channels, contexts."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rga.diagnosis.channels import Fault, find_faults, lone_spikes
+from rga.diagnosis.channel_faults import Fault, lost_zeros, stuck_channels
+from rga.diagnosis.channels import broken_channels, lone_spikes
 from rga.diagnosis.data import Data, first_belief
+from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.latent import guess_lines, guess_rows
 from rga.diagnosis.problem import load_basis
 from rga.diagnosis.row_covariance import BoolArray
+from rga.diagnosis.signatures import signatures
+from rga.diagnosis.tare import Tare
+from rga.diagnosis.zeros import with_own_zeros
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
@@ -25,6 +30,12 @@ FEW_ROWS = 60
 ALIKE, OTHER_UNIT = 0.8, 30.0
 #: share of the record that a context repeats its last value for, and is doubted
 STILL = 0.1
+#: times that broken channels are looked for: the worst may hide others
+GOES = 3
+#: share of a signature that courses of the loads must leave, to be no sum of them
+BEYOND = 1e-4
+#: places of a kind that show only such sums, before the kind is taken as linear
+LINEAR = 4
 
 
 @dataclass(frozen=True)
@@ -54,26 +65,38 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     """
     check_length(record)
     simulator = Simulator(model)
+    record, rezeroed = with_own_zeros(model, simulator, record, _data(model, record))
     data = _data(model, record)
-    stuck = find_faults(data.sensors, data.readings, data.observed)
-    data = _without(data, stuck)
+    faults = stuck_channels(data.sensors, data.readings, data.observed)
+    found = {fault.sensor: fault for fault in faults}
+    data = _without(data, faults)
     data = guess_lines(simulator, data, progress)
+    if data.belief.passing:
+        loaded = _acting(simulator.load_coefficients(data.belief.table))
+        lost = lost_zeros(data.sensors, data.readings, data.observed, loaded)
+        found |= {fault.sensor: fault for fault in lost}
+        data = _without(data, lost)
     chosen = _loaded_rows(simulator, data)
     data = guess_rows(simulator, data.rows(chosen))
-    basis = load_basis(simulator, data)
-    simulated = data.predict(simulator)
-    doubts = _doubts(model, data, simulated, record)
-    broken = find_faults(data.sensors, data.readings, data.observed, simulated, basis)
-    data = _without(data, broken)
+    doubts = _doubts(model, data, data.predict(simulator), record)
+    for _ in range(GOES):
+        broken = _broken(simulator, data, record)
+        if not broken:
+            break
+        found |= {fault.sensor: fault for fault in broken}
+        data = _without(data, broken)
+        if data.belief.latent and data.sensors:
+            # A channel that is broken spoils the contexts that are inferred with it.
+            data = guess_rows(simulator, data)
     if not data.sensors:
-        fault = [*stuck, *broken][0]
+        fault = next(iter(found.values()))
         raise InputError(
             "none of the channels works",
             f"record; of {fault.sensor!r}, {fault.why}",
             "check the record and the mapping",
         )
     spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
-    warnings = [*record.warnings, *doubts]
+    warnings = [*record.warnings, *rezeroed, *doubts]
     if chosen.sum() < FEW_ROWS:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -85,9 +108,61 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
     if silent:
         warnings.append(f"{silent} rows without a context or without any reading were left aside")
     if spikes.any():
-        warnings.append(f"{int(spikes.sum())} lone spikes were taken as missing readings")
+        of = ", ".join(np.array(data.sensors)[spikes.any(0)])
+        warnings.append(f"{int(spikes.sum())} lone spikes of {of} were taken as missing readings")
         data = replace(data, observed=data.observed & ~spikes)
-    return Prepared(data, record.rows(chosen), chosen, [*stuck, *broken], warnings)
+    return Prepared(data, record.rows(chosen), chosen, list(found.values()), warnings)
+
+
+def _broken(simulator: Simulator, data: Data, record: Record) -> list[Fault]:
+    """Channels that do not work, of those that are left."""
+    if not data.sensors:
+        return []
+    basis = load_basis(simulator, data)
+
+    def effects() -> list[FloatArray]:
+        candidates = hypotheses(simulator.model, data.sensors, set(record.contexts))
+        structural = [one for one in candidates if not one.kind.on_sensors]
+        return _beyond_loads(data, simulator, structural, basis)
+
+    return broken_channels(
+        simulator.model,
+        data.sensors,
+        data.readings,
+        data.observed,
+        data.predict(simulator),
+        basis,
+        effects,
+        not data.belief.passing,
+    )
+
+
+def _beyond_loads(
+    data: Data, simulator: Simulator, candidates: Sequence[Hypothesis], basis: FloatArray
+) -> list[FloatArray]:
+    """The part of signatures that is no sum of courses of the loads, float[rows, sensors] each.
+
+    Kinds that show none at the first places that show anything are linear, and show none at others.
+    """
+    courses, _ = np.linalg.qr(np.column_stack([np.ones(len(basis)), basis]))
+    by_kind: dict[str, list[Hypothesis]] = {}
+    for one in candidates:
+        by_kind.setdefault(one.name, []).append(one)
+    found = []
+    for several in by_kind.values():
+        linear = 0
+        for sign in signatures(data, data.about(simulator), several):
+            change = np.zeros((len(basis), len(data.sensors)))
+            change[:, slice(None) if sign.channels is None else sign.channels] = sign.values.T
+            rest = change - courses @ (courses.T @ change)
+            if (rest**2).sum() > BEYOND * (change**2).sum():
+                linear = -len(candidates)
+                found.append(np.where(data.observed, rest, 0.0))
+            else:
+                linear += bool(change.any())
+            if linear >= LINEAR:
+                break
+    return found
 
 
 def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
@@ -148,20 +223,27 @@ def _data(model: Model, record: Record) -> Data:
     # A row whose context is missing cannot be simulated: its readings are left aside.
     told = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
     complete = np.all(told, axis=0) if told else np.ones(len(record.time), dtype=bool)
-    leading = record.zero_rows()
+    columns = [order[name] for name in record.sensors]
     return Data(
         sensors=tuple(record.sensors),
-        columns=[order[name] for name in record.sensors],
+        columns=columns,
         readings=np.nan_to_num(record.readings),
         observed=np.isfinite(record.readings) & complete[:, None],
         belief=belief,
-        zero={name: column[leading] for name, column in belief.table.items()},
+        tare=Tare.of(record, belief.table, columns, len(order)),
     )
 
 
 def _without(data: Data, faults: list[Fault]) -> Data:
-    broken = {fault.sensor for fault in faults}
-    kept = [number for number, name in enumerate(data.sensors) if name not in broken]
+    """The data without channels that never work, and without the readings behind their fault."""
+    begun = {fault.sensor: fault.row for fault in faults}
+    observed = data.observed.copy()
+    for number, name in enumerate(data.sensors):
+        row = begun.get(name)
+        if row is not None:
+            observed[row:, number] = False
+    kept = [k for k, name in enumerate(data.sensors) if begun.get(name, 0) is not None]
+    data = replace(data, observed=observed)
     return replace(
         data,
         sensors=tuple(data.sensors[number] for number in kept),

@@ -10,6 +10,7 @@ from rga.diagnosis.data import Belief, Data
 from rga.diagnosis.noise import estimate_noise, unexplainable
 from rga.diagnosis.row_covariance import Noise, RowCovariance
 from rga.diagnosis.scatter import MEDIANS, Scatter, lines, scatter_effects, scatter_levels
+from rga.diagnosis.zero_errors import slopes_at_zero, zero_errors
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
@@ -38,6 +39,8 @@ class Problem:
         tails: what heavy tails of the noise add to the readings, float[rows, sensors].
         covariance: of the residual.
         noise: of sensors and contexts.
+        zero_variance: what errors of the logger's zero add to every reading of a channel,
+            float[sensors].
         scatter: random effects.
         levels: of the families of the scatter: members, gains, patterns [-].
         factors: patterns over the sensors that vary from row to row for reasons unknown,
@@ -54,6 +57,7 @@ class Problem:
     tails: FloatArray
     covariance: Covariance
     noise: Noise
+    zero_variance: FloatArray
     scatter: Scatter
     levels: FloatArray
     factors: FloatArray
@@ -99,7 +103,8 @@ def pose(
     """
     belief = data.belief
     simulated = data.read(simulator, data.about(simulator).response)
-    jacobian = context_jacobian(simulator, data, simulated)
+    slopes = context_jacobian(simulator, data, simulated)
+    jacobian = np.where(data.observed[:, :, None], slopes, 0.0)
     shift = _shift(jacobian, belief)
     if factors is None:
         factors = before.factors if before is not None else np.zeros((len(data.sensors), 0))
@@ -131,7 +136,12 @@ def pose(
     given = simulator if before is None else before.given
     # What a cause does is no pattern that every channel may show a little of.
     patterns = basis if given is simulator else load_basis(given, data)
-    calibrations = [*_calibrations(belief, jacobian, noise, patterns), *more]
+    errors = zero_errors(simulator, data, noise)
+    calibrations = [
+        *_calibrations(simulator, data, slopes, noise, patterns),
+        *errors.of_rows(len(data.time)),
+        *more,
+    ]
     scatter = scatter_effects(simulator, data, simulated, patterns, factors, calibrations)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
@@ -146,6 +156,7 @@ def pose(
         tails=tails,
         covariance=covariance,
         noise=noise,
+        zero_variance=errors.variance,
         scatter=scatter,
         levels=levels,
         factors=factors,
@@ -179,21 +190,28 @@ def _shift(jacobian: FloatArray, belief: Belief) -> FloatArray:
 
 
 def _calibrations(
-    belief: Belief, jacobian: FloatArray, noise: Noise, basis: FloatArray
+    simulator: Simulator, data: Data, jacobian: FloatArray, noise: Noise, basis: FloatArray
 ) -> list[Calibration]:
-    """What measured contexts do that are off for the whole record.
+    """What measured contexts do that are off for the whole record, the rows of the zero included.
 
     Those that act along courses of the loads; what else a place that is off does is dear to follow,
     and small.
     """
+    belief = data.belief
     courses, _ = np.linalg.qr(np.column_stack([np.ones(len(basis)), basis]))
+    at_zero = slopes_at_zero(simulator, data)
     found: list[Calibration] = []
     for number, name in enumerate(belief.spread):
         if name in belief.latent:
             continue
         along, course = jacobian[:, :, number], belief.centre[name]
-        found.append((along, OFFSET * float(noise.context_sigma[number])))
-        found.append((along * course[:, None], GAIN))
+        offset, gain = along, along * course[:, None]
+        if name in at_zero:
+            slope, there = at_zero[name], data.tare.contexts[name]
+            offset = offset - data.taken_off(slope)
+            gain = gain - data.taken_off(slope * there[:, None])
+        found.append((offset, OFFSET * float(noise.context_sigma[number])))
+        found.append((gain, GAIN))
     return [
         (change, spread)
         for change, spread in found
@@ -202,7 +220,10 @@ def _calibrations(
 
 
 def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) -> FloatArray:
-    """Derivatives by the contexts that are uncertain row by row, float[rows, sensors, contexts]."""
+    """Derivatives by the contexts that are uncertain row by row, float[rows, sensors, contexts].
+
+    Of all channels, whether they were read or not.
+    """
     belief = data.belief
     columns = []
     for name in belief.spread:
@@ -213,7 +234,7 @@ def context_jacobian(simulator: Simulator, data: Data, simulated: FloatArray) ->
         columns.append((ahead - behind) / (2 * step))
     if not columns:
         return np.zeros((*simulated.shape, 0))
-    return np.where(data.observed[:, :, None], np.stack(columns, axis=2), 0.0)
+    return np.stack(columns, axis=2)
 
 
 def load_basis(simulator: Simulator, data: Data) -> FloatArray:

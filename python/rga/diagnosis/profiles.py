@@ -58,7 +58,6 @@ def profiles(found: Found, number: int) -> list[Profile]:
     one = found.fit
     hypothesis, where = one.hypotheses[number], one.slices()[number]
     covariance = np.linalg.inv(one.information)
-    marks = hypothesis.kind.parameters()
     told = []
     for column, (name, prior) in zip(
         range(where.start, where.stop), hypothesis.priors.items(), strict=True
@@ -67,7 +66,8 @@ def profiles(found: Found, number: int) -> list[Profile]:
         heights = np.array([_height(found, one.z + step * along, column) for step in AWAY])
         values = [prior.value(float(one.z[column] + step * along[column])) for step in AWAY]
         height = heights - heights[len(AWAY) // 2]
-        told.append(Profile(name, marks[name].unit, np.array(values), AWAY, height))
+        unit = hypothesis.kind.unit(name, hypothesis.place)
+        told.append(Profile(name, unit, np.array(values), AWAY, height))
     return told
 
 

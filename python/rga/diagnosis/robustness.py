@@ -41,7 +41,7 @@ def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
         fewer = [
             without_cause(problem, base, current, number)
             for number, one in enumerate(current.hypotheses)
-            if not one.kind.on_sensors
+            if not one.kind.at_sensors()
         ]
         gaps = [unseen_gap(problem, base, one) for one in fewer]
         if not gaps or min(gaps) >= whole:
@@ -73,7 +73,12 @@ def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found
     return replace(
         found,
         alternatives=tuple(
-            tuple(_nearer(one, nearest.get((number, place))) for place, one in enumerate(ranked))
+            tuple(
+                sorted(
+                    (_nearer(one, nearest.get((number, k))) for k, one in enumerate(ranked)),
+                    key=lambda one: one.behind,
+                )
+            )
             for number, ranked in enumerate(found.alternatives)
         ),
     )
@@ -93,9 +98,9 @@ def with_better_prediction(found: Found) -> Found:
     rivals = [
         (number, one)
         for number, ranked in enumerate(found.alternatives)
-        if not found.fit.hypotheses[number].kind.on_sensors
+        if not found.fit.hypotheses[number].kind.at_sensors()
         for one in ranked
-        if one.behind < RIVAL and not one.hypothesis.kind.on_sensors
+        if one.behind < RIVAL and not one.hypothesis.kind.at_sensors()
     ]
     if not rivals or len(sensor_groups(base.model, problem.data.sensors)) < 2:
         return found

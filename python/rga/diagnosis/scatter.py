@@ -93,7 +93,9 @@ def scatter_effects(
     drift = np.column_stack([np.ones(len(clock)), waves, patterns])
     members = _by_members(simulator, data, simulated)
     moved = _by_lines(simulator, data)
-    known = [basis, *([drift] if factors.size else [])]
+    # What the zero is off stays as it is over all rows.
+    constant = np.ones((len(clock), 1 if len(data.tare) else 0))
+    known = [basis, constant, *([drift] if factors.size else [])]
     of_contexts = [change for change, _ in calibrations]
     courses = _courses(np.hstack(known), [simulated, *members, *of_contexts, *moved])
 

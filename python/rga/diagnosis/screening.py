@@ -4,19 +4,22 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rga.diagnosis.covariance import Covariance
+from rga.diagnosis.data import Data
 from rga.diagnosis.hypothesis import LATE, Hypothesis, Profile
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.signatures import Block, chunks, signature, signatures
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
-#: an onset leaves at least this share of a signature out of reach of constant scatter
-OUT_OF_REACH = 0.08
 #: prospects that are judged anew, by signatures about the simulation as it stands
 JUDGED = 100
 #: d' below which not even the largest of a hypothesis' trial values will ever be named
 HOPELESS = 1.5
+#: d' below which a signature has no size: what rounding leaves of it, which promises nothing
+NO_SIZE = 1e-6
 PROFILES: tuple[Profile, ...] = ("step", "ramp")
 
 
@@ -29,7 +32,9 @@ class Prospect:
         hypothesis: with an onset where one promises more.
         z: coordinates to start a fit from.
         score: approximate log evidence.
-        largest: d' of the largest of the trial values, or of two prior deviations.
+        largest: d' of the largest of the trial values, or of two prior deviations, of an effect
+            that always acts.
+        largest_late: the same of one that begins after the logger's zero, before any other row.
         trial: coordinates of the signature that promised it.
     """
 
@@ -38,6 +43,7 @@ class Prospect:
     z: tuple[float, ...]
     score: float
     largest: float
+    largest_late: float
     trial: tuple[float, ...]
 
 
@@ -45,15 +51,91 @@ class Prospect:
 class Judged:
     """Signatures with their sizes under the covariance of the first screening.
 
+    The logger's zero takes a constant off each of them. One that begins after the zero keeps it:
+    it is its shares of the whole. One that has a mean share m in the zero rows is m times the
+    signature, and its shares less m of the whole.
+
     Attributes:
         block: the signatures.
         size: x' C^-1 x, float[k].
-        by_row: of every row, its part of x' W' W x, float[k, rows].
+        whole_size: the same with what the zero takes off, float[k].
+        by_row: of every row, its part of x' W' W x with what the zero takes off, float[k, rows].
+        across: its part of x' W' W y, x without and y with it, float[k, rows]; None where they are
+            the same.
+        white: x' W' W x, float[k].
+        open_share: share of y' W' W y that errors of the contexts leave, float[k].
     """
 
     block: Block
     size: FloatArray
-    by_row: FloatArray
+    whole_size: FloatArray
+    by_row: NDArray[np.float32]
+    across: NDArray[np.float32] | None
+    white: FloatArray
+    open_share: FloatArray
+
+    @classmethod
+    def of(cls, block: Block, covariance: Covariance) -> "Judged":
+        """Signatures, judged by a covariance."""
+        reduced = whole = covariance.reduce(block.values, block.channels)
+        size = whole_size = np.maximum(covariance.squares(reduced), 0.0)
+        across = None
+        if block.zero.any():
+            whole = covariance.reduce(block.values + block.zero[:, :, None], block.channels)
+            whole_size = np.maximum(covariance.squares(whole), 0.0)
+            across = (reduced.white * whole.white).sum(1).astype(np.float32)
+        by_row = (whole.white**2).sum(1)
+        by_contexts = (whole.context**2).sum(0) / np.maximum(by_row.sum(1), 1e-300)
+        return cls(
+            block=replace(block, values=block.values.astype(np.float32)),
+            size=size,
+            whole_size=whole_size,
+            by_row=by_row.astype(np.float32),
+            across=across,
+            white=np.einsum("kct,kct->k", reduced.white, reduced.white),
+            open_share=1.0 - by_contexts,
+        )
+
+    def begun(
+        self, along: FloatArray, weight: FloatArray, at_zero: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sums with a residual and sizes of the signatures that begin late.
+
+        Args:
+            along: products with the residual, as `Block.along` and `Block.zero_along` have them,
+                float[2, k, rows].
+            weight: share of the effect in each row, float[beginnings, rows].
+            at_zero: mean of that share over the zero rows, float[beginnings].
+
+        Returns:
+            float[k, beginnings] each.
+        """
+        rest, mean = weight - at_zero[:, None], at_zero[:, None]
+        by_row = self.by_row.astype(float)
+        sums = along.sum(0) @ rest.T + along[0].sum(1)[:, None] * at_zero
+        sizes = by_row @ (rest**2).T
+        if at_zero.any():
+            across = self.by_row if self.across is None else self.across
+            sizes += 2 * across.astype(float) @ (rest * mean).T + self.white[:, None] * at_zero**2
+        sizes = np.maximum(sizes, 0.0)
+        # Scatter is the same in all rows. Of some rows it takes that part of what it takes of all.
+        total = np.maximum(by_row.sum(1), 1e-300)[:, None]
+        taken = self.open_share[:, None] - self.whole_size[:, None] / total
+        shares = self.open_share[:, None] - np.minimum(sizes / total, 1.0) * taken
+        return sums, sizes * np.maximum(shares, 0.0)
+
+    def of_numbers(self, numbers: Collection[int]) -> "Judged":
+        """The signatures of some of the candidates."""
+        which = np.array([number in numbers for number, _, _ in self.block.members], dtype=bool)
+        return Judged(
+            self.block.kept(which),
+            self.size[which],
+            self.whole_size[which],
+            self.by_row[which],
+            None if self.across is None else self.across[which],
+            self.white[which],
+            self.open_share[which],
+        )
 
 
 class Screening:
@@ -86,16 +168,14 @@ class Screening:
         self._judged: list[Judged] = []
         done = 0
         for block in chunks(signatures(data, data.about(simulator), candidates)):
-            reduced = covariance.reduce(block.values, block.channels)
-            size = np.maximum(covariance.squares(reduced), 0.0)
-            by_row = (reduced.white**2).sum(1).astype(np.float32)
-            light = replace(block, values=block.values.astype(np.float32))
-            self._judged.append(Judged(light, size, by_row))
+            self._judged.append(Judged.of(block, covariance))
             done = max(done, *(number + 1 for number, _, _ in block.members))
             progress(done / len(candidates))
         self.first = self.again(problem, simulator, ())
-        hopeless = {one.number for one in self.first if one.largest < HOPELESS}
-        self._judged = [_without(one, hopeless) for one in self._judged]
+        hopeful = {
+            one.number for one in self.first if max(one.largest, one.largest_late) >= HOPELESS
+        }
+        self._judged = [one.of_numbers(hopeful) for one in self._judged]
 
     def again(
         self,
@@ -117,17 +197,20 @@ class Screening:
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
         best: dict[tuple[int, Profile | None], Prospect] = {}
-        largest: dict[int, float] = {}
-        onsets = not data.belief.passing
+        largest: dict[int, tuple[float, float]] = {}
         for judged in self._judged:
-            for one in _promises(judged, weighted, data.time, onsets, beginning):
+            for one in _promises(judged, weighted, data, beginning):
                 # What an onset promises is rough, and must not hide another way to begin.
                 late = one.hypothesis.onset is not None
                 key = one.number, one.hypothesis.profile if late else None
                 best[key] = max(best.get(key, one), one, key=lambda each: each.score)
-                largest[one.number] = max(largest.get(one.number, 0.0), one.largest)
+                before = largest.get(one.number, (0.0, 0.0))
+                largest[one.number] = (
+                    max(before[0], one.largest),
+                    max(before[1], one.largest_late),
+                )
         kept = [
-            replace(one, largest=largest[one.number])
+            replace(one, largest=largest[one.number][0], largest_late=largest[one.number][1])
             for one in best.values()
             if not any(one.hypothesis.same_place(other) for other in taken)
         ]
@@ -155,7 +238,7 @@ def judged_anew(
     """
     data, covariance = problem.data, problem.covariance
     about = data.about(simulator)
-    largest = {one.number: one.largest for one in prospects}
+    largest = {one.number: (one.largest, one.largest_late) for one in prospects}
     several = (signature(data, about, one.number, one.hypothesis, one.trial) for one in prospects)
     found = []
     for block in chunks(one for one in several if one is not None):
@@ -164,47 +247,44 @@ def judged_anew(
         prior = np.array([hypothesis.log_prior for _, hypothesis, _ in block.members])
         score, start = _scored(block, sums, np.maximum(size, 0.0), prior)
         found += [
-            Prospect(number, hypothesis, _coordinates(z, s), float(points), largest[number], z)
+            Prospect(number, hypothesis, _coordinates(z, s), float(points), *largest[number], z)
             for (number, hypothesis, z), points, s in zip(block.members, score, start, strict=True)
         ]
     return found
 
 
 def _promises(
-    judged: Judged,
-    weighted: FloatArray,
-    time: FloatArray,
-    onsets: bool,
-    beginning: Hypothesis | None,
+    judged: Judged, weighted: FloatArray, data: Data, beginning: Hypothesis | None
 ) -> list[Prospect]:
     """The prospects of every signature: from the start, and from its likeliest moment on."""
-    block = judged.block
-    along = block.along(weighted)
+    block, time, tare = judged.block, data.time, data.tare
+    along = np.stack([block.along(weighted), block.zero_along(weighted)])
     members = block.members
-    largest = np.sqrt(judged.size)
+    onsets = not data.belief.passing
+    largest = np.sqrt([judged.size, judged.whole_size if onsets else judged.size])
     straight = block.straight & block.free
-    largest[straight] *= 2 / np.abs(block.z[straight, 0])
+    largest[:, straight] *= 2 / np.abs(block.z[straight, 0])
     before = np.array([hypothesis.log_prior for _, hypothesis, _ in members])
     later = before + LATE
     options: list[tuple[FloatArray, FloatArray]] = []
     moments: list[tuple[FloatArray | None, Profile]] = []
-    white = judged.by_row.astype(float)
-    share = judged.size / np.maximum(white.sum(1), 1e-300)
-    options.append(_scored(block, along.sum(1), judged.size, before))
+    options.append(_scored(block, along[0].sum(1), judged.size, before))
     moments.append((None, "step"))
     if beginning is not None and beginning.onset is not None:
-        weight = beginning.effect([0.0] * len(beginning.priors)).weight(time)
-        options.append(_scored(block, along @ weight, share * (white @ weight**2), later))
+        weight, weight_at_zero = data.weights(beginning.effect([0.0] * len(beginning.priors)))
+        at_zero = tare.mean_weight(weight_at_zero[None])
+        sums, sizes = judged.begun(along, weight[None], at_zero)
+        options.append(_scored(block, sums[:, 0], sizes[:, 0], later))
         moments.append((np.full(len(members), beginning.onset), beginning.profile))
     if beginning is None and onsets:
         margin = max(2, len(time) // 50)
         inner = slice(margin, len(time) - margin)
-        share = np.maximum(share, OUT_OF_REACH)[:, None]
         every = np.arange(len(members))
         for profile in PROFILES:
-            weight = _weights(time, profile)[inner]
-            sums, sizes = along @ weight.T, share * (white @ (weight**2).T) + 1e-300
-            row = np.argmax(sums**2 / sizes, axis=1)
+            weight = _weights(time[inner], time, profile, time[-1])
+            at_zero = tare.mean_weight(_weights(time[inner], tare.time, profile, time[-1]))
+            sums, sizes = judged.begun(along, weight, at_zero)
+            row = np.argmax(_gained(sums, sizes), axis=1)
             options.append(_scored(block, sums[every, row], sizes[every, row], later))
             moments.append((time[inner][row], profile))
     found = []
@@ -215,17 +295,31 @@ def _promises(
                 end = None if beginning is None else beginning.end
                 one = hypothesis.beginning(float(moment[k]), profile, end)
             start_z = _coordinates(z, start[k])
-            found.append(Prospect(number, one, start_z, float(score[k]), float(largest[k]), z))
+            always, late = map(float, largest[:, k])
+            found.append(Prospect(number, one, start_z, float(score[k]), always, late, z))
     return found
 
 
-def _weights(time: FloatArray, profile: Profile) -> FloatArray:
-    """Shares of an effect that begins at each row, float[beginnings, rows]."""
-    later = time >= time[:, None]
+def _weights(beginnings: FloatArray, time: FloatArray, profile: Profile, end: float) -> FloatArray:
+    """Shares at times of effects that begin at moments, float[beginnings, times].
+
+    Args:
+        beginnings: moments [s], float[beginnings].
+        time: times [s], float[times].
+        profile: of the effects.
+        end: when a ramp is full [s].
+    """
+    later = time >= beginnings[:, None]
     if profile == "step":
         return later.astype(float)
-    left = np.maximum(time[-1] - time, 1e-12)
-    return np.where(later, (time - time[:, None]) / left[:, None], 0.0)
+    left = np.maximum(end - beginnings[:, None], 1e-12)
+    return np.where(later, (time - beginnings[:, None]) / left, 0.0)
+
+
+def _gained(along: FloatArray, size: FloatArray) -> FloatArray:
+    """What signatures gain in likelihood at their best amplitude, twice its log."""
+    sized = size > NO_SIZE**2
+    return np.where(sized, along**2 / np.where(sized, size, 1.0), 0.0)
 
 
 def _scored(
@@ -235,17 +329,19 @@ def _scored(
 
     The latter is float[k], the value of all coordinates, or NaN: those of the trial.
     """
+    sized = size > NO_SIZE**2
+    size, along = np.where(sized, size, 1.0), np.where(sized, along, 0.0)
     first = np.where(block.free & block.straight, block.z[:, 0], 1.0)
     # A straight line in z: the evidence is exact.
     per_z = size / first**2
     straight = (along / first) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
     # A curve: the amplitude may differ a little from that of the trial, not in sign.
-    amplitude = np.clip(along / np.maximum(size, 1e-300), 0.0, 3.0)
+    amplitude = np.clip(along / size, 0.0, 3.0)
     curve = amplitude * along - amplitude**2 * size / 2 - (block.z**2).sum(1) / 2
     fixed = along - size / 2
     score = np.where(block.free, np.where(block.straight, straight, curve), fixed)
     start = np.where(block.free & block.straight, along / first / (1 + per_z), np.nan)
-    return np.where(size > 0, score + prior, -np.inf), start
+    return np.where(sized, score + prior, -np.inf), start
 
 
 def _coordinates(z: tuple[float, ...], start: float) -> tuple[float, ...]:
@@ -254,18 +350,3 @@ def _coordinates(z: tuple[float, ...], start: float) -> tuple[float, ...]:
 
 def _rank(one: Prospect) -> tuple[float, int]:
     return -one.score, one.number
-
-
-def _without(judged: Judged, hopeless: set[int]) -> Judged:
-    kept = np.array([number not in hopeless for number, _, _ in judged.block.members], dtype=bool)
-    block = judged.block
-    few = replace(
-        block,
-        members=[one for one, keep in zip(block.members, kept, strict=True) if keep],
-        channels=None if block.channels is None else block.channels[kept],
-        values=block.values[kept],
-        z=block.z[kept],
-        straight=block.straight[kept],
-        free=block.free[kept],
-    )
-    return Judged(few, judged.size[kept], judged.by_row[kept])

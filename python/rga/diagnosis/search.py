@@ -22,6 +22,9 @@ RIVAL = 4.6
 #: share of its log-odds that a cause must keep where slopes are free
 KEPT = 0.5
 FITTED = 10
+#: share of the best score below which a prospect is far behind, and one of another kind than the
+#: ten best hopelessly so; log-odds by which a score may be wrong whatever its size
+FAR, HOPELESS, ROUGHLY = 0.3, 0.7, 30.0
 JUDGED = 3
 #: prospects that are tried because they would stand out of less scatter
 HIDDEN = 5
@@ -61,7 +64,7 @@ class Found:
         problem: the record about the extended simulation.
         fit: the causes fitted together.
         base: the simulator without causes.
-        alternatives: for each cause what could stand in its place, the best first.
+        alternatives: for each cause what could stand in its place, the nearest first.
         log_odds: of each cause against leaving it out.
     """
 
@@ -250,9 +253,22 @@ def _at_free_levels(problem: Problem, one: Fit) -> float:
 
 
 def worth_fitting(prospects: Sequence[Prospect]) -> list[Prospect]:
-    """The best prospects, less those that stay far behind the best."""
-    least = min(0.3 * prospects[0].score, prospects[0].score - 30) if prospects else 0.0
-    return [prospect for prospect in prospects[:FITTED] if prospect.score > least]
+    """The best prospects, and the best of every other kind, less those far behind the best.
+
+    Places of one kind may be much alike, and would leave no room for another kind.
+    """
+    best = prospects[0].score if prospects else 0.0
+    first: dict[str, Prospect] = {}
+    for one in prospects:
+        first.setdefault(one.hypothesis.name, one)
+    fitted = prospects[:FITTED]
+    others = [one for one in first.values() if one not in fitted]
+    return [
+        one
+        for some, share in ((fitted, FAR), (others, HOPELESS))
+        for one in some
+        if one.score > min(share * best, best - ROUGHLY)
+    ]
 
 
 def settled_with(base: Simulator, problem: Problem, best: Fit) -> tuple[Problem, Fit]:

@@ -29,7 +29,8 @@ class Signature:
         hypothesis: itself; without onset where `values` are those of an effect that always acts.
         z: coordinates of the trial.
         channels: those that it changes, int[channels]; None: all.
-        values: float[channels, rows].
+        values: less what the logger's zero takes off, float[channels, rows].
+        zero: what it takes off, float[channels]; an effect that begins later keeps it.
     """
 
     number: int
@@ -37,6 +38,7 @@ class Signature:
     z: tuple[float, ...]
     channels: IntArray | None
     values: FloatArray
+    zero: FloatArray
 
 
 def signature(
@@ -44,22 +46,27 @@ def signature(
 ) -> Signature | None:
     """The signature of a hypothesis about a simulation; None where it cannot be simulated.
 
-    An onset takes its share of what the effect would change if it always acted.
+    An onset takes its share of what the effect would change if it always acted, in the zero rows as
+    in the others.
     """
     try:
-        touched, change = data.change(about, hypothesis.beginning(None).effect(z))
+        touched, change, at_zero = data.change(about, hypothesis.beginning(None).effect(z))
     except InputError:
         return None
-    values = change.T
-    channels: IntArray | None = touched
-    if len(touched) > FEW:
-        channels = None
-        if len(touched) < len(data.sensors):
-            values = np.zeros((len(data.sensors), len(change)))
-            values[touched] = change.T
     if hypothesis.onset is not None:
-        values = values * hypothesis.effect(z).weight(data.time)
-    return Signature(number, hypothesis, z, channels, values)
+        weight, weight_at_zero = data.weights(hypothesis.effect(z))
+        change = change * weight[:, None]
+        at_zero = at_zero * weight_at_zero[:, None]
+    zero = data.tare.mean(at_zero, [data.columns[channel] for channel in touched])
+    values = (change - zero).T
+    if len(touched) <= FEW:
+        return Signature(number, hypothesis, z, touched, values, zero)
+    if len(touched) < len(data.sensors):
+        of_touched, values = values, np.zeros((len(data.sensors), len(change)))
+        values[touched] = of_touched
+        of_touched, zero = zero, np.zeros(len(data.sensors))
+        zero[touched] = of_touched
+    return Signature(number, hypothesis, z, None, values, zero)
 
 
 def signatures(
@@ -92,7 +99,8 @@ class Block:
     Attributes:
         members: of each its number, hypothesis and coordinates; their own values are not kept.
         channels: int[k, channels], or None: all.
-        values: float[k, channels, rows].
+        values: less what the logger's zero takes off, float[k, channels, rows].
+        zero: what it takes off, float[k, channels].
         z: float[k, parameters], zero behind the last parameter of each.
         straight: bool[k], all parameters have normal priors: the response is straight in z.
         free: bool[k], has a parameter.
@@ -101,6 +109,7 @@ class Block:
     members: list[tuple[int, Hypothesis, tuple[float, ...]]]
     channels: IntArray | None
     values: FloatArray
+    zero: FloatArray
     z: FloatArray
     straight: NDArray[np.bool_]
     free: NDArray[np.bool_]
@@ -116,6 +125,7 @@ class Block:
             members=[(one.number, one.hypothesis, one.z) for one in several],
             channels=np.stack(channels) if channels else None,
             values=np.stack([one.values for one in several]),
+            zero=np.stack([one.zero for one in several]),
             z=z,
             straight=np.array(
                 [
@@ -135,3 +145,21 @@ class Block:
         if self.channels is None:
             return np.asarray(np.einsum("kct,ct->kt", self.values, weighted))
         return np.asarray(np.einsum("kct,kct->kt", self.values, weighted[self.channels]))
+
+    def zero_along(self, weighted: FloatArray) -> FloatArray:
+        """The same of what the logger's zero takes off, in every row, float[k, rows]."""
+        if self.channels is None:
+            return np.asarray(self.zero @ weighted)
+        return np.asarray(np.einsum("kc,kct->kt", self.zero, weighted[self.channels]))
+
+    def kept(self, which: NDArray[np.bool_]) -> "Block":
+        """Some of the signatures, bool[k]."""
+        return Block(
+            members=[one for one, keep in zip(self.members, which, strict=True) if keep],
+            channels=None if self.channels is None else self.channels[which],
+            values=self.values[which],
+            zero=self.zero[which],
+            z=self.z[which],
+            straight=self.straight[which],
+            free=self.free[which],
+        )

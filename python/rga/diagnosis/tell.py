@@ -9,7 +9,7 @@ import numpy as np
 
 from rga.diagnosis.account import Account
 from rga.diagnosis.advice import Advice
-from rga.diagnosis.channels import Fault
+from rga.diagnosis.channel_faults import Fault
 from rga.diagnosis.evidence import Fit, extended
 from rga.diagnosis.explanations import Tried
 from rga.diagnosis.findings import (
@@ -20,13 +20,13 @@ from rga.diagnosis.findings import (
     HeldOut,
     SensorGap,
     Unidentifiable,
-    Verdict,
 )
 from rga.diagnosis.heldout import Gain
 from rga.diagnosis.onsets import beginnings
 from rga.diagnosis.problem import Problem
 from rga.diagnosis.screening import Prospect
 from rga.diagnosis.search import NAMED, RIVAL, Alternative, Found
+from rga.diagnosis.spared import spared
 from rga.diagnosis.words import effect_words, place_words
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault, SensorGain
@@ -38,19 +38,20 @@ from rga.records import Record
 NORMAL_90 = 1.6448536269514722
 SMALLEST_D_PRIME = 3.0
 FAULT_NATS = float(np.log(1000.0))
-MISFIT, LEAST_MISFIT = 3.0, 4.0
 #: gain below which a channel is dead [-]
 DEAD = 0.05
 #: share of the gap on unseen channels that an explanation must take off; unlikely z
 UNHELPFUL, UNLIKELY = 0.98, 3.0
 #: share of the named causes' gap on unseen channels below which another predicts them better
 BETTER = 0.9
+#: rivals that are listed: kinds that pass for each other are fewer, and of places that do, more
+#: would say no more than that the place is open
+MOST_RIVALS = 8
 
 
 def effects_of(found: Found, record: Record) -> list[Effect]:
     """The causes as effects with estimated parameters, onsets as in the record."""
-    effects = (_effect(found.fit, number, record) for number in range(len(found.fit.hypotheses)))
-    return [_dead(effect) for effect in effects]
+    return [_dead(effect) for effect in _effects(found.fit, record)]
 
 
 def cause_name(model: Model, effect: Effect) -> str:
@@ -65,33 +66,22 @@ def content(effect: Effect) -> dict[str, Any]:
     return {"kind": effect.kind, **effect.model_dump(mode="json", exclude_defaults=True)}
 
 
-def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
-    """The verdict; `partial` goes before `ambiguous` before `named`."""
-    causes = bool(found.fit.hypotheses)
-    if not causes and not faults:
-        return "unknown" if structure else "nothing_wrong"
-    if structure:
-        return "partial" if causes or faults else "unknown"
-    return "ambiguous" if any(_rivals(found, k) for k in range(len(found.log_odds))) else "named"
+def causes(
+    found: Found, effects: Sequence[Effect], record: Record, warnings: list[str]
+) -> list[Cause]:
+    """The causes with their rivals and with what would tell them apart.
 
-
-def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Cause]:
-    """The causes with their rivals and with what would tell them apart."""
+    Args:
+        found: the end of a search.
+        effects: of its causes.
+        record: gives times as they are written.
+        warnings: to which it is added where that cannot be worked out.
+    """
     told: list[Cause] = []
-    model, problem, advice = found.base.model, found.problem, None
-    fitted = [_effect(found.fit, number, record) for number in range(len(effects))]
-    together = explanation("the causes", model, fitted)
     for number, effect in enumerate(effects):
         rivals = _rivals(found, number)
         nearest = (found.alternatives[number] or (None,))[0]
         d_prime, d_perp = _sizes(found, number, nearest)
-        separated = ""
-        if nearest is not None:
-            advice = advice or Advice(model, problem.data, together, problem.levels)
-            other = [_effect(nearest.fit, k, record) for k in range(len(nearest.fit.hypotheses))]
-            found_out = advice.against(explanation("its rival", model, other))
-            against = effect_words(last_effect(nearest.fit, record))
-            separated = f"against {against}: {found_out}" if found_out else ""
         told.append(
             Cause(
                 effect=content(effect),
@@ -101,12 +91,39 @@ def causes(found: Found, effects: Sequence[Effect], record: Record) -> list[Caus
                 log_odds=found.log_odds[number],
                 d_prime=d_prime,
                 d_perp=d_perp,
-                rivals=[last_effect(one.fit, record) for one in rivals],
-                separated_by=separated,
+                rivals=[last_effect(one.fit, record) for one in rivals[:MOST_RIVALS]],
+                rivals_omitted=max(0, len(rivals) - MOST_RIVALS),
                 why=_why(found, number),
             )
         )
-    return told
+    return spared(
+        "what would tell the causes from their rivals",
+        lambda: _with_advice(told, found, record),
+        told,
+        warnings,
+    )
+
+
+def _with_advice(told: Sequence[Cause], found: Found, record: Record) -> list[Cause]:
+    """The causes with what would tell each from its nearest rival."""
+    model, problem, advice = found.base.model, found.problem, None
+    together = explanation("the causes", model, _effects(found.fit, record))
+    advised = []
+    for number, cause in enumerate(told):
+        words = ""
+        if found.alternatives[number]:
+            nearest = found.alternatives[number][0].fit
+            advice = advice or Advice(model, problem.data, together, problem.levels)
+            other = explanation("its rival", model, _effects(nearest, record))
+            against = effect_words(last_effect(nearest, record))
+            if measured := advice.against(other):
+                words = f"against {against}: {measured}"
+        advised.append(cause.model_copy(update={"separated_by": words}))
+    return advised
+
+
+def _effects(one: Fit, record: Record) -> list[Effect]:
+    return [_effect(one, number, record) for number in range(len(one.hypotheses))]
 
 
 def fault_effect(fault: Fault, record: Record) -> SensorFault:
@@ -184,6 +201,8 @@ def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
 
 def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
     """The explanations that were tried, the likeliest first."""
+    if not tried:
+        return []
     nothing = tried[0]
     named = next((one for one in tried if one.fit and _same(one.fit, found.fit)), nothing)
     told = []
@@ -192,7 +211,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             words, effects, odds = "a free gain on every channel", [], 0.0
             remark = "fits, and says nothing of channels that were not fitted"
         else:
-            effects = [content(_effect(one.fit, k, record)) for k in range(len(one.fit.hypotheses))]
+            effects = [content(effect) for effect in _effects(one.fit, record)]
             words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
             odds = one.fit.log_evidence
             remark = _remark(one, nothing, named, found)
@@ -235,28 +254,6 @@ def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
                 f"noise of its measurement [{unit}]": float(problem.noise.context_sigma[number])
             }
     return told
-
-
-def misfits(account: Account, grouped: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    """Channels that work but do not fit the extended model as their like do, in words."""
-    columns = {name: k for k, name in enumerate(account.record.sensors)}
-    off = {
-        name: _percent_off(account, account.after, [columns[name]])
-        for names in grouped.values()
-        for name in names
-    }
-    middle = {
-        n: float(np.median([off[o] for o in names])) for names in grouped.values() for n in names
-    }
-    apart = {name: abs(one - middle[name]) for name, one in off.items()}
-    usual = max(1.4826 * float(np.median(list(apart.values()))), LEAST_MISFIT)
-    like = {n: [o for o in names if o != n] for names in grouped.values() for n in names}
-    return {
-        name: f"channel {name} does not fit: it reads {off[name]:+.0f} % against the extended "
-        f"model, its like ({', '.join(like[name])}) {middle[name]:+.0f} % in the middle"
-        for name in off
-        if apart[name] > MISFIT * usual and like[name]
-    }
 
 
 def versions() -> dict[str, str]:
@@ -315,7 +312,17 @@ def last_effect(one: Fit, record: Record) -> dict[str, Any]:
 
 
 def _rivals(found: Found, number: int) -> list[Alternative]:
-    return [one for one in found.alternatives[number] if one.behind < RIVAL]
+    """What the data cannot tell from a cause: the nearest of each other kind, then the rest."""
+    rivals = sorted(
+        (one for one in found.alternatives[number] if one.behind < RIVAL),
+        key=lambda one: one.behind,
+    )
+    first: dict[str, Alternative] = {}
+    for one in rivals:
+        first.setdefault(one.hypothesis.name, one)
+    first.pop(found.fit.hypotheses[number].name, None)
+    others = list(first.values())
+    return [*others, *(one for one in rivals if all(one is not other for other in others))]
 
 
 def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[float, float]:

@@ -22,13 +22,12 @@ def effect_words(effect: Mapping[str, Any]) -> str:
     'sensor gain of S1: factor 1.25 [1.2, 1.3]'
     """
     kind = Effect.vocabulary.get(effect["kind"])
-    parameters = kind.parameters() if kind else {}
     places = list(kind.place_fields()) if kind else []
     place = place_words(effect[name] for name in places if effect.get(name) is not None)
     values = "; ".join(
-        f"{name.replace('_', ' ')} {quantity(effect[name], mark.unit)}"
-        for name, mark in parameters.items()
-        if effect.get(name) is not None
+        f"{name.replace('_', ' ')} {quantity(effect[name], kind.unit(name, effect))}"
+        for name in (kind.parameters() if kind else ())
+        if kind and effect.get(name) is not None
     )
     mode = f" ({effect['mode']})" if "mode" in effect else ""
     of = f" of {place}" if place else ""
@@ -71,6 +70,8 @@ def verdict_sentence(findings: "Findings") -> str:
         named = " and ".join(effect_words(cause.effect) for cause in causes)
         told.append(f"What the model leaves out: {named}.")
         rivals = [effect_words(rival) for cause in causes for rival in cause.rivals[:RIVALS]]
+        if more := sum(len(cause.rivals) + cause.rivals_omitted for cause in causes) - len(rivals):
+            rivals.append(f"and {more} more")
         if rivals:
             told.append(f"These data cannot tell it from: {'; '.join(rivals)}.")
         held = findings.gap.held_out

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from rga.model.structure import Load, Structure
 
 Values = dict[str, FloatArray]
+#: units on a dof that turns, by those on one that moves along
+TURNING = {"N/m": "N m/rad", "m": "rad"}
 
 
 class Effect(BaseModel):
@@ -114,6 +116,19 @@ class Effect(BaseModel):
         """The marked place fields by name."""
         found = ((name, marks(field, Place)) for name, field in cls.model_fields.items())
         return {name: mark for name, mark in found if mark is not None}
+
+    @classmethod
+    @cache
+    def at_sensors(cls) -> bool:
+        """True where the place is a sensor: members and other channels do not feel it."""
+        return cls.on_sensors or any(mark.of == "sensor" for mark in cls.place_fields().values())
+
+    @classmethod
+    def unit(cls, parameter: str, place: Mapping[str, Any]) -> str:
+        """Unit of a parameter at a place: stiffnesses and motions of a rotation have their own."""
+        unit = cls.parameters()[parameter].unit
+        turns = str(place.get("dof", "")).startswith("r")
+        return TURNING.get(unit, unit) if turns else unit
 
     @property
     def place(self) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from pydantic import (
 
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment
-from rga.model.parameter import Number
+from rga.model.parameter import Number, listed
 from rga.model.units import UNITS
 
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
@@ -303,6 +303,23 @@ class Model(Part):
     def path(self) -> Path | None:
         """The file the model came from."""
         return self._path
+
+    def with_sensors(self, sensors: dict[str, Sensor]) -> "Model":
+        """The same structure with other sensors, without the effects on those that it then lacks.
+
+        An effect on a sensor stays where that very sensor does, not another under its name.
+        """
+
+        def stays(effect: Effect) -> bool:
+            return all(
+                name in sensors and sensors[name] == self.sensors.get(name)
+                for field, mark in effect.place_fields().items()
+                if mark.of == "sensor"
+                for name in listed(effect.place[field])
+            )
+
+        effects = {name: effect for name, effect in self.effects.items() if stays(effect)}
+        return self.model_copy(update={"sensors": sensors, "effects": effects})
 
     def extended(self, effects: dict[str, Effect]) -> "Model":
         """The same model with more effects; refuses those that do not fit it."""

@@ -13,6 +13,8 @@ from rga.model.units import per_si
 
 T = TypeVar("T")
 IntArray = NDArray[np.int64]
+#: a load along a member: its number, local axis, from, to [m], start, end
+Spread = tuple[int, int, float, float, float, float]
 #: what a structure remembers of effects
 REMEMBERED = 512
 OUTPUT_KIND = {"displacement": 0, "rotation": 1, "strain": 2, "force": 3, "reaction": 4}
@@ -36,7 +38,7 @@ class Load:
     forces: dict[int, FloatArray] = field(default_factory=dict)
     strain: FloatArray | None = None
     prescribed: dict[tuple[int, int], float] = field(default_factory=dict)
-    spread: list[tuple[int, int, float, float, float, float]] = field(default_factory=list)
+    spread: list[Spread] = field(default_factory=list)
     permanent: bool = False
 
     def times(self, coefficient: FloatArray) -> "Load":

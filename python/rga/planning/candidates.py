@@ -50,6 +50,11 @@ class Added:
     noise: float
     cost: float
 
+    @property
+    def advice(self) -> str:
+        """As an advice has it."""
+        return f"measuring {self.words}"
+
 
 @dataclass(frozen=True)
 class LoadTest:
@@ -67,6 +72,11 @@ class LoadTest:
     against: dict[str, float]
     position: float | None
     cost: float
+
+    def advice(self, truck: Truck | None) -> str:
+        """As an advice has it, the truck with it."""
+        words = f"a load test, {self.words},"
+        return words if self.position is None else f"{words} axles [kN] @ [m] {truck},"
 
 
 def added_sensors(model: Model) -> list[Added]:

@@ -50,9 +50,30 @@ class Chooser:
         """d_perp of every pair by some measurements, float[pairs]."""
         return np.sqrt([one.square for one in self._known(sensors, tests)])
 
-    def best(self, most_sensors: int, most_tests: int) -> Choice:
-        """The choice within a budget of sensors and of tests."""
-        chosen = self._measured((), ())
+    def best(
+        self,
+        most_sensors: int,
+        most_tests: int,
+        first: tuple[Sequence[int], Sequence[int]] = ((), ()),
+    ) -> Choice:
+        """The choice within a budget of sensors and of tests.
+
+        Args:
+            most_sensors, most_tests: the budget.
+            first: sensors and tests from which the choice begins beside beginning from none; of
+                choices that are alike theirs is taken.
+        """
+        sensors, tests = tuple(first[0])[:most_sensors], tuple(first[1])[:most_tests]
+        plain = self._begun_with(self._measured((), ()), most_sensors, most_tests)
+        if not sensors and not tests:
+            return plain
+        begun = self._begun_with(self._measured(sensors, tests), most_sensors, most_tests)
+        before, after = _confused(plain), _confused(begun)
+        if abs(after - before) > WORTH * before:
+            return begun if after < before else plain
+        return begun if self.cost(begun) <= self.cost(plain) else plain
+
+    def _begun_with(self, chosen: Choice, most_sensors: int, most_tests: int) -> Choice:
         while min(chosen.separation, default=ENOUGH) < ENOUGH:
             options = self._sensors_more(chosen) if len(chosen.sensors) < most_sensors else []
             if len(chosen.tests) < most_tests:

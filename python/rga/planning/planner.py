@@ -15,11 +15,12 @@ from rga.diagnosis.tell import versions
 from rga.errors import InputError
 from rga.model import Model
 from rga.model.parameter import FloatArray
+from rga.planning.advised import advised
 from rga.planning.candidates import LoadTest, added_sensors, settings, stands
 from rga.planning.check import Checked, checked
 from rga.planning.choice import Choice, Chooser
 from rga.planning.explanation import Explanation
-from rga.planning.result import Plan, PlannedTruck, Separation, Simulated
+from rga.planning.result import Advised, Plan, PlannedTruck, Separation, Simulated
 from rga.planning.rivals import rival_pairs, working_sensors
 from rga.planning.separation import LIKELY, Pair, paired, success
 from rga.planning.site import Errors, Site
@@ -139,7 +140,11 @@ def _planned(
     scope = _scope(model, findings, rivalries, lane, truck, warnings)
     progress("choosing measurements", 0.0)
     chooser = Chooser(scope.site, scope.errors, [scope.pairs[k] for k in _separable(scope)])
-    choice = chooser.best(*budget)
+    sensors, tests = advised(findings, scope.site.added, scope.site.tests, truck)
+    columns = [scope.site.standing + one for one in sensors]
+    choice = chooser.best(*budget, (columns, tests))
+    beside = _beside(chooser, scope.site, choice, columns, tests)
+    least = min(choice.separation, default=0.0)
     everything = Chooser(scope.site, scope.errors, scope.pairs)
     choice = Choice(
         choice.sensors, choice.tests, everything.separation(choice.sensors, choice.tests)
@@ -161,14 +166,15 @@ def _planned(
             )
         )
     site, pairs = scope.site, scope.pairs
-    tests = [planned_test(site, scope.errors, pairs, choice, one) for one in choice.tests]
-    driven = any(test.position is not None for test in tests)
+    made = [planned_test(site, scope.errors, pairs, choice, one) for one in choice.tests]
+    driven = any(test.position is not None for test in made)
     return Plan(
-        sentence=_sentence(separations, site, choice),
+        sentence=" ".join([_sentence(separations, site, choice), *_compared(beside, least)]),
         sensors=[planned_sensor(site, scope.errors, pairs, choice, one) for one in choice.sensors],
-        tests=tests,
+        tests=made,
         truck=_truck(truck, lane) if driven and truck and lane else None,
         separations=separations,
+        advised=beside,
         cost=chooser.cost(choice),
         warnings=warnings,
         **stated,
@@ -209,6 +215,37 @@ def _scope(
     every = range(site.standing, len(site.sensors))
     best = Chooser(site, errors, pairs).separation(every, range(len(tests)))
     return Scope(site, errors, pairs, best)
+
+
+def _beside(
+    chooser: Chooser, site: Site, choice: Choice, sensors: Sequence[int], tests: Sequence[int]
+) -> list[Advised]:
+    """What the findings advise, beside what was chosen."""
+
+    def one(words: str, planned: bool, alone: FloatArray) -> Advised:
+        return Advised(words=words, planned=planned, d_perp=min(alone.tolist(), default=0.0))
+
+    return [
+        *(
+            one(
+                site.added[k - site.standing].words,
+                k in choice.sensors,
+                chooser.separation([k], ()),
+            )
+            for k in sensors
+        ),
+        *(one(site.tests[k].words, k in choice.tests, chooser.separation((), [k])) for k in tests),
+    ]
+
+
+def _compared(beside: Sequence[Advised], least: float) -> list[str]:
+    """What the findings advise and the plan leaves out, in words."""
+    return [
+        f"The findings advise {one.words}: by itself that gives d_perp {one.d_perp:.2g} or more, "
+        f"this plan {least:.2g}."
+        for one in beside
+        if not one.planned
+    ]
 
 
 def _separable(scope: Scope) -> list[int]:

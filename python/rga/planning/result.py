@@ -122,6 +122,20 @@ class Separation(Part):
     simulated: Simulated
 
 
+class Advised(Part):
+    """A sensor or load test that the findings advise.
+
+    Attributes:
+        words: what it is.
+        planned: it is part of the plan.
+        d_perp: with it alone, the smallest of the explanations that can be told apart.
+    """
+
+    words: str
+    planned: bool
+    d_perp: float
+
+
 class Plan(Part):
     """What to measure next, so that rival explanations are told apart.
 
@@ -129,6 +143,7 @@ class Plan(Part):
         sentence: in plain words.
         sensors, tests: what to measure; both empty where nothing is to be gained.
         separations: of every two explanations.
+        advised: what the findings advise, of which the choice takes what is as good as any.
         cost: of all, in strain gauges put on.
         budget: sensors and tests that were allowed.
     """
@@ -139,6 +154,7 @@ class Plan(Part):
     tests: list[PlannedTest] = []
     truck: PlannedTruck | None = None
     separations: list[Separation] = []
+    advised: list[Advised] = []
     cost: float = 0.0
     budget: dict[str, int]
     warnings: list[str] = []

@@ -36,7 +36,9 @@ def rival_pairs(model: Model, findings: Findings) -> list[tuple[Explanation, Exp
         others = [*named[:number], *named[number + 1 :]]
         rivals = [
             _explained(model, _as_fitted(findings, [*others, rival]))
-            for rival in cause.rivals[:NEAREST]
+            for rival in sorted(cause.rivals, key=lambda one: not _advised_against(cause, one))[
+                :NEAREST
+            ]
         ]
         pairs += list(combinations([together, *rivals], 2))
     if pairs:
@@ -50,6 +52,11 @@ def working_sensors(model: Model, findings: Findings) -> list[str]:
         cause.effect.get("sensor") for cause in findings.causes if cause.effect["kind"] == FAULT
     }
     return [name for name in model.sensors if name not in faulty]
+
+
+def _advised_against(cause: Cause, rival: Mapping[str, Any]) -> bool:
+    """Whether it is this rival from which the findings advise how to tell the cause."""
+    return cause.separated_by.startswith(f"against {effect_words(rival)}:")
 
 
 def _explained(model: Model, effects: Sequence[Mapping[str, Any]]) -> Explanation:

@@ -90,6 +90,7 @@ class Site:
         }
         contexts = dict(model.context)
         loads: dict[str, Effect] = {}
+        self._length = 0.0 if lane is None else lane.length
         if lane is not None and truck is not None:
             contexts[FACTOR] = ContextVariable(unit="-", range=(0.0, 1.0))
             contexts[POSITION] = ContextVariable(unit="m", range=(0.0, max(lane.length, 1.0)))
@@ -169,7 +170,7 @@ class Site:
         square[self.operating :] += noise**2 * (2 / READINGS - 1)
         shared = [self._by_truck(centre), *self._by_members(vicinity, centre)]
         for name, step in self._steps().items():
-            table = {**self._table, name: self._table[name] + step}
+            table = {**self._table, name: self._off(name, step)}
             moved = self._read(simulator, simulator.respond(table)) - centre
             square[: self.operating] += moved[: self.operating] ** 2
             # The two states of a setting are measured apart; every test has errors of its own.
@@ -183,6 +184,12 @@ class Site:
         needed = self._simulator.needed
         off = {name: context_noise(self.model, name) for name in self.model.context}
         return {name: step for name, step in {**off, POSITION: PLACED}.items() if name in needed}
+
+    def _off(self, name: str, step: float) -> FloatArray:
+        """A context off by a step, float[rows]; a truck stays on its path, which bears it."""
+        column = self._table[name]
+        beyond = (name == POSITION) & (column + step > self._length)
+        return np.where(beyond, column - step, column + step)
 
     def _of_tests(self, moved: FloatArray) -> FloatArray:
         """The part of a change in each test alone, float[tests, measurements, sensors]."""

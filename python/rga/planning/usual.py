@@ -53,9 +53,9 @@ def strain_share(model: Model, lane: Lane, truck: Truck) -> float:
         FACTOR: ContextVariable(unit="-", range=(0.0, 1.0)),
         POSITION: ContextVariable(unit="m", range=(0.0, max(lane.length, 1.0))),
     }
-    effects = {**model.effects, **lane.effects(truck)}
-    changes = {"sensors": sensors, "context": contexts, "effects": effects}
-    simulator = Simulator(model.model_copy(update=changes))
+    gauged = model.with_sensors(sensors)
+    changes = {"context": contexts, "effects": {**gauged.effects, **lane.effects(truck)}}
+    simulator = Simulator(gauged.model_copy(update=changes))
     moved = {
         context
         for effect in model.effects.values()

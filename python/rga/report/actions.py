@@ -38,6 +38,13 @@ ACTIONS = {
         "{slow}, near {place}, with a gauge on it: where area is lost its force hardly changes and "
         "its strain grows",
     ),
+    "bending_stiffness": Action(
+        "{place}: flanges that are corroded, cracked or added, a slab that acts with it or has "
+        "cracked",
+        "the second moment of area of {place} in the drawings, and which way its section lies",
+        "{slow}, across {place}, with gauges on both of its flanges: their difference over the "
+        "bending moment is 1/EI",
+    ),
     "stiffness_temperature": Action(
         "joints and surfacing of {place} when it is cold and when it is warm",
         "the temperature sensor, and whether the deck or its surfacing bears a share",
@@ -60,6 +67,14 @@ ACTIONS = {
         "cracks at their ends",
         "gauges off the axis of their member: they read this bending",
         "{slow}, with gauges on both faces at the ends of a member of {place}",
+    ),
+    "end_flexibility": Action(
+        "the joints at the ends of {place}: bolts, end plates, welds and web of what it is joined "
+        "to",
+        "whether these joints were designed as rigid, as semi-rigid or as pins, and their details "
+        "in the drawings",
+        "{slow}, on {place}, with tilt sensors on both sides of the joint: their difference is "
+        "how far it turns",
     ),
     "rigid_end_zone": Action(
         "size and thickness of the gusset plates of {place}",

@@ -44,6 +44,7 @@ class Card:
     facts: list[tuple[str, str, str]]
     why: str
     rivals: list[str]
+    rivals_omitted: int
     separated_by: str
 
 
@@ -64,6 +65,7 @@ def card(cause: Cause, model: Model, words: str, rivals: list[str]) -> Card:
         ],
         why=cause.why,
         rivals=rivals,
+        rivals_omitted=cause.rivals_omitted,
         separated_by=cause.separated_by,
     )
 
@@ -88,7 +90,7 @@ def place(effect: dict[str, Any]) -> str:
 def values(effect: dict[str, Any], model: Model) -> list[tuple[str, str]]:
     """Parameters of an effect with their units and intervals."""
     kind = Effect.vocabulary.get(str(effect.get("kind")))
-    units = {name: mark.unit for name, mark in kind.parameters().items()} if kind else {}
+    units = {name: kind.unit(name, effect) for name in kind.parameters()} if kind else {}
     known = set(kind.place_fields()) if kind else set()
     found = []
     for key, value in effect.items():

@@ -17,6 +17,7 @@ from rga.report.evidence import evidence
 from rga.report.explanations import draw_explanations, kept, ranked
 from rga.report.gain import draw_gain
 from rga.report.member_forces import draw_forces, force_table, restraint_words
+from rga.report.parts import part
 from rga.report.quantities import DASH, duration, number, percent, short
 from rga.report.series import draw_series
 from rga.report.svg import FONTS
@@ -40,8 +41,7 @@ def page(findings: Findings) -> dict[str, Any]:
     account = findings.account
     model, record = account.model, account.record
     effects = [cause for cause in findings.causes if cause.effect.get("kind") != "sensor_fault"]
-    best = kept(findings)
-    series = draw_series(findings)
+    series = part("The readings", draw_series, findings)
     # The first sentence is the headline; what follows is read below it, and the gain only once.
     headline, *rest = re.split(r"(?<=\.) (?=[A-Z])", findings.sentence())
     if not any("no step saw" in sentence for sentence in rest):
@@ -57,7 +57,7 @@ def page(findings: Findings) -> dict[str, Any]:
         "gain": gain(findings),
         "warnings": list(dict.fromkeys([*findings.warnings, *record.warnings])),
         "next": BY_VERDICT[findings.verdict],
-        "tasks": tasks(findings),
+        "tasks": part("What to do first", tasks, findings),
         "cards": [
             {
                 "said": card(
@@ -66,15 +66,17 @@ def page(findings: Findings) -> dict[str, Any]:
                     effect_words(cause.effect),
                     [effect_words(rival) for rival in cause.rivals],
                 ),
-                "actions": actions(cause.effect),
-                "evidence": evidence(findings, cause),
+                "actions": part("What to do about it", actions, cause.effect),
+                "evidence": part("The evidence", evidence, findings, cause),
             }
             for cause in effects
         ],
         "rejected": rejected(findings),
-        "bridge": draw_bridge(findings) if len(record) else None,
-        "residuals": draw_residuals(findings) if len(record) else None,
-        "forces": forces(findings),
+        "bridge": part("The map of percentages", draw_bridge, findings) if len(record) else None,
+        "residuals": part("The map of residuals", draw_residuals, findings)
+        if len(record)
+        else None,
+        "forces": part("The forces of the members", forces, findings),
         "groups": [
             (
                 group.group,
@@ -84,31 +86,17 @@ def page(findings: Findings) -> dict[str, Any]:
             )
             for group in findings.groups
         ],
-        "sensors": sensors(findings),
-        "series": series[0] if series else None,
+        "sensors": part("The table of the sensors", sensors, findings),
+        "series": series[0] if series else series,
         "over_time": bool(series and series[1]),
-        "explanations": [
-            {
-                "words": one.words or "no effect at all",
-                "log_odds": number(one.log_odds),
-                "gap": number(one.gap),
-                "unseen": DASH
-                if one.gap_unseen_channels is None
-                else number(one.gap_unseen_channels),
-                "remark": one.remark,
-                "best": one is best,
-            }
-            for one in ranked(findings.explanations)
-        ],
-        "explanations_figure": draw_explanations(findings),
-        "unseen": unseen(findings),
-        "gain_figure": draw_gain(findings),
-        "contexts": contexts(findings),
-        "unexplained": {
-            "share": percent(100 * findings.unexplained.share, sign=False),
-            "looks_like": findings.unexplained.looks_like,
-            **unexplained(account),
-        },
+        "explanations": part("The table of explanations", explanations, findings),
+        "explanations_figure": part("The figure of explanations", draw_explanations, findings),
+        "unseen": part("The channels left out", unseen, findings),
+        "gain_figure": part("The figure of the gain", draw_gain, findings),
+        "contexts": part("The table of contexts", contexts, findings),
+        "share": percent(100 * findings.unexplained.share, sign=False),
+        "looks_like": findings.unexplained.looks_like,
+        "unexplained": part("The patterns that are left", unexplained, account),
         "unidentifiable": [
             (plain(one.kind), one.place, number(one.d_prime_at_largest))
             for one in sorted(findings.unidentifiable, key=lambda one: (one.kind, one.place))
@@ -214,6 +202,22 @@ def unseen(findings: Findings) -> dict[str, Any] | None:
         for one in groups
     ]
     return {"figure": figure, "lines": lines}
+
+
+def explanations(findings: Findings) -> list[dict[str, Any]]:
+    """The explanations that were tried, the likeliest first."""
+    best = kept(findings)
+    return [
+        {
+            "words": one.words or "no effect at all",
+            "log_odds": number(one.log_odds),
+            "gap": number(one.gap),
+            "unseen": DASH if one.gap_unseen_channels is None else number(one.gap_unseen_channels),
+            "remark": one.remark,
+            "best": one is best,
+        }
+        for one in ranked(findings.explanations)
+    ]
 
 
 def sensors(findings: Findings) -> list[dict[str, str]]:

@@ -11,6 +11,7 @@ from rga.report.contexts_over_time import draw_contexts, drawn_contexts, out_of_
 from rga.report.gap_map import draw_gap_map
 from rga.report.growth import draw_growth
 from rga.report.page import page
+from rga.report.parts import part
 from rga.report.phases import draw_phases
 from rga.report.quantities import DASH, fixed, number
 from rga.report.run_gap import mean, phases, smoothed, standardised, usual
@@ -41,15 +42,15 @@ def run_page(history: History, findings: Findings) -> dict[str, Any]:
     shown = page(findings)
     shown["warnings"] = list(dict.fromkeys([*shown["warnings"], *history.record.warnings]))
     return shown | {
-        "lived": lived(history),
-        "timeline": draw_timeline(history),
-        "phases": draw_phases(history),
-        "gap_map": draw_gap_map(history),
-        "events": events(history),
-        "contexts_figure": draw_contexts(history),
-        "contexts_outside": contexts_outside(history),
-        "growth": draw_growth(history),
-        "versions": versions(history),
+        "lived": part("What the twin lived through", lived, history),
+        "timeline": part("The figure of the run", draw_timeline, history),
+        "phases": part("The phases", draw_phases, history),
+        "gap_map": part("The map of the gap", draw_gap_map, history),
+        "events": part("The table of events", events, history),
+        "contexts_figure": part("The figure of the contexts", draw_contexts, history),
+        "contexts_outside": part("The contexts out of range", contexts_outside, history),
+        "growth": part("The figure of the repository", draw_growth, history),
+        "versions": part("The table of versions", versions, history),
     }
 
 

@@ -7,6 +7,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from rga.diagnosis.findings import Findings
 from rga.report.page import page
+from rga.report.parts import Lost
 
 if TYPE_CHECKING:
     from rga.twin.history import History
@@ -56,6 +57,7 @@ def _write(template: str, variables: dict[str, Any], path: Path) -> Path:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.tests["lost"] = lambda part: isinstance(part, Lost)
     html = environment.get_template(template).render(variables)
     temporary = path.with_name(path.name + ".partial")
     # A name from a JSON file may hold half a surrogate pair, which UTF-8 cannot.

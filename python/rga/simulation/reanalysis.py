@@ -22,8 +22,10 @@ from rga.simulation.terms import stiffness_terms
 
 #: properties of a truss member that only reach the answer through EA / L
 AXIAL = ("E", "G", "A")
+#: further ones of a frame member
+BENDING = ("Iy", "Iz", "connection")
 #: arrays that may differ between structures near each other
-STIFFNESS = {*AXIAL, "spring_stiffness"}
+STIFFNESS = {*AXIAL, *BENDING, "spring_stiffness"}
 #: frame members that may differ, beyond which a solve of the whole structure is no dearer
 FEW = 4
 #: loads that are remembered
@@ -132,8 +134,12 @@ class Reanalysis:
         differ = (self._stiffness_of(other) != self._stiffness) & straight
         terms = np.flatnonzero(differ[self._terms])
         own, theirs = self.structure.arrays, other.arrays
-        differs = np.any([own[name] != theirs[name] for name in AXIAL], axis=0)
-        frames = np.flatnonzero(differs & own["frame"])
+        count = len(own["frame"])
+        differs = [
+            (own[name] != theirs[name]).reshape(count, -1).any(axis=1)
+            for name in (*AXIAL, *BENDING)
+        ]
+        frames = np.flatnonzero(np.any(differs, axis=0) & own["frame"])
         if len(frames) > FEW or (len(frames) and len(terms)):
             return None
         return Difference(terms, frames)
@@ -226,7 +232,7 @@ class Reanalysis:
 
     @staticmethod
     def _but_stiffness(structure: Structure) -> list[bytes]:
-        """All of a structure and its outputs but E, G and A of members and springs."""
+        """All of a structure and its outputs but what `STIFFNESS` names."""
         parts = [array for name, array in structure.arrays.items() if name not in STIFFNESS]
         return [array.tobytes() for array in (*parts, *structure.outputs.values())]
 

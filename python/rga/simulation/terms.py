@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.model.axes import local_axes
 from rga.model.parameter import FloatArray
 from rga.model.structure import IntArray
 
@@ -82,20 +83,6 @@ def stiffness_terms(
     free = ~structure["fixed"][every.nodes].reshape(-1, 12)
     held = np.isin(every.element, frames) & (every.gauge < 0) & ~(every.motion * free).any(axis=1)
     return every[~held], every[held]
-
-
-def local_axes(structure: Arrays, members: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Lengths, float[members] [m], and axes x, y, z in global components, float[members, 3, 3]."""
-    ends = structure["coordinates"][structure["ends"][members]]
-    along = ends[:, 1] - ends[:, 0]
-    lengths = np.linalg.norm(along, axis=1)
-    x = along / lengths[:, None]
-    level = np.cross([0.0, 0.0, 1.0], x)
-    level[np.linalg.norm(level, axis=1) <= 1e-9] = [0.0, 1.0, 0.0]
-    given = structure["local_y"][members]
-    z = np.cross(x, np.where(np.isnan(given), level, given))
-    z /= np.linalg.norm(z, axis=1)[:, None]
-    return lengths, np.stack([x, np.cross(z, x), z], axis=1)
 
 
 def _of_members(structure: Arrays, members: IntArray, frame: NDArray[np.bool_]) -> Terms:

@@ -29,12 +29,18 @@ class Outcome:
     history: History
 
     def write(self, directory: Path) -> Path:
-        """Write findings.json, model.json and report.html; the path of the report."""
+        """Write findings.json, model.json and report.html; the path of the report.
+
+        Raises:
+            ReportError: the report could not be drawn; findings and model are there.
+        """
+        return self.findings.write(directory, self._write_report)
+
+    def _write_report(self, findings: Findings, path: Path) -> Path:
+        # What draws is loaded when it is needed, and may be what fails.
         from rga.report import write_run_report
 
-        return self.findings.write(
-            directory, lambda findings, path: write_run_report(self.history, findings, path)
-        )
+        return write_run_report(self.history, findings, path)
 
 
 def run(
@@ -69,6 +75,8 @@ def run(
     Raises:
         InputError: the model cannot represent what the calibration needs, the record is too
             short, or the repository cannot be used.
+        ReportError: the report could not be drawn; findings and model are there, and the same
+            call goes on with the report.
     """
     check_length(record)
     directory = made(Path(directory))

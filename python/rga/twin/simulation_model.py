@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.inference.design import design
-from rga.model import Effect, Model
+from rga.model import Model
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 from rga.twin.hardware import Station
@@ -110,19 +110,7 @@ class SimulationModel:
 
 def mounted(model: Model, channels: tuple[str, ...]) -> Model:
     """The model with these sensors only, and without effects on others."""
-    sensors = {name: model.sensors[name] for name in channels}
-
-    def acts(effect: Effect) -> bool:
-        named = [
-            effect.place[field]
-            for field, mark in effect.place_fields().items()
-            if mark.of == "sensor" and field in effect.place
-        ]
-        each = [name for one in named for name in ([one] if isinstance(one, str) else one)]
-        return all(name in sensors for name in each)
-
-    effects = {name: effect for name, effect in model.effects.items() if acts(effect)}
-    return model.model_copy(update={"sensors": sensors, "effects": effects})
+    return model.with_sensors({name: model.sensors[name] for name in channels})
 
 
 def broken(readings: FloatArray) -> NDArray[np.bool_]:

@@ -7,7 +7,7 @@ numbers have no common divisor, so every kind meets every circumstance.
 
 import re
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -85,7 +85,7 @@ class Draw:
         return f"{self.seed}-{self.stratum}-{self.number}" + ("-null" if self.null else "")
 
     @classmethod
-    def parse(cls, name: str) -> "Draw":
+    def parse(cls, name: str) -> Self:
         """The draw of a name (InputError)."""
         found = re.fullmatch(rf"(\d+)-({'|'.join(STRATA)})-(\d+)(-null)?", name)
         if found is None:
@@ -107,6 +107,16 @@ class Draw:
             number += 1
             chosen = CIRCUMSTANCES[number % len(CIRCUMSTANCES)]
         return chosen
+
+    @property
+    def null_name(self) -> str:
+        """Name of the null record that its twin is."""
+        return self.circumstance.null
+
+    @property
+    def contexts(self) -> str:
+        """How its contexts are known: known, measured, off, latent."""
+        return self.circumstance.conditions.contexts
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -158,15 +168,16 @@ class Draw:
         return np.random.default_rng([self.seed, stratum, self.number, *purpose.encode()])
 
 
-def draws(seed: int, count: int) -> list[Draw]:
+def draws(seed: int, count: int, kind: type[Draw] = Draw) -> list[Draw]:
     """The draws of a challenge of about `count` hidden effects, each before its null twin.
 
-    The strata take turns by their shares, so that every beginning of the list is balanced.
+    `kind` is that of the draws: each generator has its own. The strata take turns by their shares,
+    so that every beginning of the list is balanced.
     """
     order = []
     for stratum, share in STRATA.items():
         many = max(1, round(share * count))
-        order += [((k + 0.5) / many, Draw(seed, stratum, k)) for k in range(many)]
+        order += [((k + 0.5) / many, kind(seed, stratum, k)) for k in range(many)]
     hidden = [draw for _, draw in sorted(order, key=lambda one: (one[0], one[1].stratum))]
     return [one for draw in hidden for one in (draw, replace(draw, null=True))]
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import binomtest, bootstrap
 
 from rga.benchmark.challenge.design import NULLS
+from rga.benchmark.challenge.field_design import FIELD_NULLS
 from rga.benchmark.challenge.judge import Outcome
 from rga.benchmark.challenge.yardstick import NORMAL_90
 
@@ -28,6 +29,8 @@ CONTEXTS = {
     "off": "contexts measured",
     "latent": "a context latent",
 }
+#: beginnings of the names of records, by the reality that they stand on
+PINNED, WELDED = "pinned", "welded"
 Bounds = tuple[float, float]
 
 
@@ -122,7 +125,14 @@ def singles(outcomes: Sequence[Outcome], low: float, high: float = np.inf) -> li
 
 def knowledge(one: Outcome) -> str:
     """How much of its surroundings a case knows: its contexts, and whether the model is right."""
-    return "base error" if one.null == "frame" else CONTEXTS[one.contexts]
+    wrong = one.null == "frame" or one.null.startswith(WELDED)
+    return "base error" if wrong else CONTEXTS[one.contexts]
+
+
+def nulls_of(outcomes: Sequence[Outcome]) -> list[str]:
+    """Names of the null records that there are, in the order of their designs."""
+    present = {o.null for o in outcomes}
+    return [name for name in (*NULLS, *FIELD_NULLS) if name in present]
 
 
 def _finding(outcomes: Sequence[Outcome]) -> list[Figure]:
@@ -148,7 +158,16 @@ def _finding(outcomes: Sequence[Outcome]) -> list[Figure]:
                 (bool(o.named) for o in nulls if o.null == null),
                 (0.0, 0.02), (0.0, 0.005),
             )
-            for null in NULLS
+            for null in nulls_of(outcomes)
+        ),
+        *(
+            rate(
+                f"  on all null records, {reality}",
+                (bool(o.named) for o in nulls if o.null.startswith(reality)),
+                (0.0, 0.02), (0.0, 0.005),
+            )
+            for reality in (PINNED, WELDED)
+            if any(o.null.startswith(reality) for o in outcomes)
         ),
         rate(
             "a false name beside a single effect that was found",
@@ -183,6 +202,9 @@ def _sureness(outcomes: Sequence[Outcome]) -> list[Figure]:
         ),
         rate("unknown on a null record", (o.verdict in UNSURE for o in outcomes if o.draw.null)),
     ]  # fmt: skip
+    broken = [o.broken_told for o in outcomes if o.broken_told is not None]
+    if broken:
+        figures.append(rate("a broken channel is a cause or a rival", broken))
     return figures + [
         rate(
             f"90 % intervals of parameters: {known}",

@@ -11,7 +11,9 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga.benchmark.challenge.design import Draw
-from rga.benchmark.challenge.hidden import Truth, stiff_joints
+from rga.benchmark.challenge.field_design import draw_of
+from rga.benchmark.challenge.hidden import Truth
+from rga.benchmark.challenge.spared import STIFF_JOINTS, Spared
 from rga.benchmark.challenge.unseen import unseen_gaps
 from rga.benchmark.challenge.yardstick import Yardstick
 from rga.benchmark.truth import Case
@@ -21,8 +23,6 @@ from rga.model import load_model
 from rga.model.effect import Effect
 from rga.records import load_record
 
-#: the true state of a frame that is modelled as a truss: named or not, it is no mistake
-STIFF_JOINTS = ("joint_rigidity", "rigid_end_zone")
 #: rivals that a cause may have and still say where to look
 FEW_RIVALS = 3
 #: explanations whose chances are kept
@@ -52,6 +52,7 @@ class Outcome:
         chances: of the likeliest explanations, with whether each is the truth.
         seconds: that the diagnosis took.
         model_sha256: of the model file.
+        broken_told: whether a broken channel is a cause or a rival; None: no channel is broken.
     """
 
     id: str
@@ -70,11 +71,12 @@ class Outcome:
     seconds: float
     model_sha256: str
     advice: list[bool] = field(default_factory=list)
+    broken_told: bool | None = None
 
     @property
     def draw(self) -> Draw:
         """The draw that it came of."""
-        return Draw.parse(self.id)
+        return draw_of(self.id)
 
     @property
     def found(self) -> bool:
@@ -94,16 +96,15 @@ def judge(draw: Draw) -> Outcome:
     seconds = time.perf_counter() - begun
 
     truths = Truth.of(case)
-    spared = stiff_joints(case) is not None
-    causes = [
-        cause for cause in findings.causes if not (spared and cause.effect["kind"] in STIFF_JOINTS)
-    ]
+    spared = Spared.of(case)
+    causes = [cause for cause in findings.causes if not spared.has(cause.effect)]
     hidden, deviations, gaps = [], {}, None
     if truths:
         with threadpool_limits(1):
             yardstick = Yardstick(case, model, record)
             sizes = yardstick.sizes()
-            deviations = yardstick.deviations(len(causes) < len(findings.causes))
+            joints = any(cause.effect["kind"] in STIFF_JOINTS for cause in findings.causes)
+            deviations = yardstick.deviations(joints)
             gaps = unseen_gaps(case, _added(findings))
         for truth, size in zip(truths, sizes, strict=True):
             number = _cause_of(truth, causes)
@@ -126,8 +127,8 @@ def judge(draw: Draw) -> Outcome:
             )
     return Outcome(
         id=draw.id,
-        null=draw.circumstance.null,
-        contexts=draw.circumstance.conditions.contexts,
+        null=draw.null_name,
+        contexts=draw.contexts,
         bridge=case.truth["bridge"],
         reality=case.truth["reality"],
         hidden=hidden,
@@ -140,6 +141,7 @@ def judge(draw: Draw) -> Outcome:
         chances=_chances(findings, truths, spared),
         seconds=seconds,
         model_sha256=findings.model_sha256,
+        broken_told=spared.told(findings),
     )
 
 
@@ -211,13 +213,11 @@ def _gain_covered(case: Case, findings: Findings) -> bool:
     return bool(low <= float((off[0] - off[1])[seen].mean()) <= high)
 
 
-def _chances(findings: Findings, truths: list[Truth], spared: bool) -> list[tuple[float, bool]]:
+def _chances(findings: Findings, truths: list[Truth], spared: Spared) -> list[tuple[float, bool]]:
     """Chances of the explanations that were tried, the likeliest first, and which are the truth."""
     tried: dict[str, tuple[float, bool]] = {}
     for one in findings.explanations:
-        effects = [
-            effect for effect in one.effects if not (spared and effect["kind"] in STIFF_JOINTS)
-        ]
+        effects = [effect for effect in one.effects if not spared.has(effect)]
         right = len(effects) == len(truths) and all(
             any(truth.is_at(effect) for effect in effects) for truth in truths
         )

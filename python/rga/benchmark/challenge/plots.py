@@ -11,18 +11,18 @@ from matplotlib.figure import Figure as Canvas
 from scipy.special import logit
 from scipy.stats import norm
 
-from rga.benchmark.challenge.design import NULLS, SINGLES
 from rga.benchmark.challenge.figures import (
     CONTEXTS,
     FAINT,
     PLAIN,
     Figure,
     knowledge,
+    nulls_of,
     rate,
     singles,
 )
 from rga.benchmark.challenge.judge import Outcome
-from rga.benchmark.challenge.tables import named_as
+from rga.benchmark.challenge.tables import KINDS, named_as
 
 LEVELS = (0.5, 0.68, 0.8, 0.9, 0.95, 0.99)
 BINS = (0.0, 3.0, 5.0, 6.5, 8.0, 12.0, 20.0, 35.0, np.inf)
@@ -119,19 +119,20 @@ def _odds(axes: Axes, outcomes: Sequence[Outcome]) -> None:
 
 
 def _nulls(axes: Axes, outcomes: Sequence[Outcome]) -> None:
-    for x, null in enumerate(NULLS):
+    nulls = nulls_of(outcomes)
+    for x, null in enumerate(nulls):
         own = [bool(o.named) for o in outcomes if o.draw.null and o.null == null]
         _bar(axes, x, rate("", own))
     axes.axhline(0.02, color="k", ls="--", lw=1, label="at most")
     axes.set(title="Null records on which a cause was named", ylabel="share")
     axes.set_ylim(-0.04, 1.04)
-    axes.set_xticks(range(len(NULLS)), NULLS, fontsize=8)
+    axes.set_xticks(range(len(nulls)), [name.replace(", ", ",\n") for name in nulls], fontsize=8)
     axes.legend(loc="upper left", fontsize=8)
 
 
 def _confusion(canvas: Canvas, outcomes: Sequence[Outcome]) -> None:
     counts = Counter((o.hidden[0]["kind"], named_as(o)) for o in singles(outcomes, FAINT))
-    rows = [kind for kind in SINGLES if any(hidden == kind for hidden, _ in counts)]
+    rows = [kind for kind in KINDS if any(hidden == kind for hidden, _ in counts)]
     others = sorted({named for _, named in counts if named not in rows})
     columns = [*rows, *others]
     axes = canvas.subplots()

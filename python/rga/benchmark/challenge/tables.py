@@ -20,9 +20,12 @@ from rga.benchmark.challenge.figures import (
 )
 from rga.benchmark.challenge.judge import Outcome
 from rga.benchmark.challenge.yardstick import NORMAL_90
+from rga.benchmark.field import INSIDE
 
 #: standard deviations beyond which an estimate is listed as a failure
 FAR = 4.0
+#: of either generator, that the vocabulary has
+KINDS = tuple(dict.fromkeys((*SINGLES, *INSIDE)))
 
 
 def tables(outcomes: Sequence[Outcome]) -> str:
@@ -35,6 +38,10 @@ def tables(outcomes: Sequence[Outcome]) -> str:
         *_kinds(outcomes),
         "\nwhat single effects were named (d_perp 5 and more)",
         *_confusion(outcomes),
+        "\nwhat stands outside the vocabulary, by kind",
+        *_outside(outcomes),
+        "\nby structure",
+        *_structures(outcomes),
         "\nfailures; `rga benchmark diagnosis --case ID -o DIR` draws and writes a case",
         *failures(outcomes),
     ]
@@ -71,7 +78,7 @@ def _kinds(outcomes: Sequence[Outcome]) -> Iterator[str]:
     head = (f"d_perp {PLAIN:g}+", f"{FAINT:g} to {PLAIN:g}", "below", "intervals", "gain", "unsure")
     yield f"{'':22}" + "".join(f"{word:>12}" for word in head)
     bins = ((PLAIN, np.inf), (FAINT, PLAIN), (0.0, FAINT))
-    for kind in SINGLES:
+    for kind in KINDS:
         own = [o for o in of(outcomes, "single") if o.hidden[0]["kind"] == kind]
         if not own:
             continue
@@ -108,12 +115,28 @@ def named_as(one: Outcome) -> str:
 
 
 def _confusion(outcomes: Sequence[Outcome]) -> Iterator[str]:
-    for kind in SINGLES:
+    for kind in KINDS:
         own = [o for o in singles(outcomes, FAINT) if o.hidden[0]["kind"] == kind]
         named = Counter(named_as(o) for o in own)
         others = [f"{name} {many}" for name, many in named.most_common() if name != kind]
         if own:
             yield f"{kind:22} {named[kind]:3} of {len(own):<4} {', '.join(others)}".rstrip()
+
+
+def _outside(outcomes: Sequence[Outcome]) -> Iterator[str]:
+    several = [o for o in of(outcomes, "outside") if o.hidden[0]["d_prime"] >= LARGE]
+    for kind in dict.fromkeys(o.hidden[0]["kind"] for o in several):
+        told = Counter(o.verdict for o in several if o.hidden[0]["kind"] == kind)
+        yield f"{kind:22} " + ", ".join(f"{word} {many}" for word, many in told.most_common())
+
+
+def _structures(outcomes: Sequence[Outcome]) -> Iterator[str]:
+    yield f"{'':22}" + "".join(f"{word:>20}" for word in (f"d_perp {PLAIN:g}+", "null, named"))
+    for name in dict.fromkeys(o.bridge for o in outcomes):
+        own = [o for o in outcomes if o.bridge == name]
+        found = _ratio([o.found for o in singles(own, PLAIN)])
+        named = _ratio([bool(o.named) for o in own if o.draw.null])
+        yield f"{name:22}{found:>20}{named:>20}"
 
 
 def failures(outcomes: Sequence[Outcome]) -> Iterator[str]:

@@ -35,6 +35,9 @@ def unseen_gaps(case: Case, found: Mapping[str, Effect]) -> Gaps | None:
     truths, beyond = Truth.of(case), case.beyond
     if beyond is None or not truths or not all(one.can_be_simulated for one in truths):
         return None
+    if case.mapping is not None:
+        # The zero of the channels is that of rows which the simulation does not have.
+        return None
     hidden = {f"hidden {number}": one.effect() for number, one in enumerate(truths)}
     model = read_model({**case.model, "sensors": beyond.sensors}, "challenge")
     given = _gap(beyond, model)
@@ -50,4 +53,5 @@ def _gap(beyond: Beyond, model: Model) -> float:
     simulated = Simulator(model).predict({**beyond.contexts, "time": beyond.time})
     noise = np.array([sensor.noise or 1.0 for sensor in model.sensors.values()])
     off = ((beyond.clean - simulated) / noise)[beyond.unseen]
-    return float((off**2).mean())
+    # A channel that was called broken is not simulated.
+    return float((off[np.isfinite(off)] ** 2).mean())

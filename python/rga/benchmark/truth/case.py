@@ -51,7 +51,8 @@ class Case:
 
     ``model``: a model file; ``time`` [n] [s]; ``channels``: sensors in their units, then
     measured contexts, each [n], NaN where missing; ``truth``: what was hidden; ``beyond``: what
-    the record does not show, where that was asked for.
+    the record does not show, where that was asked for; ``mapping``: how the record is to be
+    read, where that is not plain.
     """
 
     model: ModelDict
@@ -59,9 +60,10 @@ class Case:
     channels: dict[str, Array]
     truth: dict[str, Any]
     beyond: Beyond | None = None
+    mapping: str | None = None
 
     def write(self, folder: str | Path) -> None:
-        """Write the three files; each appears whole or not at all."""
+        """Write the files; each appears whole or not at all."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         table = np.column_stack([self.time, *self.channels.values()])
@@ -69,6 +71,8 @@ class Case:
         record = "\n".join([",".join(["time", *self.channels]), *rows])
         _replace(folder / "record.csv", record + "\n")
         _replace(folder / "model.json", json.dumps(self.model, indent=1) + "\n")
+        if self.mapping is not None:
+            _replace(folder / "import.toml", self.mapping)
         _replace(folder / "truth.json", json.dumps(self.truth, indent=1) + "\n")
 
 

@@ -1,26 +1,40 @@
 """Axles that move along a path of nodes."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
+from rga.model.axes import local_axes
 from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray, Number, Parameter, Value
-from rga.model.structure import Load, Structure, check_direction, unit_vector
+from rga.model.structure import Load, Spread, Structure, check_direction, unit_vector
+
+if TYPE_CHECKING:
+    from rga.model.schema import Model
+
+#: places along a member that carries axles itself, between which the lever rule shares an axle.
+#: The worst deflection of a simply supported beam drawn as one member is then 0.6 % too small;
+#: with four members 0.04 %.
+STATIONS = 16
+
+#: forces on nodes, and loads along members, of a load pattern
+Pattern = tuple[dict[int, FloatArray], list[Spread]]
 
 
 class AxleLoad(Effect):
     """A train of axles on a path of nodes.
 
-    An axle between two nodes of the path is shared between them by the lever rule; one beyond the
-    path loads nothing.
+    An axle between two nodes of the path is shared between them by the lever rule, as cross girders
+    share it, or bends the frame member between them; one beyond the path loads nothing.
 
     Attributes:
         path: nodes in order; the position counts along it from the first [m].
         forces: axle loads [N], acting along `direction`.
         offsets: distance of each axle behind the first [m].
+        carried_by: what carries an axle between two nodes: these `nodes`, or frame `members`.
         position: where the first axle stands [m]; when it falls with time the train is reversed.
     """
 
@@ -31,6 +45,7 @@ class AxleLoad(Effect):
     forces: Annotated[list[Number], Field(min_length=1)]
     offsets: list[Number]
     direction: tuple[Number, Number, Number] = (0.0, 0.0, -1.0)
+    carried_by: Literal["nodes", "members"] = "nodes"
     factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
     position: Annotated[Value, Parameter("m", None)]
 
@@ -48,28 +63,60 @@ class AxleLoad(Effect):
         """Nodes that must be in the model."""
         return self.path
 
+    def check(self, model: "Model") -> None:
+        joined = {
+            frozenset(member.nodes) for member in model.members.values() if member.kind == "frame"
+        }
+        for pair in pairwise(self.path):
+            if self.carried_by == "members" and frozenset(pair) not in joined:
+                raise ValueError(f"no frame member joins {pair[0]!r} and {pair[1]!r} of the path")
+
     def values(self, contexts: Mapping[str, FloatArray], rows: int) -> Values:
         """Parameters of every row, and the `heading` of the train in all of them, 1 or -1."""
         resolved = super().values(contexts, rows)
-        backwards = rows > 1 and bool(np.all(np.diff(resolved["position"]) < 0))
+        moves = np.diff(resolved["position"])
+        backwards = bool((moves <= 0).all() and (moves < 0).any())
         return {**resolved, "heading": np.full(rows, -1.0 if backwards else 1.0)}
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        stations, forces = structure.once(lambda: self._path(structure), self)
+        stations, patterns = structure.once(lambda: self._path(structure), self)
         shares = self._shares(values, stations) * values["factor"]
         permanent = not self.drivers()
         return [
-            Load(share, forces=force, permanent=permanent)
-            for share, force in zip(shares, forces, strict=True)
+            Load(share, forces=force, spread=spread, permanent=permanent)
+            for share, (force, spread) in zip(shares, patterns, strict=True)
         ]
 
-    def _path(self, structure: Structure) -> tuple[FloatArray, list[dict[int, FloatArray]]]:
-        """Where the nodes stand along the path [m], and a unit load on each of them."""
+    def _path(self, structure: Structure) -> tuple[FloatArray, list[Pattern]]:
+        """Places along the path that take load [m], and a unit load on each of them."""
         numbers = [structure.nodes[node] for node in self.path]
         points = structure.arrays["coordinates"][numbers]
         stations = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
         force = np.append(unit_vector(self.direction), np.zeros(3))
-        return stations, [{number: force} for number in numbers]
+        on_nodes: list[Pattern] = [({number: force}, []) for number in numbers]
+        if self.carried_by == "nodes":
+            return stations, on_nodes
+        places, patterns = [stations[:1]], on_nodes[:1]
+        for ends, pair, last in zip(
+            pairwise(stations), pairwise(numbers), on_nodes[1:], strict=True
+        ):
+            places.append(np.linspace(*ends, STATIONS + 1)[1:])
+            patterns += [*self._within(structure, pair), last]
+        return np.concatenate(places), patterns
+
+    def _within(self, structure: Structure, pair: tuple[int, int]) -> list[Pattern]:
+        """A unit load on each place within the frame member between two nodes."""
+        arrays = structure.arrays
+        there = arrays["frame"] & (np.sort(arrays["ends"]) == np.sort(pair)).all(axis=1)
+        member = int(np.flatnonzero(there)[0])
+        (length,), (axes,) = local_axes(arrays, np.array([member]))
+        share = axes @ unit_vector(self.direction)
+        away = length * np.arange(1, STATIONS) / STATIONS
+        at = away if arrays["ends"][member, 0] == pair[0] else length - away
+        return [
+            ({}, [(member, axis, x, x, part, 0.0) for axis, part in enumerate(share) if part])
+            for x in at
+        ]
 
     def _shares(self, values: Values, stations: FloatArray) -> FloatArray:
         """Force that each node of the path takes, float[nodes, rows] [N]."""

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.model.bending import bending_at
 from rga.model.effect import Effect
 from rga.model.parameter import Parameter, Place, Positive, Prior, Value, listed
 from rga.model.schema import DOFS, Dof, Model
@@ -12,10 +13,21 @@ from rga.model.structure import HELD_BY_PLANE, Bearing, Structure
 
 Supports = Annotated[str | list[str], Place("support")]
 Direction = Annotated[Dof, Place("")]
+#: A base between a pin and a clamp, over the sum of EI/L of the members that bend with it, as the
+#: middle and the spread of a log-normal whose 90 % range is that of semi-rigid joints: below 30 a
+#: column base is not rigid in a frame that sways, below 0.5 a joint is as good as a pin
+#: (EN 1993-1-8, 5.2.2.5). A base that was meant as a pin lies in it too: a tenth of the stiffness
+#: of the column, 0.4, is what BS 5950-1, 5.1.3 lets one count on there.
+PINNED, RIGID = 0.5, 30.0
+BASE = float(np.sqrt(PINNED * RIGID))
+BASE_SPREAD = float(np.log(RIGID / PINNED) / (2 * 1.645))
 
 
 class SupportSpring(Effect):
-    """A spring [N/m] on a direction that the support leaves free: a frozen bearing."""
+    """A spring [N/m or N m/rad] on a direction that the support leaves free.
+
+    A frozen bearing, or a base that was taken as a pin and holds a moment.
+    """
 
     kind: Literal["support_spring"] = "support_spring"
     structural = True
@@ -29,10 +41,12 @@ class SupportSpring(Effect):
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from directions(model, held=False)
+        yield from rotations(model, held=False)
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"stiffness": Positive(0.1 * member_scale(model), 2.0)}
+        along = Positive(0.1 * member_scale(model), 2.0)
+        return {"stiffness": _base(model, place) if turns(place["dof"]) else along}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         for node in supported(structure, self.support):
@@ -41,7 +55,7 @@ class SupportSpring(Effect):
 
 
 class SupportFlexibility(Effect):
-    """A stiffness [N/m] in place of a rigid direction of a support."""
+    """A stiffness [N/m or N m/rad] in place of a rigid direction of a support."""
 
     kind: Literal["support_flexibility"] = "support_flexibility"
     structural = True
@@ -57,10 +71,12 @@ class SupportFlexibility(Effect):
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
         yield from directions(model, held=True)
+        yield from rotations(model, held=True)
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"stiffness": Positive(0.3 * member_scale(model), 1.5)}
+        along = Positive(0.3 * member_scale(model), 1.5)
+        return {"stiffness": _base(model, place) if turns(place["dof"]) else along}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         if np.isinf(value["stiffness"]):
@@ -111,19 +127,24 @@ def directions(
     model: Model, *, held: bool, axes: tuple[str, ...] = ("ux", "uy", "uz")
 ) -> Iterator[dict[str, Any]]:
     """Support directions that are held, or free: one by one, by lines across the bridge, all."""
-    in_plane = [DOFS[k] for k in range(3) if k not in HELD_BY_PLANE.get(model.plane or "", ())]
-    for dof in (axis for axis in in_plane if axis in axes):
-        names = [
+    for dof in (axis for axis in _in_plane(model, DOFS[:3]) if axis in axes):
+        yield from _alone_and_together(model, dof, _acting(model, dof, held))
+
+
+def rotations(model: Model, *, held: bool) -> Iterator[dict[str, Any]]:
+    """The same of rotations that bend a frame member there: that of a pin means nothing."""
+    for dof in _in_plane(model, DOFS[3:]):
+        bent = [
             name
-            for name, support in model.supports.items()
-            if (dof in support.fixed) == held and support.along is None
+            for name in _acting(model, dof, held)
+            if bending_at(model, model.supports[name].node, dof) > 0
         ]
-        yield from ({"support": name, "dof": dof} for name in names)
-        lines: dict[float, list[str]] = {}
-        for name in names:
-            lines.setdefault(round(model.nodes[model.supports[name].node][0], 3), []).append(name)
-        together = [*lines.values(), names] if len(lines) > 1 else [names]
-        yield from ({"support": line, "dof": dof} for line in together if len(line) > 1)
+        yield from _alone_and_together(model, dof, bent)
+
+
+def turns(dof: str) -> bool:
+    """Whether a dof is a rotation."""
+    return DOFS.index(dof) >= 3
 
 
 def only_free(model: Model, support: str | list[str], dof: str) -> None:
@@ -146,3 +167,34 @@ def member_scale(model: Model) -> float:
         length = np.linalg.norm(ends[1] - ends[0])
         found.append(model.materials[member.material].E * model.sections[member.section].A / length)
     return float(np.mean(found))
+
+
+def _in_plane(model: Model, dofs: tuple[str, ...]) -> list[str]:
+    held = [DOFS[k] for k in HELD_BY_PLANE.get(model.plane or "", ())]
+    return [dof for dof in dofs if dof not in held]
+
+
+def _acting(model: Model, dof: str, held: bool) -> list[str]:
+    """Supports that hold a dof, or leave it free."""
+    return [
+        name
+        for name, support in model.supports.items()
+        if (dof in support.fixed) == held and support.along is None
+    ]
+
+
+def _alone_and_together(model: Model, dof: str, names: list[str]) -> Iterator[dict[str, Any]]:
+    """A dof of supports one by one, by lines across the bridge, and of all."""
+    yield from ({"support": name, "dof": dof} for name in names)
+    lines: dict[float, list[str]] = {}
+    for name in names:
+        lines.setdefault(round(model.nodes[model.supports[name].node][0], 3), []).append(name)
+    together = [*lines.values(), names] if len(lines) > 1 else [names]
+    yield from ({"support": line, "dof": dof} for line in together if len(line) > 1)
+
+
+def _base(model: Model, place: Mapping[str, Any]) -> Positive:
+    """What is known of the rotational stiffness of a support [N m/rad]."""
+    nodes = [model.supports[name].node for name in listed(place["support"])]
+    mean = float(np.mean([bending_at(model, node, place["dof"]) for node in nodes]))
+    return Positive(BASE * mean, BASE_SPREAD)

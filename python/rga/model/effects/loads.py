@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from rga.model.effect import Effect, Values
 from rga.model.parameter import Number, Parameter, Place, Value, listed
-from rga.model.structure import Load, Structure
+from rga.model.structure import Load, Spread, Structure
 
 LOCAL = ("x", "y", "z")
 
@@ -73,8 +73,8 @@ class MemberLoad(Effect):
         spread = structure.once(lambda: self._spread(structure), self)
         return [Load(values["factor"], spread=spread, permanent=not self.drivers())]
 
-    def _spread(self, structure: Structure) -> list[tuple[int, int, float, float, float, float]]:
-        spread: list[tuple[int, int, float, float, float, float]] = []
+    def _spread(self, structure: Structure) -> list[Spread]:
+        spread: list[Spread] = []
         for name in listed(self.member):
             member = structure.members[name]
             length = float(structure.lengths[member])

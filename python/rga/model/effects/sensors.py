@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.model.bending import bending_axes
 from rga.model.effect import Effect, Values, seconds
 from rga.model.parameter import Normal, Parameter, Place, Prior, Value, listed
 from rga.model.readings import Readings
@@ -15,6 +16,10 @@ from rga.model.units import UNITS
 Sensors = Annotated[str | list[str], Place("sensor")]
 #: a large zero offset of a sensor [SI unit], by kind
 OFFSET = {"displacement": 5e-3, "rotation": 1e-3, "strain": 3e-5, "force": 2e4, "reaction": 2e4}
+
+#: how far off its fibre a gauge may sit [m]: half the depth of a common rolled section, from one
+#: of its flanges to its axis
+OFF_FIBRE = 0.15
 
 
 class SensorBias(Effect):
@@ -82,12 +87,18 @@ class SensorDrift(Effect):
 
 
 class SensorFault(Effect):
-    """A sensor that does not work: its channel says nothing."""
+    """A sensor that does not work: its channel says nothing.
+
+    Attributes:
+        mode: it shows nothing (dead), stands still (stuck), jumps away now and then (spiking),
+            goes ways of its own (erratic), holds the readings of another channel (copy), or
+            answers many times too much or too little (scale).
+    """
 
     kind: Literal["sensor_fault"] = "sensor_fault"
     on_sensors = True
     sensor: Sensors
-    mode: Literal["dead", "stuck", "spiking"]
+    mode: Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
 
     def change_readings(self, readings: Readings, values: Values) -> None:
         faulty = np.flatnonzero(self.weight(readings.time) > 0)
@@ -168,10 +179,14 @@ class GaugePosition(Effect):
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"y": Normal(0.0, 0.15), "z": Normal(0.0, 0.15)}
+        (sensor,) = listed(place["sensor"])[:1]
+        bent = bending_axes(model, str(model.sensors[sensor].member))
+        return {axis: Normal(0.0, OFF_FIBRE) for axis in bent}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
-        rows = [structure.sensors[name] for name in listed(self.sensor)]
+        # A simulation may be asked for other sensors than those of the model: member forces, say.
+        asked = [name for name in listed(self.sensor) if name in structure.sensors]
+        rows = [structure.sensors[name] for name in asked]
         structure.outputs["vector"][rows, 1:] += value["y"], value["z"]
 
 

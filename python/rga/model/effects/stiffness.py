@@ -57,8 +57,7 @@ class MemberStiffness(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        yield from ({"member": member} for member in model.members)
-        yield from ({"group": group} for group in model.groups)
+        yield from _members_and_groups(model, set(model.members))
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
@@ -72,6 +71,37 @@ class MemberStiffness(Effect):
         chosen = structure.named(self.member, self.group)
         structure.arrays["E"][chosen] *= value["factor"]
         structure.arrays["G"][chosen] *= value["factor"]
+
+
+class BendingStiffness(Effect):
+    """A factor on EI alone of frame members: what bends is not what stretches.
+
+    A flange that is lost or was added, a slab that cracks, a section that was laid on its side.
+    """
+
+    kind: Literal["bending_stiffness"] = "bending_stiffness"
+    structural = True
+    member: Annotated[str | list[str] | None, Place("member")] = None
+    group: Annotated[str | list[str] | None, Place("group")] = None
+    factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        frames = {name for name, member in model.members.items() if member.kind == "frame"}
+        yield from _members_and_groups(model, frames)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return MemberStiffness.priors(model, place)
+
+    def check(self, model: Model) -> None:
+        some_member(self, self.member, self.group)
+
+    def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
+        positive(self, value["factor"])
+        chosen = structure.named(self.member, self.group)
+        structure.arrays["Iy"][chosen] *= value["factor"]
+        structure.arrays["Iz"][chosen] *= value["factor"]
 
 
 class StiffnessTemperature(Effect):
@@ -130,6 +160,14 @@ class StiffnessTemperature(Effect):
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         positive(self, value["factor"], "reduce the rate, or give another kink")
         structure.arrays["A"][structure.named(None, self.group)] *= value["factor"]
+
+
+def _members_and_groups(model: Model, members: set[str]) -> Iterator[dict[str, Any]]:
+    """Some members one by one, and the groups that hold more than one of them."""
+    yield from ({"member": name} for name in model.members if name in members)
+    for group, names in model.groups.items():
+        if len(members.intersection(names)) > 1:
+            yield {"group": group}
 
 
 def _driven_temperatures(model: Model) -> list[Driven]:

@@ -122,6 +122,10 @@ def lagged(driver: FloatArray, time: FloatArray, time_constant: FloatArray) -> F
         step = time[row] - time[row - 1]
         if time_constant[row] <= 0:
             continue
+        if step <= 0:
+            # The same moment twice: nothing follows at once.
+            state[row] = state[row - 1]
+            continue
         ratio = step / time_constant[row]
         decay = np.exp(-ratio)
         slope = (driver[row] - driver[row - 1]) / ratio

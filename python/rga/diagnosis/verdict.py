@@ -1,0 +1,73 @@
+"""The verdict, and in words what speaks against calling a record explained."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rga.diagnosis.channel_faults import Fault
+from rga.diagnosis.findings import Verdict
+from rga.diagnosis.heldout import Gain
+from rga.diagnosis.hypothesis import Hypothesis
+from rga.diagnosis.lack_of_fit import IMPLAUSIBLE, NEAR_ONE, PLAUSIBLE, Misfit
+from rga.diagnosis.search import RIVAL, Found
+from rga.diagnosis.words import place_words
+
+#: misfits that are told in words
+MOST_MISFITS = 5
+
+
+def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
+    """The verdict; `partial` goes before `ambiguous` before `named`."""
+    causes = bool(found.fit.hypotheses)
+    if not causes and not faults:
+        return "unknown" if structure else "nothing_wrong"
+    if structure:
+        return "partial" if causes or faults else "unknown"
+    rivals = any(one.behind < RIVAL for ranked in found.alternatives for one in ranked)
+    return "ambiguous" if rivals else "named"
+
+
+def doubts_of(
+    channels: Sequence[str],
+    faults: Sequence[Fault],
+    found: Found,
+    dropped: Sequence[Hypothesis],
+    off: Sequence[Misfit],
+    gained: Gain,
+) -> list[str]:
+    """In words: why neither the model nor the causes account for the record.
+
+    Args:
+        channels: of the record.
+        faults: channels that do not work.
+        found: the end of the search.
+        dropped: causes that only the readings fitted spoke for.
+        off: channels and groups that do not fit.
+        gained: gap of the held-out rows.
+    """
+    told = [
+        f"{place_words([one.name.replace('_', ' '), *one.place.values()])} would explain the "
+        "readings fitted, and rows and channels left out do not confirm it"
+        for one in dropped
+    ]
+    told += [one.words for one in off[:MOST_MISFITS]]
+    if len(off) > MOST_MISFITS:
+        told.append(f"{len(off) - MOST_MISFITS} more channels or groups are off")
+    broken = {fault.sensor for fault in faults}
+    if 2 * len(broken) >= len(channels):
+        told.append(f"{len(broken)} of {len(channels)} channels do not work")
+    if not found.fit.hypotheses and gained.after > NEAR_ONE:
+        members, gains = found.problem.levels[:2]
+        told.append(
+            f"the gap on rows that no step saw is {gained.after:.2g} times the noise: members that "
+            f"are off by {members:.1%} and gauges by {gains:.1%}, as they may be as built, would "
+            "explain it, and so might something that no kind of effect says"
+        )
+    if (found.problem.levels > IMPLAUSIBLE * PLAUSIBLE).any():
+        worst = int(np.argmax(found.problem.levels / PLAUSIBLE))
+        of = ("the stiffness of members", "gains of channels", "responses to the loads")[worst]
+        told.append(
+            f"{of} would have to scatter by {found.problem.levels[worst]:.1%}, and "
+            f"{PLAUSIBLE[worst]:.0%} is plausible"
+        )
+    return told
