@@ -28,7 +28,8 @@ def test_a_peer_decides_alike(package: str, kind: Any) -> None:
 def test_figures_come_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "bottleneck", None)
     figures = throughput.throughput(0.0, size=8 * SENSORS * CALL)
-    assert all(one.value > 0.0 for one in figures)
+    # What a row costs beyond reading it is a difference of two times: on a busy machine anything.
+    assert all(one.value > 0.0 for one in figures if "beyond" not in one.name)
     assert sum(one.least is not None for one in figures) == len(figures) - 1
     values = {one.peer: one.peer_value for one in figures}
     assert len(values) == 4
