@@ -11,15 +11,23 @@ from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 from rga.simulation.along_line import FEWEST, MOST, between, positions
 
+#: a bearing on a spring that settles, and one that gives way late
+SPRING = {"kind": "support_flexibility", "support": "B1", "dof": "uz", "stiffness": 3e7}
+SETTLED = {"kind": "support_settlement", "support": "B1", "dof": "uz", "displacement": -0.01}
+LATE = {**SPRING, "onset": 40.0}
 
-@pytest.mark.parametrize("rate", [-4e-3, 8e-3])
-def test_a_stiff_truss_that_softens_with_warmth(rate: float) -> None:
+
+@pytest.mark.parametrize(
+    ("rate", "beside"), [(-4e-3, []), (8e-3, []), (-4e-3, [SPRING, SETTLED]), (8e-3, [LATE])]
+)
+def test_a_stiff_truss_that_softens_with_warmth(rate: float, beside: list[dict[str, Any]]) -> None:
     case = draw_case(5, bridge="pratt", kind="null", rows=90)
     stiff = {"kind": "joint_rigidity", "group": ["lower chord", "upper chord"], "stiffness": 7e7}
     warm = {"kind": "stiffness_temperature", "group": "lower chord", "rate": rate}
-    effects = {"stiff": read_effect(stiff, "stiff"), "warm": read_effect(warm, "warm")}
+    effects = {str(k): read_effect(one, str(k)) for k, one in enumerate([stiff, warm, *beside])}
     model = read_model(case.model, "case").extended(effects)
     contexts = {name: np.nan_to_num(case.channels[name]) for name in model.context}
+    contexts["time"] = np.arange(90.0)
     whole = Simulator(model).predict(contexts)
     few = [
         Simulator(model).predict({name: column[k : k + 10] for name, column in contexts.items()})
@@ -39,6 +47,15 @@ def test_only_parameters_on_a_line_are_interpolated() -> None:
     assert place is not None
     assert np.allclose(place, line[:, 0])
     assert positions(line[:FEWEST]) is None
+    rigid = np.full_like(line, np.inf)
+    assert np.array_equal(positions(np.hstack([rigid, line])), positions(line))
+
+
+def test_what_stays_rigid_stays_so_between() -> None:
+    ends = np.array([np.inf, 0.0]), np.array([np.inf, 1.0])
+    found = between(*ends, lambda state: np.array([[1.0 / (1.2 + state[1]) + 1.0 / state[0]]]))
+    assert found is not None
+    assert found(np.array([0.3]))[0, 0, 0] == pytest.approx(1 / 1.5, rel=1e-11)
 
 
 def test_what_no_few_points_follow_is_told() -> None:

@@ -43,8 +43,6 @@ def along_line(
     Returns:
         float[rows, outputs], or None where few points do not suffice.
     """
-    if not request.fixed_patterns:
-        return None
     found: FloatArray | None = None
     for chosen in _apart(request.states):
         states = request.states[chosen]
@@ -62,7 +60,10 @@ def along_line(
             return None
         # A stop that comes with time is none at one end of its line.
         ends = states if place is None else states[[np.argmin(place), np.argmax(place)]]
-        if not all(request.change(state).linear for state in ends):
+        structures = [request.change(state) for state in ends]
+        if not all(structure.linear for structure in structures):
+            return None
+        if not all(request.same_patterns(structures[0], other) for other in structures[1:]):
             return None
         if place is None:
             each = np.stack([response_at(state) for state in states])
@@ -102,6 +103,8 @@ def positions(states: FloatArray) -> FloatArray | None:
 
     >>> positions(np.array([[1.0, 2.0], [2.0, 4.0]]))
     """
+    # What holds rigidly all the time has an infinite stiffness, and still varies no structure.
+    states = states[:, (states != states[:1]).any(0)]
     if len(states) <= FEWEST or not np.isfinite(states).all():
         return None
     start, end = states[0], states[np.argmax(np.abs(states - states[0]).sum(1))]
@@ -130,11 +133,12 @@ def between(
         A function from places float[n] in 0..1 to responses float[n, patterns, outputs].
     """
     known: dict[float, FloatArray] = {}
+    along = np.subtract(last, first, out=np.zeros_like(first), where=last != first)
 
     def interpolant(count: int) -> Callable[[FloatArray], FloatArray]:
         points = np.round(0.5 - 0.5 * np.cos(np.pi * np.arange(count) / (count - 1)), 12)
         for point in set(points) - known.keys():
-            known[point] = solve(first + point * (last - first))
+            known[point] = solve(first + point * along)
         there = np.stack([known[point] for point in points])
         # The weights of Chebyshev points are known; else they are worked out in random order.
         weights = (-1.0) ** np.arange(count)

@@ -95,6 +95,17 @@ class Request:
         """Structural parameters of every row, float[rows, parameters]."""
         return self.states[self.state_of_row]
 
+    def same_patterns(self, one: Structure, other: Structure) -> bool:
+        """Whether the load patterns on two structures are the same.
+
+        Where a spring stands for a support, a settlement pushes on it: its load follows a
+        stiffness.
+        """
+        if self.fixed_patterns:
+            return True
+        here, there = (patterns(each, self.loads(each, NOTHING)) for each in (one, other))
+        return all(np.array_equal(here[name], there[name]) for name in here)
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -158,18 +169,13 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
 
 
 def variation_under(request: Request, states: FloatArray) -> Variation | None:
-    """What varies between states, or None where it is more than straight stiffnesses.
-
-    Where a spring stands for a support, a settlement pushes on it: its load follows a stiffness.
-    """
+    """What varies between states, or None where it is more than straight stiffnesses."""
     varied = variation(request.change, states)
     if varied is None or request.fixed_patterns:
         return varied
     low, high = states.min(axis=0), states.max(axis=0)
     far = request.change(np.where(high > states[0], high, low))
-    here, there = (patterns(one, request.loads(one, NOTHING)) for one in (varied.start, far))
-    same = all(np.array_equal(here[name], there[name]) for name in here)
-    return varied if same else None
+    return varied if request.same_patterns(varied.start, far) else None
 
 
 def linear_paths(
