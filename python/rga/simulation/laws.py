@@ -77,11 +77,20 @@ def respond_with_laws(structure: Structure, linear: Linear, coefficients: FloatA
     def move(elongation: FloatArray, side: FloatArray, rows: IntArray, trace: float) -> FloatArray:
         """One Newton step, the terms staying on their sides."""
         missed = left(elongation, side, rows, trace)
-        slope = np.where(side == 0, (max(trace, TRACE) - 1) * stiffness, 0.0)
+        slope = (max(trace, TRACE) - 1) * stiffness
+        idle = side == 0
         if len(laws) == 1:
-            return np.asarray(elongation - missed / (1.0 + unit[0, 0] * slope))
-        matrix = np.eye(len(laws)) + unit * slope[:, None, :]
-        return np.asarray(elongation - np.linalg.solve(matrix, missed[:, :, None])[:, :, 0])
+            return np.asarray(elongation - missed / (1.0 + unit[0, 0] * slope * idle))
+        # Terms that bear follow the idle ones: these alone are a system, as large as they are many.
+        own = np.zeros_like(missed)
+        count = idle.sum(1)
+        for many in np.unique(count[count > 0]):
+            which = np.flatnonzero(count == many)[:, None]
+            terms = np.nonzero(idle[which[:, 0]])[1].reshape(-1, many)
+            matrix = unit[terms[:, :, None], terms[:, None, :]] * slope[terms][:, None, :]
+            matrix += np.eye(many)
+            own[which, terms] = np.linalg.solve(matrix, missed[which, terms][:, :, None])[:, :, 0]
+        return np.asarray(elongation - np.where(idle, own, missed - (slope * own) @ unit.T))
 
     def shortened(before: FloatArray, now: FloatArray, rows: IntArray, trace: float) -> FloatArray:
         """The point between two that misses compatibility least."""
