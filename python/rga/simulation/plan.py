@@ -3,10 +3,9 @@
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rga import _core
 from rga.errors import InputError
@@ -44,23 +43,21 @@ class Prepared:
     Attributes:
         structure: as an object; no effect changes one after it was condensed.
         patterns: of the loads, as objects.
-        content: copies of all arrays that tell what was condensed.
+        content: bytes of all arrays that tell what was condensed.
         found: the condensation.
     """
 
     structure: Structure
     patterns: list[tuple[object, ...]]
-    content: list[NDArray[Any]]
+    content: list[bytes]
     found: Condensation
 
-    def is_of(
-        self, structure: Structure, loads: list[Load], apart: tuple[NDArray[Any], ...]
-    ) -> bool:
+    def is_of(self, structure: Structure, loads: list[Load], apart: list[bytes]) -> bool:
         """Whether the very same objects are asked for again: quicker to tell than by content."""
         return (
             structure is self.structure
             and len(loads) == len(self.patterns)
-            and all(map(_same, self.content[-len(apart) :], apart))
+            and self.content[-len(apart) :] == apart
             and all(
                 one is other
                 for load, known in zip(loads, self.patterns, strict=True)
@@ -267,27 +264,23 @@ def condensed(
     axial: bool = False,
 ) -> Condensation:
     """A structure condensed onto its loads, sensors, and the members and springs that vary."""
-    apart = (members, springs, np.array(axial))
+    apart = [array.tobytes() for array in (members, springs, np.array(axial))]
     for known in prepared:
         if known.is_of(structure, loads, apart):
             return known.found
     of_loads = patterns(structure, loads)
-    given = [*structure.arrays.values(), *structure.outputs.values(), *of_loads.values(), *apart]
+    parts = structure.arrays, structure.outputs, of_loads
+    content = [array.tobytes() for part in parts for array in part.values()] + apart
     for known in prepared:
-        if len(known.content) == len(given) and all(map(_same, known.content, given)):
+        if known.content == content:
             return known.found
     try:
         found = Condensation(structure.arrays, of_loads, structure.outputs, members, springs, axial)
     except (_core.UnstableStructure, _core.InvalidInput) as error:
         raise refused(structure, error) from None
-    copied = [array.copy() for array in given]
-    prepared.append(Prepared(structure, [load.pattern for load in loads], copied, found))
+    prepared.append(Prepared(structure, [load.pattern for load in loads], content, found))
     del prepared[:-KEPT]
     return found
-
-
-def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
-    return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
 
 
 def coefficients(loads: list[Load]) -> FloatArray:

@@ -56,8 +56,10 @@ class Simulator:
         self._prepared: list[Prepared] = []
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
-        """A simulator of the same structure with more effects."""
-        return Simulator(self.model.extended(dict(effects)), self._structure)
+        """A simulator of the same structure with more effects; what is condensed serves both."""
+        found = Simulator(self.model.extended(dict(effects)), self._structure)
+        found._prepared = self._prepared
+        return found
 
     def calm(self, values: dict[str, Values]) -> "Simulator":
         """The same without what gives every row a structure of its own, or corners or memory.
