@@ -32,6 +32,7 @@ from rga.diagnosis.search import (
     without_needless,
 )
 from rga.diagnosis.spared import spared
+from rga.diagnosis.stated_noise import beyond_stated
 from rga.diagnosis.support import supported
 from rga.diagnosis.verdict import doubts_of, verdict
 from rga.diagnosis.whole_record import WholeRecord
@@ -105,6 +106,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     grouped = sensor_groups(model, data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
     doubts = doubts_of(record.sensors, prepared.faults, found, dropped, off, gained)
+    doubts += beyond_stated(found.problem)
     structure = (
         bool(doubts) or share > STRUCTURE or bool(bends(found.problem) or curves(found.problem))
     )
