@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from rga.errors import InputError
 from rga.model import read_model
 from rga.records import Record
 from rga.twin.digital_twin import DigitalTwin, State, follow
@@ -155,6 +156,27 @@ def test_simulations_are_relative_to_the_unloaded_rows(small_bridge: dict[str, A
     )
     # The unloaded contexts are not known: latent ones are taken in the middle of their range.
     np.testing.assert_allclose(drawn[1].readings, drawn[0].readings - rest, atol=1e-9)
+
+
+def test_the_zero_of_the_model_is_that_of_the_station(small_bridge: dict[str, Any]) -> None:
+    """A logger that zeroed its channels itself, as the model says, is one that the record tells."""
+    warm = {"temperature": np.full(5, 25.0)}
+    told = station(small_bridge, contexts=warm, zero=(0.0, 1200.0))
+    stated = {n: {**one, "zero": [0.0, 1200.0]} for n, one in small_bridge["sensors"].items()}
+    same = {**small_bridge, "sensors": stated}
+    assert station(same, contexts=warm).to_json() == told.to_json()
+    query = first_question(told)
+    simulations = []
+    for model in (small_bridge, same):
+        twin = DigitalTwin(read_model(model, "test"), told)
+        twin.accept(twin.answer(query))
+        contexts = np.tile([25.0, 50.0, 50.0], (2, 1))
+        simulations.append(twin.simulation().readings(np.array([600.0, 2400.0]), contexts))
+    np.testing.assert_array_equal(*simulations)
+    first = next(iter(stated))
+    mixed = {**same, "sensors": {**stated, first: small_bridge["sensors"][first]}}
+    with pytest.raises(InputError, match="zeroed over different times"):
+        station(mixed, contexts=warm)
 
 
 def test_follow_ignores_a_refusal() -> None:

@@ -18,6 +18,7 @@ from rga.diagnosis.screening import Judged
 from rga.diagnosis.signatures import Block, signature
 from rga.model import read_effect, read_model
 from rga.records import Record, RecordMapping
+from rga.records.zero import rows_within
 from safe_words import check
 
 ROWS, LATE = 120, 72
@@ -83,6 +84,20 @@ def zeroed(tmp_path_factory: pytest.TempPathFactory) -> Zeroed:
     return diagnosis
 
 
+def by_its_logger(case: Case, *spans: Span) -> Case:
+    """The case as a logger zeroed it, channel by channel over one span or another.
+
+    The model says which.
+    """
+    sensors, channels = {}, dict(case.channels)
+    for number, (name, sensor) in enumerate(case.model["sensors"].items()):
+        first, end = spans[number % len(spans)]
+        channels[name] = channels[name] - np.nanmean(channels[name][first:end])
+        zero = [float(case.time[first]), float(case.time[end - 1])]
+        sensors[name] = {**sensor, "zero": zero}
+    return replace(case, model={**case.model, "sensors": sensors}, channels=channels)
+
+
 # --- What begins after the zero -------------------------------------------------------------------
 
 
@@ -111,6 +126,17 @@ def test_a_jump_of_a_gauge_is_no_loss_of_a_member(healthy: Case, zeroed: Zeroed)
         (cause,) = zeroed(added(healthy, "g_deck4", 150.0), span).causes
         assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_bias", "g_deck4")
         assert cause.effect["offset"]["value"] == pytest.approx(150.0, abs=3.0)
+
+
+@pytest.mark.parametrize("spans", [(LEAD_IN,), (LEAD_IN, MIDDLE)])
+def test_zeros_that_the_model_states(healthy: Case, spans: list[Span], zeroed: Zeroed) -> None:
+    assert zeroed(by_its_logger(healthy, *spans), None).verdict == "nothing_wrong"
+    (cause,) = zeroed(by_its_logger(added(healthy, "g_deck2", 15.0), *spans), None).causes
+    assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_bias", "g_deck2")
+    assert cause.effect["offset"]["value"] == pytest.approx(15.0, abs=1.0)
+    (cause,) = zeroed(by_its_logger(loaded(healthy), *spans), None).causes
+    assert cause.effect["kind"] in ("dead_load", "context_bias", "unmodelled_load")
+    assert cause.onset == healthy.time[LATE]
 
 
 @pytest.mark.parametrize("span", [LEAD_IN, SHORT])
@@ -155,8 +181,7 @@ def test_the_zero_is_taken_over_all_rows_of_its_interval(healthy: Case, tmp_path
     model, record = record_of(
         replace(healthy, channels={**healthy.channels, "w3": channel}), LEAD_IN, tmp_path
     )
-    assert record.rows_of_zero().tolist() == list(range(12))
-    assert record.zero_rows()[[0, -1]].tolist() == [0, 11]
+    assert rows_within(record.time, record.zero).tolist() == list(range(12))
     data = prepare(model, record, lambda done: None).data
     counts = dict(zip(data.sensors, data.tare.counts[data.columns], strict=True))
     assert (counts["w2"], counts["w3"]) == (12, 9)

@@ -19,6 +19,7 @@ from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
+from rga.records.zero import zeros_of
 from rga.simulation import Simulator
 
 #: rows that are analysed at most; more are thinned evenly
@@ -64,7 +65,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         InputError: too few rows, or no channel that works.
     """
     check_length(record)
-    simulator = Simulator(model)
+    simulator = Simulator(model.without_zeros())
     record, rezeroed = with_own_zeros(model, simulator, record, _data(model, record))
     data = _data(model, record)
     faults = stuck_channels(data.sensors, data.readings, data.observed)
@@ -230,7 +231,7 @@ def _data(model: Model, record: Record) -> Data:
         readings=np.nan_to_num(record.readings),
         observed=np.isfinite(record.readings) & complete[:, None],
         belief=belief,
-        tare=Tare.of(record, belief.table, columns, len(order)),
+        tare=Tare.of(record, belief.table, columns, zeros_of(model, record)),
     )
 
 

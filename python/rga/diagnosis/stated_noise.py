@@ -6,6 +6,8 @@ it should read; and so do channels that wander together. Then nothing else is of
 noise, and only the stated one says that it is none.
 """
 
+from collections.abc import Collection
+
 from rga.diagnosis.problem import Problem
 
 #: times the stated noise: sound records of blind cases reach 2, rarely 3
@@ -14,13 +16,20 @@ BEYOND = 4.0
 MOST_TOLD = 5
 
 
-def beyond_stated(problem: Problem) -> list[str]:
-    """In words: channels whose readings vary more than their stated noise allows."""
+def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
+    """In words: channels whose readings vary more than their stated noise allows.
+
+    Args:
+        problem: the end of the search.
+        told_already: channels that do not work for a part of the record, left out here.
+    """
     model, sensors = problem.simulator.model, problem.data.sensors
     told = []
     for name, deviation in zip(sensors, problem.noise.deviation, strict=True):
         stated = model.sensors[name].noise
-        if stated is not None and deviation > BEYOND * stated:
+        if name in told_already or stated is None:
+            continue
+        if deviation > BEYOND * stated:
             told.append(
                 f"channel {name} varies by {deviation:.2g} {model.sensors[name].unit} that no load "
                 f"explains, {deviation / stated:.2g} times its stated noise"

@@ -56,7 +56,7 @@ def doubts_of(
     broken = {fault.sensor for fault in faults}
     if 2 * len(broken) >= len(channels):
         told.append(f"{len(broken)} of {len(channels)} channels do not work")
-    if not found.fit.hypotheses and gained.after > NEAR_ONE:
+    if gained.after > NEAR_ONE:
         members, gains = found.problem.levels[:2]
         told.append(
             f"the gap on rows that no step saw is {gained.after:.2g} times the noise: members that "

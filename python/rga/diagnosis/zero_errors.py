@@ -57,11 +57,12 @@ def zero_errors(simulator: Simulator, data: Data, noise: Noise) -> ZeroErrors:
     if not len(data.tare):
         return ZeroErrors(np.zeros((0, sensors)), np.zeros(0), np.zeros(0, dtype=bool))
     counts = data.tare.counts[data.columns]
+    tared = counts > 0
     # Noise with memory averages out more slowly, and never less than not at all.
-    slowly = np.sqrt((1 + noise.phi) / (1 - noise.phi) / counts)
-    patterns = list(np.eye(sensors))
-    spread = list(noise.deviation * np.minimum(slowly, 1.0))
-    measured = [True] * sensors
+    slowly = np.sqrt((1 + noise.phi) / (1 - noise.phi) / np.maximum(counts, 1))
+    patterns = list(np.eye(sensors)[tared])
+    spread = list((noise.deviation * np.minimum(slowly, 1.0))[tared])
+    measured = [True] * len(patterns)
     slopes = slopes_at_zero(simulator, data)
     for number, name in enumerate(belief.spread):
         pattern = data.taken_off(slopes[name])

@@ -58,7 +58,7 @@ def with_own_zeros(
     again = _zeroed_again(data, simulated, noise, np.minimum(stated, noise))
     if again is not None and not _one_cause(model, simulator, data, simulated, noise, again):
         return _longer_part(record, again)
-    if record.zero is None and _start_anywhere(model, simulator, data, simulated, noise):
+    if not len(data.tare) and _start_anywhere(model, simulator, data, simulated, noise):
         told = (
             "the readings start from zeros of their own: offsets of all channels are taken as "
             "unknown, and the record as zeroed over all of its rows"

@@ -321,6 +321,13 @@ class Model(Part):
         effects = {name: effect for name, effect in self.effects.items() if stays(effect)}
         return self.model_copy(update={"sensors": sensors, "effects": effects})
 
+    def without_zeros(self) -> "Model":
+        """The same model with sensors from which no logger's zero is taken off."""
+        if all(sensor.zero is None for sensor in self.sensors.values()):
+            return self
+        untared = {n: one.model_copy(update={"zero": None}) for n, one in self.sensors.items()}
+        return self.model_copy(update={"sensors": untared})
+
     def extended(self, effects: dict[str, Effect]) -> "Model":
         """The same model with more effects; refuses those that do not fit it."""
         for name, effect in effects.items():

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from rga.model.effect import seconds
 
 FloatArray = NDArray[np.float64]
-ZERO_ROWS = 8
 
 
 @dataclass(frozen=True)
@@ -63,25 +62,6 @@ class Record:
             whole_ms = moment.microsecond and moment.microsecond % 1000 == 0
             return moment.isoformat(timespec="milliseconds" if whole_ms else "auto")
         return round(self.start + float(elapsed), 9)
-
-    def rows_of_zero(self) -> NDArray[np.int64]:
-        """The rows whose mean was taken off every channel; none where nothing was.
-
-        Where those rows are not in the record, the nearest row that is.
-        """
-        if self.zero is None or not len(self):
-            return np.zeros(0, dtype=np.int64)
-        first, end = self.zero
-        within = np.flatnonzero((self.time >= first) & (self.time <= end))
-        if len(within):
-            return within
-        return np.array([np.abs(self.time - (first + end) / 2).argmin()], dtype=np.int64)
-
-    def zero_rows(self) -> NDArray[np.int64]:
-        """Some of the rows whose mean was taken off every channel; none where nothing was."""
-        rows = self.rows_of_zero()
-        few = np.linspace(0, len(rows) - 1, min(ZERO_ROWS, len(rows))).astype(np.int64)
-        return rows[few]
 
     def rows(self, chosen: NDArray[np.bool_] | slice) -> "Record":
         """The chosen rows; time still counts from the first row of the file."""

@@ -6,11 +6,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rga.errors import InputError
 from rga.model.effect import seconds
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
+from rga.records.zero import rows_within, zeros_of
+
+#: rows of the zero that a station keeps at most
+ZERO_ROWS = 8
 
 
 @dataclass(frozen=True)
@@ -79,13 +85,16 @@ class HardwareInterface:
 
     Args:
         record: what was measured.
-        model: names the context variables.
+        model: names the context variables, and the logger's zero where the record does not.
+
+    Raises:
+        InputError: the channels were zeroed over different times.
     """
 
     def __init__(self, record: Record, model: Model) -> None:
         self._record = record
         measured = tuple(name for name in model.context if name in record.contexts)
-        leading = record.zero_rows()
+        leading = _zero_rows(record, model)
         zero = {name: record.contexts[name][leading] for name in measured}
         zero["time"] = record.origin + record.time[leading]
         self.station = Station(
@@ -109,3 +118,18 @@ class HardwareInterface:
             record.readings[chosen],
             np.column_stack(contexts) if contexts else np.zeros((len(time), 0)),
         )
+
+
+def _zero_rows(record: Record, model: Model) -> NDArray[np.int64]:
+    """Some of the rows whose mean was taken off every channel; none where nothing was."""
+    of_sensors = dict(zip(model.sensors, zeros_of(model, record), strict=True))
+    intervals = {of_sensors[name] for name in record.sensors}
+    if len(intervals) > 1:
+        raise InputError(
+            "the channels were zeroed over different times",
+            f"zero of the sensors of model {model.name!r}",
+            "give one zero = [from, to] for all channels in import.toml",
+        )
+    rows = rows_within(record.time, next(iter(intervals)))
+    few = np.linspace(0, len(rows) - 1, min(ZERO_ROWS, len(rows))).astype(np.int64)
+    return rows[few]

@@ -109,8 +109,11 @@ class SimulationModel:
 
 
 def mounted(model: Model, channels: tuple[str, ...]) -> Model:
-    """The model with these sensors only, and without effects on others."""
-    return model.with_sensors({name: model.sensors[name] for name in channels})
+    """The model with these sensors only, and without effects on others.
+
+    Their zero is taken off by the station: it lies in rows that have long gone by.
+    """
+    return model.with_sensors({n: model.sensors[n] for n in channels}).without_zeros()
 
 
 def broken(readings: FloatArray) -> NDArray[np.bool_]:
