@@ -318,3 +318,15 @@ def test_welded_joints_are_no_other_cause(seed: int) -> None:
     findings = found(logged(Site(welded=True), seed))
     assert findings.verdict != "nothing_wrong"
     assert told(findings) <= {"joint_rigidity", "gauge_position"}
+
+
+@pytest.mark.parametrize("other", ["S U2-U3", "S U2-L3", "D3"])
+def test_cross_talk_names_no_member(other: str) -> None:
+    """A wire that picks up a share of another channel answers the loads as no member would."""
+    log = logged(Site())
+    share = 0.6 * np.std(log.readings[GAUGE]) / np.std(log.readings[other])
+    findings = found(with_channel(log, GAUGE, lambda own: own + share * log.readings[other]))
+    assert on_structure(findings) == []
+    assert findings.verdict != "nothing_wrong"
+    told_of = [one.effect.get("sensor") for one in findings.causes]
+    assert GAUGE in [*told_of, *findings.misfits]

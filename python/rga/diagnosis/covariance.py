@@ -152,6 +152,16 @@ class Covariance:
         """Most likely random effects, float[effects], given a residual float[rows, sensors]."""
         return self._solved(self.reduce(residual.T[None]).score)[:, 0]
 
+    def posterior(self, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Random effects given a residual float[rows, sensors].
+
+        Returns:
+            Their mean, float[effects], and their covariance, float[effects, effects].
+        """
+        inverse, _ = lapack.dpotri(self._factor, lower=1)
+        lower = np.tril(inverse)
+        return self.scatter_estimate(residual), lower + np.tril(lower, -1).T
+
     def inverse_times(self, residual: FloatArray) -> FloatArray:
         """C^-1 of a residual float[rows, sensors], float[sensors, rows]."""
         left = residual - self.scatter.at(self.scatter_estimate(residual))

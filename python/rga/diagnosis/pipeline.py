@@ -16,7 +16,9 @@ from rga.diagnosis.findings import Findings
 from rga.diagnosis.heldout import held_out_rows
 from rga.diagnosis.hypothesis import hypotheses
 from rga.diagnosis.lack_of_fit import misfits
+from rga.diagnosis.own_response import own_response
 from rga.diagnosis.prepare import Prepared, prepare
+from rga.diagnosis.problem import Problem
 from rga.diagnosis.robustness import (
     with_better_prediction,
     with_hanging_leads,
@@ -71,14 +73,21 @@ def diagnose(
 def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Findings:
     prepared = prepare(model, record, lambda done: progress("reading the contexts", done))
     held_out = held_out_rows(len(prepared.data.time))
-    data = prepared.data.rows(~held_out)
     # What a logger took off is a part of the data: a late effect shows whole all the same.
     base = Simulator(model.without_zeros())
     measured = set(record.contexts)
-    candidates = hypotheses(base.model, data.sensors, measured)
-    start = settled(base, data)
-    screening = Screening(start, base, candidates, lambda x: progress("screening", x))
-    found = search(start, base, candidates, screening, progress)
+
+    def searched(prepared: Prepared) -> tuple[Problem, Screening, Found]:
+        data = prepared.data.rows(~held_out)
+        candidates = hypotheses(base.model, data.sensors, measured)
+        start = settled(base, data)
+        screening = Screening(start, base, candidates, lambda x: progress("screening", x))
+        return start, screening, search(start, base, candidates, screening, progress)
+
+    start, screening, found = searched(prepared)
+    while (apart := own_response(found)) is not None:
+        prepared = prepared.leaving_out(apart, base)
+        start, screening, found = searched(prepared)
     whole = WholeRecord.of(prepared.data, held_out, found.problem)
 
     def reweighed(left: Found) -> Found:
@@ -101,10 +110,10 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     extended = model.extended({**named, **broken})
     before, believed = whole.simulated(start), whole.believed(found.problem)
     after = whole.at_zero(found.problem, believed.predict(Simulator(extended.without_zeros())))
-    gained = whole.gain(before, after, seed)
+    gained = whole.gain(before, after, found.fit.hypotheses, seed)
     account = _account(model, extended, prepared, whole, believed, (before, after), found)
     share = leftover.share_left(found.problem)
-    grouped = sensor_groups(model, data.sensors)
+    grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
     doubts = doubts_of(record.sensors, prepared.faults, found, dropped, off, gained)
     doubts += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})

@@ -57,6 +57,11 @@ class Prepared:
     faults: list[Fault]
     warnings: list[str]
 
+    def leaving_out(self, fault: Fault, simulator: Simulator) -> "Prepared":
+        """The same without a further channel that does not work."""
+        data = _without_faults(simulator, self.data, [fault])
+        return replace(self, data=data, faults=[*self.faults, fault])
+
 
 def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> Prepared:
     """Choose rows, reject channels that do not work, and guess the latent contexts.
@@ -85,10 +90,7 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         if not broken:
             break
         found |= {fault.sensor: fault for fault in broken}
-        data = _without(data, broken)
-        if data.belief.latent and data.sensors:
-            # A channel that is broken spoils the contexts that are inferred with it.
-            data = guess_rows(simulator, data)
+        data = _without_faults(simulator, data, broken)
     if not data.sensors:
         fault = next(iter(found.values()))
         raise InputError(
@@ -233,6 +235,15 @@ def _data(model: Model, record: Record) -> Data:
         belief=belief,
         tare=Tare.of(record, belief.table, columns, zeros_of(model, record)),
     )
+
+
+def _without_faults(simulator: Simulator, data: Data, faults: list[Fault]) -> Data:
+    """The data without faults, and their latent contexts without them."""
+    data = _without(data, faults)
+    if data.belief.latent and data.sensors:
+        # A channel that is broken spoils the contexts that are inferred with it.
+        data = guess_rows(simulator, data)
+    return data
 
 
 def _without(data: Data, faults: list[Fault]) -> Data:

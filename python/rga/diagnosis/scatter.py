@@ -54,11 +54,13 @@ class Scatter:
     Attributes:
         effects: derivatives by each of them.
         family: of each: 0 members, 1 gains, 2 patterns; -1 those with a spread of their own.
+        channel: number of the channel that gains and patterns are of, int[effects]; -1: of none.
         fixed: prior standard deviation of those of family -1.
     """
 
     effects: RandomEffects
     family: NDArray[np.int64]
+    channel: NDArray[np.int64]
     fixed: FloatArray
 
     def spread(self, levels: FloatArray) -> FloatArray:
@@ -113,13 +115,19 @@ def scatter_effects(
         *(np.outer(factor, share(course)) for factor in factors.T for course in drift.T),
         *(share(change).T for change in moved),
     ]
-    family = [0] * len(members) + [1, *[2] * patterns.shape[1]] * sensors
+    of_channel = [1, *[2] * patterns.shape[1]]
+    family = [0] * len(members) + of_channel * sensors
     fixed = [spread for _, spread in calibrations]
     fixed += [FACTOR_MEAN] * (drift.shape[1] * factors.shape[1])
     fixed += [spread for *_, spread in lines(data)]
     return Scatter(
         RandomEffects(courses, np.stack(shares)),
         np.array(family + [-1] * len(fixed)),
+        np.array(
+            [-1] * len(members)
+            + [number for number in range(sensors) for _ in of_channel]
+            + [-1] * len(fixed)
+        ),
         np.array([0.0] * len(family) + fixed),
     )
 

@@ -65,7 +65,7 @@ def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
     for number, one in enumerate(found.fit.hypotheses):
         without = without_cause(problem, base, found.fit, number)
         before = whole.simulated(about(problem, without.simulator(base)))
-        gained = whole.gain(before, after, seed)
+        gained = whole.gain(before, after, found.fit.hypotheses, seed)
         if one.kind.on_sensors:
             sure = found.fit.log_evidence - without.log_evidence >= TWICE * NAMED
             harmful = gained.before <= gained.after and not sure

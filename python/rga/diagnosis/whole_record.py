@@ -1,5 +1,6 @@
 """A record with the rows that no step of a diagnosis sees, and what a cause gains on them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from rga.diagnosis.data import Data
 from rga.diagnosis.explanations import variance
 from rga.diagnosis.heldout import Gain, gain
+from rga.diagnosis.hypothesis import Hypothesis
 from rga.diagnosis.problem import Problem, pose, relaxed, resimulated
 from rga.diagnosis.row_covariance import BoolArray
 from rga.diagnosis.search import ROUNDS, UNMOVED
@@ -89,14 +91,24 @@ class WholeRecord:
         limit = 3 * np.sqrt(variance)
         return np.asarray(simulated + np.clip(likely, -limit, limit))
 
-    def gain(self, before: FloatArray, after: FloatArray, seed: int) -> Gain:
+    def gain(
+        self, before: FloatArray, after: FloatArray, causes: Sequence[Hypothesis], seed: int
+    ) -> Gain:
         """What one simulation gains over another by the held-out readings.
+
+        Rows that were held out right before an onset are not compared: in which of them the cause
+        began no row that was fitted tells.
 
         Args:
             before, after: float[rows, sensors].
+            causes: of the latter.
             seed: of the bootstrap.
         """
-        readings = np.where(self.data.observed, self.data.readings, np.nan)
+        seen, time = self.data.observed.copy(), self.data.time
+        for onset in (one.onset for one in causes if one.onset is not None):
+            fitted = time[~self.held_out & (time < onset)]
+            seen[(time > fitted.max(initial=-np.inf)) & (time < onset)] = False
+        readings = np.where(seen, self.data.readings, np.nan)
         left = (readings - after) / self.noise
         return gain(left, (after - before) / self.noise, self.held_out, seed)
 
