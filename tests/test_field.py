@@ -288,3 +288,10 @@ def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     assert known.has({"kind": "sensor_swap", "sensors": ["S2", "S1"]})
     assert not known.has({"kind": "sensor_bias", "sensor": "S2"})
     assert not Spared().has({"kind": "sensor_bias", "sensor": "S1"})
+
+
+def test_cross_talk_that_passes_for_a_modulus_names_a_channel() -> None:
+    """Without a channel of its own response, the steel of this frame is named softer."""
+    outcome = judge(draw_of("field-2031-outside-8"))
+    assert outcome.verdict == "partial"
+    assert {one["kind"] for one in outcome.named} == {"sensor_fault"}

@@ -45,11 +45,13 @@ def doubts_of(
         off: channels and groups that do not fit.
         gained: gap of the held-out rows.
     """
-    told = [
+    fallen = [
         f"{place_words([one.name.replace('_', ' '), *one.place.values()])} would explain the "
         "readings fitted, and rows and channels left out do not confirm it"
         for one in dropped
     ]
+    # A kind with two parameters, or from another row on, is told once.
+    told = list(dict.fromkeys(fallen))
     told += [one.words for one in off[:MOST_MISFITS]]
     if len(off) > MOST_MISFITS:
         told.append(f"{len(off) - MOST_MISFITS} more channels or groups are off")

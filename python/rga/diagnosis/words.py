@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from rga.model import Effect
 
 if TYPE_CHECKING:
-    from rga.diagnosis.findings import Findings
+    from rga.diagnosis.findings import Cause, Findings
 
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 #: units whose large values read better with a prefix
@@ -58,7 +58,10 @@ def quantity(value: Any, unit: str) -> str:
         shown = f"{value / scale:.3g}"
     else:
         return str(value)
-    return shown if unit in ("-", "unit", "") else f"{shown} {prefix}{unit}"
+    if unit in ("-", "unit", ""):
+        return shown
+    # That of a sensor's effect is counted in the sensor's own unit.
+    return f"{shown} {prefix}{unit.replace('unit/', 'per ')}"
 
 
 def verdict_sentence(findings: "Findings") -> str:
@@ -67,13 +70,7 @@ def verdict_sentence(findings: "Findings") -> str:
     causes = [c for c in findings.causes if c.effect["kind"] != "sensor_fault"]
     told = []
     if causes:
-        named = " and ".join(effect_words(cause.effect) for cause in causes)
-        told.append(f"What the model leaves out: {named}.")
-        rivals = [effect_words(rival) for cause in causes for rival in cause.rivals[:RIVALS]]
-        if more := sum(len(cause.rivals) + cause.rivals_omitted for cause in causes) - len(rivals):
-            rivals.append(f"and {more} more")
-        if rivals:
-            told.append(f"These data cannot tell it from: {'; '.join(rivals)}.")
+        told.append(f"What the model leaves out: {'; and '.join(map(_cause_words, causes))}.")
         held = findings.gap.held_out
         low, high = held.gain_ci90
         moves = "falls" if held.gain > 0 else "rises"
@@ -96,6 +93,17 @@ def verdict_sentence(findings: "Findings") -> str:
     if findings.verdict in ("partial", "unknown"):
         told.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
     return " ".join(told)
+
+
+def _cause_words(cause: "Cause") -> str:
+    """A cause in words, and what these data cannot tell it from."""
+    likeliest = effect_words(cause.effect)
+    if not cause.rivals:
+        return likeliest
+    others = [effect_words(rival) for rival in cause.rivals[:RIVALS]]
+    if more := len(cause.rivals) + cause.rivals_omitted - len(others):
+        others.append(f"one of {more} more")
+    return f"either {likeliest}, or what these data cannot tell from it: {', or '.join(others)}"
 
 
 def _onset(effect: Mapping[str, Any]) -> str:

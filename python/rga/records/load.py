@@ -13,6 +13,9 @@ from rga.records.mapping import Channel, RecordMapping, find_mapping, read_mappi
 from rga.records.read import Table, read_table
 from rga.records.record import FloatArray, Record
 
+#: deviations of the noise of a context, by which a value lies outside its range by chance
+CHANCE = 4.0
+
 
 def load_record(
     path: str | Path, model: Model, mapping: str | Path | RecordMapping | None = None
@@ -191,7 +194,9 @@ def _doubts(name: str, values: FloatArray, model: Model) -> list[str]:
     """What the reader should know of a measured context, in words."""
     low, high = model.context[name].range
     unit = model.context[name].unit
-    outside = int(((values < low) | (values > high)).sum())
+    # A load that is not there reads a little below nothing.
+    margin = CHANCE * (model.context[name].noise or 0.0)
+    outside = int(((values < low - margin) | (values > high + margin)).sum())
     missing = int(np.isnan(values).sum())
     doubts = []
     if outside:
