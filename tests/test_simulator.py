@@ -172,3 +172,13 @@ def test_same_bits_again() -> None:
     simulator = Simulator(read_model(bar(), "test"))
     contexts = {"pull": np.linspace(0, 1e5, 50), "temperature": np.linspace(-10, 30, 50)}
     assert (simulator.predict(contexts) == simulator.predict(contexts)).all()
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_support_that_gives_way_later_is_rigid_until_then() -> None:
+    effect = {"kind": "support_flexibility", "support": "A", "dof": "ux", "stiffness": 1e7}
+    simulator = with_effect(**effect, onset=5.0)
+    before = simulator.predict({"time": [0.0, 1.0], "pull": 1e5, "temperature": 10.0})[:, 0]
+    assert before == pytest.approx(1e3 * 1e5 * L / EA)
+    after = simulator.predict({"time": [4.0, 5.0], "pull": 1e5, "temperature": 10.0})[:, 0]
+    assert after == pytest.approx([before[0], before[0] + 1e3 * 1e5 / 1e7])

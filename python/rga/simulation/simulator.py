@@ -308,7 +308,9 @@ class Simulator:
             return structure
 
         # What comes before all that varies is put on the structure once.
-        varies = [bool(np.ptp(states[:, list(columns[name].values())]) > 0) for name in structural]
+        parts = [states[:, list(columns[name].values())] for name in structural]
+        # Not by a difference: a stiffness may be infinite in every row.
+        varies = [bool(part.max() > part.min()) for part in parts]
         steady = varies.index(True) if True in varies else len(structural)
         given = [k for name in structural[:steady] for k in columns[name].values()]
 
