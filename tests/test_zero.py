@@ -11,6 +11,7 @@ import pytest
 from rga import Findings, Simulator, diagnose, load_model, load_record
 from rga.benchmark.truth import Case, Conditions, draw_case
 from rga.diagnosis.data import Data
+from rga.diagnosis.heldout import held_out_rows
 from rga.diagnosis.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.prepare import prepare
 from rga.diagnosis.problem import pose
@@ -41,10 +42,10 @@ def drawn(seed: int, kind: str = "null") -> Case:
     )
 
 
-def added(case: Case, name: str, size: float) -> Case:
+def added(case: Case, name: str, size: float, row: int = LATE) -> Case:
     """The case with a column that reads more from a row on."""
     column = case.channels[name].copy()
-    column[LATE:] += size
+    column[row:] += size
     return replace(case, channels={**case.channels, name: column})
 
 
@@ -137,6 +138,17 @@ def test_zeros_that_the_model_states(healthy: Case, spans: list[Span], zeroed: Z
     (cause,) = zeroed(by_its_logger(loaded(healthy), *spans), None).causes
     assert cause.effect["kind"] in ("dead_load", "context_bias", "unmodelled_load")
     assert cause.onset == healthy.time[LATE]
+
+
+def test_what_begins_among_held_out_rows_is_no_gap(healthy: Case, zeroed: Zeroed) -> None:
+    """In which of these rows it began no fitted row tells, and none of them is held against it."""
+    held_out = held_out_rows(ROWS)
+    begun = next(row for row in range(LATE, ROWS) if held_out[row] and not held_out[row - 1])
+    findings = zeroed(added(healthy, "g_deck2", 60.0, begun), None)
+    (cause,) = findings.causes
+    assert cause.onset > healthy.time[begun]
+    assert cause.onset_ci90[0] <= healthy.time[begun] <= cause.onset_ci90[1]
+    assert findings.gap.held_out.after < 1.5
 
 
 @pytest.mark.parametrize("span", [LEAD_IN, SHORT])
