@@ -29,6 +29,10 @@ JUMP, BESIDE = 6.0, 12
 GROWS = 14.0
 #: moments from which on it may grow
 MOMENTS = 30
+#: share of its squares that a line must keep beside the loads, to be no sum of them
+SEEN = 1e-10
+#: in the place of nothing, to divide by
+TINY = 1e-300
 #: excess of the innovations' kurtosis, in standard deviations, beyond which tails are heavy
 HEAVY = 3.7
 #: degrees of freedom of heavy tails to begin with, and bounds of one over them
@@ -122,20 +126,27 @@ def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | No
         freedom = len(clock) - before.shape[1]
         if freedom <= 4 * BESIDE:
             continue
-        wandering = _unexplained_squares(before, column[1:])
-        for place in np.linspace(BESIDE, len(rows) - BESIDE, MOMENTS).astype(int):
-            line = np.column_stack([clock, np.maximum(clock - clock[place - 1], 0.0)])
-            growing = _unexplained_squares(np.column_stack([before, line]), column[1:])
-            if growing <= 0:
-                continue
-            gained = freedom / 2 * float(np.log(wandering / growing))
-            if gained > GROWS and (best is None or gained > best[0]):
-                best = (gained, int(rows[place]))
+        places = np.linspace(BESIDE, len(rows) - BESIDE, MOMENTS).astype(int)
+        bends = np.maximum(clock[:, None] - clock[places - 1], 0.0)
+        # All moments at once: what neither the loads nor the reading before tells of each line.
+        known, strength, _ = np.linalg.svd(before, full_matrices=False)
+        known = known[:, strength > 1e-12 * strength[0]]
+        together = np.column_stack([column[1:], clock, bends])
+        rest = together - known @ (known.T @ together)
+        told, lines = rest[:, 0], rest[:, 1:]
+        lines = np.where((lines**2).sum(0) > SEEN * (together[:, 1:] ** 2).sum(0), lines, 0.0)
+        line, bends = lines[:, 0], lines[:, 1:]
+        whole = np.maximum((bends**2).sum(0), TINY)
+        bends = bends - np.outer(line, line @ bends) / max(float(line @ line), TINY)
+        bends = np.where((bends**2).sum(0) > SEEN * whole, bends, 0.0)
+        fitted = (line @ told) ** 2 / max(float(line @ line), TINY)
+        fitted = fitted + (bends.T @ told) ** 2 / np.maximum((bends**2).sum(0), TINY)
+        wandering = max(float(told @ told), TINY)
+        gained = -freedom / 2 * np.log(np.maximum(1 - fitted / wandering, SEEN))
+        place = int(np.argmax(gained))
+        if gained[place] > GROWS and (best is None or gained[place] > best[0]):
+            best = (float(gained[place]), int(rows[places[place]]))
     return None if best is None else best[1]
-
-
-def _unexplained_squares(design: FloatArray, column: FloatArray) -> float:
-    return float(((column - design @ lstsq(design, column)[0]) ** 2).sum())
 
 
 def _with_whole_step(left: FloatArray, span: FloatArray) -> tuple[FloatArray, FloatArray]:
