@@ -17,6 +17,9 @@ def check(findings: Findings) -> None:
         assert held.gain_ci90[0] > 0
         assert held.after < held.before
         _check_channels_left_out(findings)
+    if findings.verdict in ("named", "ambiguous") and set(kinds) - {"sensor_fault"}:
+        assert held.after < held.before
+        assert held.after <= NEAR_ONE
     if findings.verdict in ("nothing_wrong", "unknown"):
         assert not kinds
         assert findings.account.extended.effects == findings.account.model.effects
@@ -29,7 +32,7 @@ def check(findings: Findings) -> None:
     if findings.misfits:
         assert findings.verdict in ("partial", "unknown")
         told = " ".join([findings.unexplained.looks_like, *findings.warnings])
-        assert findings.misfits[0] in told
+        assert all(name in told for name in findings.misfits) or "more channels or groups" in told
 
 
 def _check_channels_left_out(findings: Findings) -> None:

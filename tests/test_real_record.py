@@ -6,6 +6,7 @@ the same channels, and of a verdict that does not hang on names, order or sampli
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 import rga
+from safe_words import check
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "rdso45m"
 RECORD = Path(__file__).parents[2] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
@@ -24,7 +26,9 @@ FLOOR = {"floor_participation", "added_axial_area"}
 def findings() -> rga.Findings:
     """The diagnosis of the record as it is."""
     model = rga.load_model(EXAMPLE / "model.json")
-    return rga.diagnose(model, rga.load_record(RECORD, model))
+    findings = rga.diagnose(model, rga.load_record(RECORD, model))
+    check(findings)
+    return findings
 
 
 def gist(findings: rga.Findings) -> tuple[str, list[tuple[str, Any]]]:
@@ -36,6 +40,21 @@ def gist(findings: rga.Findings) -> tuple[str, list[tuple[str, Any]]]:
 def test_the_dead_channel_is_rejected(findings: rga.Findings) -> None:
     faults = [c.effect["sensor"] for c in findings.causes if c.effect["kind"] == "sensor_fault"]
     assert faults == ["S33"]
+
+
+def test_a_swing_under_the_axles_moves_no_cause(findings: rga.Findings) -> None:
+    """The dead channel swings between -14 000 and 17 500 microstrain while the train passes."""
+    model = rga.load_model(EXAMPLE / "model.json")
+    record = rga.load_record(RECORD, model)
+    readings = record.readings.copy()
+    passing = np.linspace(0, 1, len(readings))
+    own = np.random.default_rng(3).standard_normal(len(readings)).cumsum()
+    swing = np.sin(14 * np.pi * passing + 0.02 * own) * np.exp(-(((passing - 0.5) / 0.2) ** 2))
+    readings[:, record.sensors.index("S33")] = 1750 + 15750 * swing
+    swinging = rga.diagnose(model, replace(record, readings=readings))
+    check(swinging)
+    assert gist(swinging) == gist(findings)
+    assert swinging.gap.held_out.after < 0.3 * swinging.gap.held_out.before
 
 
 def test_the_train_is_found(findings: rga.Findings) -> None:

@@ -26,6 +26,7 @@ from rga.planning.truck import lane_of
 from rga.planning.usual import strain_share, usual_truck
 from rga.records import Record
 from rga.twin.simulation_model import mounted
+from safe_words import check
 
 Recorded = Callable[..., Record]
 GAUGE, BESIDE = "S L2-L3", "S L0-L1"
@@ -54,7 +55,9 @@ def welded(measured_bridge: dict[str, Any]) -> Model:
 @pytest.fixture(scope="module")
 def off_fibre(welded: Model, measured_record: Recorded) -> Findings:
     """A gauge that is off its fibre."""
-    return diagnose(welded, measured_record(welded, OFF_FIBRE))
+    findings = diagnose(welded, measured_record(welded, OFF_FIBRE))
+    check(findings)
+    return findings
 
 
 def test_a_gauge_off_its_fibre_is_reported(off_fibre: Findings, tmp_path: Path) -> None:
@@ -69,6 +72,18 @@ def test_a_gauge_off_its_fibre_is_reported(off_fibre: Findings, tmp_path: Path) 
     assert found is not None
     hangs = hold(found, 0)
     assert hangs is None or hangs.channel != GAUGE
+
+
+def test_gauges_at_their_fibres_are_left_alone(
+    welded: Model, measured_record: Recorded, tmp_path: Path
+) -> None:
+    """The null twin of it, its report written too."""
+    findings = diagnose(welded, measured_record(welded))
+    check(findings)
+    assert findings.verdict == "nothing_wrong"
+    assert findings.causes == []
+    html = findings.write(tmp_path).read_text(encoding="utf-8")
+    assert "could not be drawn" not in html
 
 
 def test_a_gauge_beside_a_settlement_leaves_its_forces(
@@ -119,7 +134,9 @@ def open_kind(measured_bridge: dict[str, Any], measured_record: Recorded) -> Fin
     one = {"sensors": {"D2": measured_bridge["sensors"]["D2"]}}
     model = read_model(measured_bridge | one, "one sensor")
     soft = {"kind": "elastic_modulus", "material": "steel", "factor": 0.85}
-    return diagnose(model, measured_record(model, soft))
+    findings = diagnose(model, measured_record(model, soft))
+    check(findings)
+    return findings
 
 
 def behind(findings: Findings, *distances: float) -> Found:
@@ -180,7 +197,7 @@ def test_places_come_after_kinds_however_near(open_kind: Findings) -> None:
 def test_omitted_rivals_are_said(open_kind: Findings, tmp_path: Path) -> None:
     (cause,) = open_kind.causes
     total = len(cause.rivals) + cause.rivals_omitted
-    assert f"; and {total - 3} more." in open_kind.sentence()
+    assert f", or one of {total - 3} more." in open_kind.sentence()
     html = open_kind.write(tmp_path).read_text(encoding="utf-8")
     assert f"and {cause.rivals_omitted} more within a hundred to one" in html
     few = cause.model_copy(update={"rivals": cause.rivals[:3], "rivals_omitted": 0})

@@ -1,5 +1,6 @@
 """`nothing_wrong` and `named` are safe on any record: what must hold, on drawn ones."""
 
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -15,15 +16,17 @@ from rga.benchmark.faults.trial import Trial
 from safe_words import check
 
 ROWS = 80
+#: how many records are drawn: a few in every run, thousands where they are asked for
+EXAMPLES = int(os.environ.get("RGA_TEST_EXAMPLES", "8"))
 
 
 def bases() -> st.SearchStrategy[Base]:
     sources = st.sampled_from(["drawn", "field"])
-    return st.builds(lambda name, k: Base(f"{name}-{k}", ROWS), sources, st.integers(0, 9))
+    return st.builds(lambda name, k: Base(f"{name}-{k}", ROWS), sources, st.integers(0, 99))
 
 
 @settings(
-    max_examples=8,
+    max_examples=EXAMPLES,
     deadline=None,
     derandomize=True,
     database=None,

@@ -58,6 +58,11 @@ def doubts_of(
     broken = {fault.sensor for fault in faults}
     if 2 * len(broken) >= len(channels):
         told.append(f"{len(broken)} of {len(channels)} channels do not work")
+    if found.fit.hypotheses and gained.after >= gained.before:
+        told.append(
+            "rows that no step saw come no closer by the causes: their gap is "
+            f"{gained.before:.3g} times the noise without and {gained.after:.3g} with them"
+        )
     if gained.after > NEAR_ONE:
         members, gains = found.problem.levels[:2]
         told.append(
