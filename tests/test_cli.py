@@ -185,8 +185,6 @@ def test_whatif_warns_outside_the_range(model_file: Path, rga: Rga) -> None:
 
 @pytest.mark.parametrize("of", ["model", "record", "findings"])
 def test_schema(of: str, rga: Rga) -> None:
-    if of == "findings":
-        pytest.importorskip("rga.diagnosis.findings", exc_type=ImportError)
     assert json.loads(rga("schema", of).out)["type"] == "object"
 
 

@@ -9,8 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 import rga
-from rga.twin import Outcome, Settings
+from rga.twin import Settings
+from rga.twin.history import History
 from rga.twin.monitored import Monitored
+from rga.twin.running import taken_up
 from rga.twin.synchrony import OutOfSync, synchrony
 from rga.twin.window_rule import WindowRule
 
@@ -105,12 +107,19 @@ def test_settings_choose_the_detector() -> None:
     assert isinstance(synchrony(CHANNELS, Settings(detector="window")), WindowRule)
 
 
-def played(folder: Path, directory: Path) -> Outcome:
+def played(folder: Path, directory: Path) -> History:
+    """What the twin lived through up to its closing diagnosis; others are put off."""
     model = rga.load_model(folder / "model.json")
     record = rga.load_record(folder / "record.csv", model)
     settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
     chosen = Settings.model_validate(settings | {"detector": "monitor", "level": "B"})
-    return rga.run(model, record, directory, settings=chosen)
+    with taken_up(model, record, directory, chosen, 0) as running:
+        while running.stage != "close":
+            if running.stage == "diagnose":
+                running.postpone("alarms are what is asked for")
+            else:
+                running.step()
+        return running.history()
 
 
 @pytest.mark.parametrize("sinks", [True, False])
@@ -118,8 +127,8 @@ def test_the_twin_tells_since_when_a_bearing_is_lower(
     sinks: bool, small_stream: Callable[..., Path], tmp_path: Path
 ) -> None:
     """A bearing sinks at row 105; in the null twin nothing does."""
-    outcome = played(small_stream(drifts=False, sinks=sinks), tmp_path)
-    alarms = [event for event in outcome.history.events if event.kind == "alarm"]
+    history = played(small_stream(drifts=False, sinks=sinks), tmp_path)
+    alarms = [event for event in history.events if event.kind == "alarm"]
     assert bool(alarms) == sinks
     if sinks:
         assert 105 <= alarms[0].row < 112

@@ -257,7 +257,14 @@ def test_a_single_sensor(tmp_path: Path) -> None:
 def test_bridges_of_any_size(tmp_path: Path, panels: int) -> None:
     lost = {"kind": "member_stiffness", "member": "L10-L11", "factor": 0.4}
     gone = Cause(effect=lost, status="named", log_odds=9, d_prime=5, d_perp=5)
-    read(found(truss(panels, at=(-2.0, 2.0), plane=None), causes=[gone]), tmp_path)
+    model = truss(panels, at=(-2.0, 2.0), plane=None)
+    reader, _ = read(found(model, causes=[gone]), tmp_path)
+    assert reader.tags.count("svg") == 4
+    plain = reader.text.replace("\u00a0", " ")
+    assert "member stiffness of L10-L11" in plain
+    drawn = [view.title for view in views(model, {"L10-L11"})]
+    assert len(drawn) == 3
+    assert all(title in plain for title in drawn)
 
 
 def test_findings_from_a_file_cannot_be_drawn(tmp_path: Path) -> None:
