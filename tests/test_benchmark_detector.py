@@ -38,7 +38,7 @@ SEED = np.random.SeedSequence(1)
 #: as little as can be measured
 LITTLE = Setting(
     arl0=500.0, null=20, streams=10, baselines=2, each=2, onset=110, sensors=6, sizes=(1.0,),
-    counts=(1, 6),
+    counts=(1, 6), seconds=0.02,
 )  # fmt: skip
 
 

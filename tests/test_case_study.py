@@ -11,7 +11,11 @@ from rga.inference import TrainingSettings
 from rga.twin import Outcome, Settings
 
 ROWS = 240
-SETTINGS = Settings(design_rows=2048, training=TrainingSettings(steps=1200, reduced_steps=1000))
+SETTINGS = Settings(
+    arl0=2000.0,
+    design_rows=1024,
+    training=TrainingSettings(steps=500, fine_steps=60, reduced_steps=300),
+)
 
 
 def run(folder: Path, **what: Any) -> tuple[Outcome, dict[str, Any]]:
