@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from scipy.stats import norm
 
-from rga.benchmark.loi.method import Calibrated, Problem
+from rga.benchmark.loi.method import Calibrated, Estimate, Problem
 from rga.benchmark.truth.full_case_study import full_case_study
 from rga.inference.design import design
 from rga.inference.rows import Rows
@@ -42,14 +42,26 @@ def measured(problem: Problem, rng: np.random.Generator, rows: int, smooth: bool
     return Rows(contexts, shown + problem.noise * rng.standard_normal(shown.shape))
 
 
+#: what was inferred for rows, with what it was inferred by: errors and coverages ask for the same
+_INFERRED: dict[tuple[int, int], tuple[Calibrated, Rows, Estimate]] = {}
+
+
+def inferred(learned: Calibrated, judged: Rows) -> Estimate:
+    """Contexts of rows, inferred once."""
+    key = id(learned), id(judged)
+    if key not in _INFERRED:
+        _INFERRED[key] = learned, judged, learned.infer(judged.readings)
+    return _INFERRED[key][2]
+
+
 def error(problem: Problem, learned: Calibrated, judged: Rows) -> float:
     """Mean squared error of the contexts in variances of contexts spread evenly."""
-    off = learned.infer(judged.readings).value - judged.contexts
+    off = inferred(learned, judged).value - judged.contexts
     return float((off**2 / (np.ptp(problem.ranges, axis=1) ** 2 / 12.0)).mean())
 
 
 def coverage(learned: Calibrated, judged: Rows) -> float:
     """Share of the contexts that lie within central intervals of 90 %."""
-    told = learned.infer(judged.readings)
+    told = inferred(learned, judged)
     assert told.spread is not None
     return float((np.abs(told.value - judged.contexts) < norm.ppf(0.95) * told.spread).mean())

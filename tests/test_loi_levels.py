@@ -169,14 +169,26 @@ class Levelled:
         return replace(self, level=self.level + off.mean(axis=0))
 
 
-def test_recalibration_helps_and_c_keeps_what_was_before() -> None:
-    """Where the model is right but for some sensors, offsets are learned."""
-    few = replace(SIZES, stream=90, test=20, unlabelled=32, harm=100.0)
-    given = task(gap="noise only", drifts=("sensor",), sizes=few)
-    known = calibration_of(given)
+#: where the model is right but for some sensors, offsets are learned
+FEW = replace(SIZES, stream=90, test=20, unlabelled=32, harm=100.0)
+RIGHT = task(gap="noise only", drifts=("sensor",), sizes=FEW)
+
+
+def levels() -> list[Played]:
+    """What is lived through at every level, where offsets are learned."""
+    known = calibration_of(RIGHT)
     method = Levelled(maximum_posterior(known.problem), np.zeros(84))
-    usual = Examination(known.test, known.problem.ranges, few.settle)
-    a, b, c = lived(given, known, method, usual)
+    usual = Examination(known.test, known.problem.ranges, FEW.settle)
+    return lived(RIGHT, known, method, usual)
+
+
+@pytest.fixture(scope="module")
+def right() -> list[Played]:
+    return levels()
+
+
+def test_recalibration_helps_and_c_keeps_what_was_before(right: list[Played]) -> None:
+    a, b, c = right
     assert b.delays == c.delays
     assert b.delays[0] is not None
     assert b.recalibrations == c.recalibrations == 1
@@ -187,16 +199,8 @@ def test_recalibration_helps_and_c_keeps_what_was_before() -> None:
     assert c.ordinary == a.ordinary
 
 
-def test_no_level_looks_at_labels(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_level_looks_at_labels(right: list[Played], monkeypatch: pytest.MonkeyPatch) -> None:
     """Other true contexts change Errors, and nothing that was decided."""
-    few = replace(SIZES, stream=90, unlabelled=32, test=20, harm=100.0)
-    given = task(gap="noise only", drifts=("sensor",), sizes=few)
-    known = calibration_of(given)
-    method = Levelled(maximum_posterior(known.problem), np.zeros(84))
-
-    def played() -> list[Played]:
-        usual = Examination(known.test, known.problem.ranges, few.settle)
-        return lived(given, known, method, usual)
 
     def unlabelled(found: list[Played]) -> list[tuple[object, ...]]:
         return [
@@ -213,9 +217,8 @@ def test_no_level_looks_at_labels(monkeypatch: pytest.MonkeyPatch) -> None:
         ]
         return replace(stream, rows=wrong[0], drifted=wrong[1])
 
-    right = played()
     monkeypatch.setattr("rga.benchmark.loi.lived.stream_of", mislabelled)
-    wrong = played()
+    wrong = levels()
     assert any(one.recalibrations for one in right)
     assert unlabelled(right) == unlabelled(wrong)
     assert all(

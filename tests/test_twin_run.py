@@ -3,11 +3,10 @@
 import json
 import os
 import random
-import signal
-import subprocess
-import sys
+import shutil
 from collections.abc import Callable
 from contextlib import suppress
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 import pytest
 
 import rga
+from rga.cli import main
 from rga.errors import InputError
 from rga.twin import Outcome, Settings, rollback
 from rga.twin.recall import log_of
@@ -23,7 +23,7 @@ from rga.twin.running import Running
 
 Stream = Callable[..., Path]
 #: `RGA_TEST_KILLS=200` makes the test of killed runs as long as the acceptance wants it
-KILLS = int(os.environ.get("RGA_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("RGA_TEST_KILLS", "4"))
 
 
 def run(folder: Path, directory: Path, *, seed: int = 0, **more: Any) -> Outcome:
@@ -48,6 +48,29 @@ def lived(stream: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path,
     """A finished run and its directory."""
     directory = tmp_path_factory.mktemp("lived")
     return directory, run(stream, directory)
+
+
+@pytest.fixture(scope="module")
+def again(stream: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Outcome]:
+    """Another finished run of the same, in a directory of its own."""
+    directory = tmp_path_factory.mktemp("again")
+    return directory, run(stream, directory)
+
+
+@pytest.fixture(scope="module")
+def at_level(
+    stream: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Callable[[str], tuple[Path, Outcome]]:
+    """A finished run at a level of integration, and its directory."""
+    finished: dict[str, tuple[Path, Outcome]] = {}
+
+    def level(name: str) -> tuple[Path, Outcome]:
+        if name not in finished:
+            directory = tmp_path_factory.mktemp(name)
+            finished[name] = directory, run(stream, directory, settings={"level": name})
+        return finished[name]
+
+    return level
 
 
 def test_the_story_of_a_stream(lived: tuple[Path, Outcome]) -> None:
@@ -101,14 +124,13 @@ def test_a_drift_alone_is_no_cause(small_stream: Stream, tmp_path: Path) -> None
 
 
 def test_the_same_seed_gives_the_same(
-    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+    lived: tuple[Path, Outcome], again: tuple[Path, Outcome]
 ) -> None:
-    again = run(stream, tmp_path)
-    assert told(again) == told(lived[1])
-    np.testing.assert_array_equal(again.history.inferred, lived[1].history.inferred)
+    assert told(again[1]) == told(lived[1])
+    np.testing.assert_array_equal(again[1].history.inferred, lived[1].history.inferred)
     found, expected = (
         json.loads((folder / "findings.json").read_text(encoding="utf-8"))
-        for folder in (tmp_path, lived[0])
+        for folder in (again[0], lived[0])
     )
     assert found == expected
 
@@ -149,7 +171,7 @@ def test_a_run_that_is_done_is_not_done_again(stream: Path, lived: tuple[Path, O
 
 
 def test_another_model_in_the_same_directory_is_another_run(
-    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+    stream: Path, lived: tuple[Path, Outcome], again: tuple[Path, Outcome], tmp_path: Path
 ) -> None:
     """Files and twin are always those of the run that was asked for last."""
     stiffer = json.loads((stream / "model.json").read_text(encoding="utf-8"))
@@ -160,6 +182,7 @@ def test_another_model_in_the_same_directory_is_another_run(
     for name in ("record.csv", "settings.json"):
         (other / name).write_bytes((stream / name).read_bytes())
     directory = tmp_path / "out"
+    shutil.copytree(again[0], directory)
     expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
     for folder in (stream, other, stream):
         outcome = run(folder, directory, settings={"level": "C"})
@@ -172,11 +195,18 @@ def test_another_model_in_the_same_directory_is_another_run(
 
 
 def test_killed_at_random_it_loses_nothing_and_ends_the_same(
-    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+    stream: Path,
+    lived: tuple[Path, Outcome],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Every acknowledged step is there after a kill, and each resume ends in the same findings."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    # Processes begin as copies of one that has all modules: a kill meets the run at its work.
+    context = get_context("forkserver")
+    context.set_forkserver_preload([main.__module__, Running.__module__, "rga.inference.training"])
     draw = random.Random(5)
-    command = [sys.executable, "-m", "rga", "run", stream / "model.json", stream / "record.csv"]
+    command = ["run", stream / "model.json", stream / "record.csv"]
     command += ["--settings", stream / "settings.json", "-o"]
     expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
     kills, directories, waiting = 0, 0, 5.0
@@ -185,17 +215,16 @@ def test_killed_at_random_it_loses_nothing_and_ends_the_same(
         directories += 1
         acknowledged = 0
         for _ in range(1000):
-            process = subprocess.Popen(
-                [*map(str, command), str(directory)], stdout=subprocess.DEVNULL, env=_quiet()
-            )
-            try:
-                process.wait(draw.uniform(0.0, waiting))
-            except subprocess.TimeoutExpired:
-                process.send_signal(signal.SIGKILL)
-                process.wait()
+            process = context.Process(target=main, args=([*map(str, command), str(directory)],))
+            process.start()
+            # The last run of all is left to end.
+            process.join(draw.uniform(0.0, waiting) if kills < KILLS else None)
+            if process.exitcode is None:
+                process.kill()
+                process.join()
                 kills += 1
             else:
-                assert process.returncode == 0
+                assert process.exitcode == 0
                 break
             before, acknowledged = acknowledged, _kept(directory, acknowledged)
             # A machine that is slow to start would never get on: it is granted a little more,
@@ -220,10 +249,6 @@ def _kept(directory: Path, acknowledged: int) -> int:
             assert runs[0].kept("standing") is not None
     assert steps >= acknowledged
     return steps
-
-
-def _quiet() -> dict[str, str]:
-    return {**os.environ, "OMP_NUM_THREADS": "1"}
 
 
 def told_of(twin: rga.Twin) -> list[tuple[str, int, float | None, float | None]]:
@@ -253,10 +278,14 @@ def test_the_past_stands_as_it_was(lived: tuple[Path, Outcome]) -> None:
         assert twin.as_of(time=600.0 * 79).context == early.context
 
 
-def test_a_repository_that_was_tampered_with_is_told(stream: Path, tmp_path: Path) -> None:
+def test_a_repository_that_was_tampered_with_is_told(
+    at_level: Callable[[str], tuple[Path, Outcome]], tmp_path: Path
+) -> None:
     import sqlalchemy
 
-    run(stream, tmp_path, settings={"level": "A"})
+    shutil.copytree(at_level("A")[0], tmp_path, dirs_exist_ok=True)
+    with rga.Twin.open(tmp_path):
+        pass
     engine = sqlalchemy.create_engine(f"sqlite:///{tmp_path / 'twin.sqlite'}")
     with engine.begin() as connection:
         connection.execute(sqlalchemy.text("UPDATE gap SET simulated = gaps"))
@@ -267,15 +296,19 @@ def test_a_repository_that_was_tampered_with_is_told(stream: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize(("level", "kinds"), [("A", set()), ("B", {"alarm", "recalibration"})])
-def test_levels_of_integration(stream: Path, tmp_path: Path, level: str, kinds: set[str]) -> None:
-    outcome = run(stream, tmp_path, settings={"level": level})
+def test_levels_of_integration(
+    at_level: Callable[[str], tuple[Path, Outcome]], level: str, kinds: set[str]
+) -> None:
+    _, outcome = at_level(level)
     found = {event.kind for event in outcome.history.events}
     assert found - {"calibration", "diagnosis", "version"} == kinds
     assert [cause.effect["kind"] for cause in outcome.findings.causes] == ["support_settlement"]
 
 
-def test_rollback_puts_an_earlier_version_in_force(stream: Path, tmp_path: Path) -> None:
-    run(stream, tmp_path, settings={"level": "B"})
+def test_rollback_puts_an_earlier_version_in_force(
+    at_level: Callable[[str], tuple[Path, Outcome]], tmp_path: Path
+) -> None:
+    shutil.copytree(at_level("B")[0], tmp_path, dirs_exist_ok=True)
     with rga.Twin.open(tmp_path) as twin:
         assert twin.version > 1
     rollback(tmp_path, 1)
@@ -325,8 +358,9 @@ def test_a_record_with_all_contexts_measured_needs_no_network(stream: Path, tmp_
         tmp_path / "record.csv"
     )
     model = rga.load_model(stream / "model.json")
-    record = rga.load_record(tmp_path / "record.csv", model)
+    record = rga.load_record(tmp_path / "record.csv", model).rows(slice(0, 70))
     wanted = json.loads((stream / "settings.json").read_text(encoding="utf-8"))
     outcome = rga.run(model, record, tmp_path / "out", settings=Settings.model_validate(wanted))
     assert outcome.history.contexts == ()
+    assert outcome.history.gaps.shape == (70, len(model.sensors))
     assert np.isfinite(outcome.history.gaps).all()
