@@ -128,9 +128,9 @@ def wrong(problem, rows, seed):
 
 def test_what_was_measured_lately_is_learned():
     problem, _ = easy()
-    rows = wrong(problem, 40, 5).readings
-    before = smooth_discrepancy(replace(problem, real=rows[:10]))
-    after, whole = before.recalibrated(rows[10:]), smooth_discrepancy(replace(problem, real=rows))
+    rows = wrong(problem, 20, 5).readings
+    before = smooth_discrepancy(replace(problem, real=rows[:8]))
+    after, whole = before.recalibrated(rows[8:]), smooth_discrepancy(replace(problem, real=rows))
     assert np.array_equal(after.covariance, whole.covariance)
     assert not np.array_equal(before.covariance, whole.covariance)
 
@@ -146,9 +146,10 @@ def test_a_model_error_is_learned_from_rows_without_contexts():
     assert coverage(shapes, judged) > 0.8
 
 
-def test_updating_finds_what_load_tests_show():
+def test_updating_finds_what_load_tests_show(monkeypatch):
+    monkeypatch.setattr("rga.benchmark.loi.methods.updated_model.MOST", 4)
     problem, _ = easy()
-    problem, judged = replace(problem, load_tests=wrong(problem, 6, 5)), wrong(problem, 40, 6)
+    problem, judged = replace(problem, load_tests=wrong(problem, 6, 5)), wrong(problem, 24, 6)
     updated = updated_model(problem)
     assert error(problem, updated, judged) < 0.5 * error(
         problem, maximum_posterior(problem), judged

@@ -24,7 +24,7 @@ def bridges(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A list of a bridge with a cause, one whose record is cut off, and one that is as modelled."""
     folder = tmp_path_factory.mktemp("bridges")
     for name, seed, kind in (("west", 5, "member_stiffness"), ("east", 3, "null")):
-        draw_case(seed, bridge="footbridge", kind=kind, rows=80).write(folder / name)
+        draw_case(seed, bridge="footbridge", kind=kind, rows=60).write(folder / name)
     (folder / "broken.csv").write_text("time\n0\n", encoding="utf-8")
     path = folder / "bridges.csv"
     path.write_text(

@@ -198,7 +198,7 @@ LITTLE = Setting(
     streams=1,
     rows=72,
     clocks=(6,),
-    settings=Settings(packet=12, design_rows=128, training=TRAINING),
+    settings=Settings(packet=12, arl0=2000.0, design_rows=128, training=TRAINING),
 )
 
 
