@@ -10,7 +10,7 @@ from rga.benchmark.truth import draw_stream
 from rga.inference import TrainingSettings
 from rga.twin import Outcome, Settings
 
-ROWS = 240
+ROWS = 180
 SETTINGS = Settings(
     arl0=2000.0,
     design_rows=1024,
