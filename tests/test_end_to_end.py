@@ -18,7 +18,7 @@ SEED = 1028
 @pytest.fixture
 def case(tmp_path: Path) -> Path:
     """Model and record of a generated footbridge with an effect hidden."""
-    draw_case(SEED).write(tmp_path)
+    draw_case(SEED, rows=160).write(tmp_path)
     return tmp_path
 
 

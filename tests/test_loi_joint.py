@@ -1,6 +1,7 @@
 """Rows of the table that know more: the joint posterior, the polished network, the true frame."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,12 +12,13 @@ from rga.benchmark.loi.method import Calibrated
 from rga.benchmark.loi.methods.joint import joint_posterior
 from rga.benchmark.loi.methods.knows_frame import knows_the_frame
 from rga.benchmark.loi.methods.modes import maximum_posterior
+from rga.benchmark.loi.methods.networks import NETWORKS, learn
 from rga.benchmark.loi.methods.polished import polished_network
 from rga.benchmark.loi.score import Score
 from rga.benchmark.loi.setting import Sizes, Task
 from rga.inference.rows import Rows
 
-LITTLE = Sizes(source=400, unlabelled=60, test=80)
+LITTLE = Sizes(source=256, unlabelled=30, test=40)
 
 
 def known(gap: str) -> Calibration:
@@ -68,6 +70,10 @@ def test_nothing_but_load_tests_is_labelled(full: Calibration) -> None:
     assert fields == {"model", "simulator", "noise", "source", "real", "load_tests", "seed"}
     tests = calibration_of(Task(3, 0, "all", "same", "", (), LITTLE)).problem.load_tests
     with_tests = replace(full.problem, load_tests=Rows(tests.contexts[:10], tests.readings[:10]))
-    alone = polished_network(full.problem).infer(full.test.readings[:5]).value
-    beside = polished_network(with_tests).infer(full.test.readings[:5]).value
+    few = {"steps": 40, "fine_steps": 10, "reduced_steps": 20, "width": 16}
+    short = partial(learn, NETWORKS["source_only"].model_copy(update=few))
+    alone, beside = (
+        polished_network(problem, short).infer(full.test.readings[:5]).value
+        for problem in (full.problem, with_tests)
+    )
     np.testing.assert_array_equal(alone, beside)
