@@ -20,12 +20,12 @@ test: wheel  ## build and install rga in a fresh environment, and run every chec
 	$(TEST)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[test]"
 	$(TEST)/ruff check
 	$(TEST)/ruff format --check
-	$(TEST)/mypy --strict python/rga
+	$(TEST)/mypy --strict python
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	$(TEST)/python -m mypy.stubtest rga._core
-	$(TEST)/python -m pytest tests --pyargs rga --numprocesses auto --dist worksteal
+	$(TEST)/python -m pytest tests --pyargs rga rga_bench --numprocesses auto --dist worksteal
 
 # pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.
 wheel:

@@ -12,8 +12,8 @@ import polars
 import pytest
 
 import rga
-from rga.benchmark.truth.case_study import case_study_bridge
 from rga.model import Model, read_effect, read_model
+from rga_bench.synthetic.bridges.case_study import case_study_bridge
 
 SENSORS, ROWS = 84, 300
 HIDDEN: dict[str, dict[str, Any]] = {

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import rga
-from rga.benchmark.truth import draw_case
+from rga_bench.synthetic import draw_case
 
 SEED = 2029
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from rga import _core
-from rga.benchmark.box_bridge import box_bridge
-from rga.simulation.condensation import Condensation
-from rga.simulation.factorisation import Factorisation
+from rga.simulation.paths.condensation import Condensation
+from rga.simulation.paths.factorisation import Factorisation
+from rga_bench.solver.box_bridge import box_bridge
 
 ROWS = 4096
 NOTHING = np.zeros(0, np.int64)

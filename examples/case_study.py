@@ -3,16 +3,16 @@
     python examples/case_study.py [SEED]
 
 A pedestrian truss bridge works as on any day, then an event brings contexts that no day had, then
-something in the structure changes. The record comes from physics of its own (rga.benchmark.truth);
+something in the structure changes. The record comes from physics of its own (rga_bench.synthetic);
 the run sees only the files.
 """
 
 import sys
 from pathlib import Path
 
-from rga.benchmark.truth import Case, draw_stream
 from rga.cli import main
-from rga.diagnosis.words import effect_words
+from rga.findings.phrases import effect_words
+from rga_bench.synthetic import Case, draw_stream
 
 
 def run(seed: int, folder: Path) -> None:

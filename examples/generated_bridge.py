@@ -2,15 +2,15 @@
 
     python examples/generated_bridge.py [SEED]
 
-The record comes from physics of its own (rga.benchmark.truth); the diagnosis sees only the files.
+The record comes from physics of its own (rga_bench.synthetic); the diagnosis sees only the files.
 """
 
 import sys
 from pathlib import Path
 
-from rga.benchmark.truth import draw_case
 from rga.cli import main
-from rga.diagnosis.words import effect_words
+from rga.findings.phrases import effect_words
+from rga_bench.synthetic import draw_case
 
 
 def run(seed: int, folder: Path) -> None:

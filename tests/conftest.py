@@ -9,12 +9,12 @@ import numpy as np
 import polars as pl
 import pytest
 
-from rga.benchmark.truth import Case
 from rga.cli import main
 from rga.diagnosis import Findings, diagnose
 from rga.model import Model, load_model, read_effect, read_model
 from rga.records import Record, load_record
 from rga.simulation import Simulator
+from rga_bench.synthetic import Case
 from safe_words import check
 
 
@@ -272,7 +272,7 @@ def measured_record() -> Callable[..., Record]:
 def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """The methods of the levels of integration, for a while."""
     from loi_tasks import nearest
-    from rga.benchmark.loi.rows import METHODS, Row
+    from rga_bench.contexts.rows import METHODS, Row
 
     methods = {
         "prior mean": METHODS["prior mean"],
@@ -280,5 +280,5 @@ def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         "absent": Row(nearest, needs=("no_such_package",)),
     }
     for module in ("run", "play", "lived", "sheet_asked"):
-        monkeypatch.setattr(f"rga.benchmark.loi.{module}.METHODS", methods)
+        monkeypatch.setattr(f"rga_bench.contexts.{module}.METHODS", methods)
     return methods

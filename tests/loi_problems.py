@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 from scipy.stats import norm
 
-from rga.benchmark.loi.method import Calibrated, Estimate, Problem
-from rga.benchmark.truth.full_case_study import full_case_study
-from rga.inference.design import design
+from rga.inference.networks.design_samples import design
 from rga.inference.rows import Rows
 from rga.model import read_model
 from rga.simulation import Simulator
+from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.synthetic.bridges.full_case_study import full_case_study
 
 
 @cache

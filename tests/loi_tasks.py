@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from rga.benchmark.loi.drift import DRIFTS
-from rga.benchmark.loi.method import Calibrated, Estimate, Problem
-from rga.benchmark.loi.setting import DRIFTING, Sizes, Task
 from rga.model.parameter import FloatArray
+from rga_bench.contexts.drift import DRIFTS
+from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.setting import DRIFTING, Sizes, Task
 
 SIZES = Sizes(source=64, unlabelled=60, stream=160, test=40)
 RANGES = np.array([[0.0, 1.0], [-30.0, 30.0], [3.0, 5.5], [10.0, 12.0]])

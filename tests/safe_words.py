@@ -1,8 +1,8 @@
 """What must hold of any findings, however broken the record: see `check`."""
 
 from rga import Findings
-from rga.diagnosis.search import without_cause
-from rga.diagnosis.support import worsens
+from rga.diagnosis.checks.support import worsens
+from rga.diagnosis.search.stepwise import without_cause
 from rga.model.effect import Effect
 
 #: gap on rows that no step saw above which nothing is not all that is wrong

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.benchmark.truth import draw_case
 from rga.model import read_effect, read_model
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
-from rga.simulation.along_line import FEWEST, MOST, between, positions
+from rga.simulation.perturbation.chebyshev import FEWEST, MOST, between, positions
+from rga_bench.synthetic import draw_case
 
 #: a bearing on a spring that settles, and one that gives way late
 SPRING = {"kind": "support_flexibility", "support": "B1", "dof": "uz", "stiffness": 3e7}

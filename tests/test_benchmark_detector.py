@@ -13,25 +13,25 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from rga.benchmark.detector import run, setting, table
-from rga.benchmark.detector.charts import Chart, Method, detecting
-from rga.benchmark.detector.detectors import MONITOR, WINDOW_RULE, Mewma, WindowRule, mewma
-from rga.benchmark.detector.faults import Drift, Fault, Spikes, Spread, Step, Stuck
-from rga.benchmark.detector.noise import WHITE, WORLDS, Noise, NoiseSource
-from rga.benchmark.detector.optimum import (
+from rga.detection import GaussianWindow
+from rga_bench.detection import run, setting, table
+from rga_bench.detection.charts import Chart, Method, detecting
+from rga_bench.detection.detectors import MONITOR, WINDOW_RULE, Mewma, WindowRule, mewma
+from rga_bench.detection.faults import Drift, Fault, Spikes, Spread, Step, Stuck
+from rga_bench.detection.noise import WHITE, WORLDS, Noise, NoiseSource
+from rga_bench.detection.optimum import (
     OPTIMUM,
     Optimum,
     expected_delay,
     optimal,
     optimal_limit,
 )
-from rga.benchmark.detector.rates import Arl0, Delay, Share, arl0, delay, limit_for, share
-from rga.benchmark.detector.result import Alarms, Seen
-from rga.benchmark.detector.setting import Setting
-from rga.benchmark.detector.streams import Stream
-from rga.benchmark.detector.targets import targets
-from rga.benchmark.detector.watch import Case, Course, World, watched
-from rga.detection import GaussianWindow
+from rga_bench.detection.rates import Arl0, Delay, Share, arl0, delay, limit_for, share
+from rga_bench.detection.result import Alarms, Seen
+from rga_bench.detection.setting import Setting
+from rga_bench.detection.streams import Stream
+from rga_bench.detection.targets import targets
+from rga_bench.detection.watch import Case, Course, World, watched
 
 Rows = NDArray[np.float64]
 SEED = np.random.SeedSequence(1)

@@ -12,19 +12,19 @@ import numpy as np
 import pytest
 
 from rga import _core
-from rga.benchmark.box_bridge import box_bridge, samples
-from rga.benchmark.data_set import data_set_cost
-from rga.benchmark.double_layer_grid import double_layer_grid
-from rga.benchmark.figure import Figure
-from rga.benchmark.solver import cores, large, refactored, run, table
-from rga.benchmark.solver.anew import Anew
-from rga.benchmark.solver.peers.cholmod import Cholmod, least_operations
-from rga.benchmark.solver.peers.linear_system import LinearSystem
-from rga.benchmark.solver.peers.pynite import PyNite
-from rga.benchmark.solver.peers.superlu import SuperLU
-from rga.benchmark.solver.roofs import Roofs
-from rga.benchmark.solver.run import Result
-from rga.benchmark.solver.setting import Setting
+from rga_bench.measurement import Figure
+from rga_bench.solver import cores, large, refactored, run, table
+from rga_bench.solver.anew import Anew
+from rga_bench.solver.box_bridge import box_bridge, samples
+from rga_bench.solver.data_set import data_set_cost
+from rga_bench.solver.double_layer_grid import double_layer_grid
+from rga_bench.solver.peers.cholmod import Cholmod, least_operations
+from rga_bench.solver.peers.linear_system import LinearSystem
+from rga_bench.solver.peers.pynite import PyNite
+from rga_bench.solver.peers.superlu import SuperLU
+from rga_bench.solver.roofs import Roofs
+from rga_bench.solver.run import Result
+from rga_bench.solver.setting import Setting
 
 #: as little as can be measured
 LITTLE = Setting(rows=64, seconds=0.0, panels=(6,), data_set=100)

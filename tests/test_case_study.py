@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 import rga
-from rga.benchmark.truth import draw_stream
 from rga.inference import TrainingSettings
 from rga.twin import Outcome, Settings
+from rga_bench.synthetic import draw_stream
 
 ROWS = 180
 SETTINGS = Settings(

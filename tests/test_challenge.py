@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.benchmark.challenge import run as running
-from rga.benchmark.challenge.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw, draws
-from rga.benchmark.challenge.figures import Figure, figures, rate
-from rga.benchmark.challenge.hidden import Truth
-from rga.benchmark.challenge.judge import Outcome
-from rga.benchmark.challenge.plots import plot
-from rga.benchmark.challenge.tables import failures, tables
-from rga.benchmark.challenge.yardstick import Yardstick
-from rga.benchmark.ledger import NAME, Ledger
-from rga.benchmark.truth import Case, Conditions, draw_case
 from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records import Record, load_record
+from rga_bench.diagnosis import run as running
+from rga_bench.diagnosis.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw, draws
+from rga_bench.diagnosis.figures import Figure, figures, rate
+from rga_bench.diagnosis.hidden import Truth
+from rga_bench.diagnosis.judge import Outcome
+from rga_bench.diagnosis.plots import plot
+from rga_bench.diagnosis.tables import failures, tables
+from rga_bench.diagnosis.yardstick import Yardstick
+from rga_bench.ledger import NAME, Ledger
+from rga_bench.synthetic import Case, Conditions, draw_case
 
 
 def outcome(name: str, **changes: Any) -> Outcome:

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from rga import Findings, Simulator, load_model, load_record
-from rga.benchmark.challenge.design import Draw
-from rga.benchmark.truth import Case
-from rga.diagnosis.prepare import prepare
+from rga.diagnosis.preparation.prepare import prepare
 from rga.model import read_effect, read_model
 from rga.report import write_report
+from rga_bench.diagnosis.design import Draw
+from rga_bench.synthetic import Case
 
 Diagnosed = Callable[[Case], Findings]
 

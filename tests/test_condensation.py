@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 import rga
 from rga import _core
-from rga.benchmark.box_bridge import Bridge, box_bridge
-from rga.benchmark.space_truss import Arrays
 from rga.errors import InputError, UnstableStructureError
 from rga.model import read_model
 from rga.model.schema import EndSprings
 from rga.model.structure import Structure, build_structure
-from rga.simulation.condensation import Condensation, DependentTerms
-from rga.simulation.variation import variation
+from rga.simulation.paths.condensation import Condensation, DependentTerms
+from rga.simulation.paths.variation import variation
+from rga_bench.solver.box_bridge import Bridge, box_bridge
+from rga_bench.solver.space_truss import Arrays
 
 DISPLACEMENT, STRAIN, FORCE, REACTION = 0, 2, 3, 4
 

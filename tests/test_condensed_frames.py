@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from reference_solver import solve_case
 from rga import _core
-from rga.benchmark.verification_input import Frame, Loads, output_arrays
-from rga.simulation.condensation import Condensation, DependentTerms
-from rga.simulation.terms import stiffness_terms
+from rga.simulation.paths.condensation import Condensation, DependentTerms
+from rga.simulation.paths.rank_one_terms import stiffness_terms
+from rga.simulation.verification_input import Frame, Loads, output_arrays
 
 HERE = Path(__file__).parent
 NONE = np.zeros(0, np.int64)

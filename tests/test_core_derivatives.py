@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from random_structures import Case, cases, laws
 from rga import _core
-from rga.benchmark.box_bridge import box_bridge
-from rga.simulation.condensation import Condensation
+from rga.simulation.paths.condensation import Condensation
+from rga_bench.solver.box_bridge import box_bridge
 
 #: differences of fourth order: places and weights
 STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))

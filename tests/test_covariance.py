@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rga.diagnosis.covariance import Covariance, RandomEffects
-from rga.diagnosis.row_covariance import Noise, RowCovariance
+from rga.diagnosis.noise.covariance import Covariance, RandomEffects
+from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 
 ROWS, SENSORS, CONTEXTS, EFFECTS, COURSES = 14, 4, 2, 5, 3
 DRAW = np.random.default_rng(8)

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import rga
-from rga.benchmark.challenge.design import Draw
-from rga.diagnosis.curves import curves
-from rga.diagnosis.prepare import prepare
-from rga.diagnosis.problem import Problem
-from rga.diagnosis.search import settled
+from rga.diagnosis.preparation.prepare import prepare
+from rga.diagnosis.residuals.curvature import curves
+from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.search.stepwise import settled
 from rga.simulation import Simulator
+from rga_bench.diagnosis.design import Draw
 
 
 def loaded(name: str, folder: Path) -> tuple[rga.Model, rga.Record]:

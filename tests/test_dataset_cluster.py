@@ -133,7 +133,7 @@ def test_the_command(tmp_path: Path, model_file: Path, rga: Rga, cluster: Any) -
 def test_an_address_that_does_not_answer(
     tmp_path: Path, model_file: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("rga.workers.PATIENCE", 0.5)
+    monkeypatch.setattr("rga.parallel.PATIENCE", 0.5)
     target = tmp_path / "samples.parquet"
     ran = rga("dataset", model_file, "-n", 4, "-o", target, "--dask", "tcp://127.0.0.1:1")
     assert ran.code == 2

@@ -5,7 +5,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import poisson
 
-from rga.detection.calibration import (
+from rga.detection.baseline.baseline_model import Reference
+from rga.detection.thresholds import (
     BLOCKS,
     SHARES,
     STREAMS,
@@ -13,7 +14,6 @@ from rga.detection.calibration import (
     calibration,
     tails,
 )
-from rga.detection.reference import Reference
 
 SENSORS, BLOCK, ROWS = 12, 500, 9_000_000
 SEEDS = range(8)

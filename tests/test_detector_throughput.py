@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.benchmark.detector import throughput
-from rga.benchmark.detector.throughput import CALL, SENSORS, WINDOW, Z, agree
-from rga.benchmark.detector.windows import Bottleneck, River
+from rga_bench.detection import throughput
+from rga_bench.detection.throughput import CALL, SENSORS, WINDOW, Z, agree
+from rga_bench.detection.windows import Bottleneck, River
 
 #: what of the packages is measured beside, by figure
 PEERS = {"river": "river GaussianScorer", "bottleneck": "bottleneck move_mean, move_std"}

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rga import Simulator, diagnose, load_model, load_record
-from rga.benchmark.truth import draw_case
 from rga.diagnosis import Findings
+from rga_bench.synthetic import draw_case
 
 SEED = 1028
 

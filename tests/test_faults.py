@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.benchmark.faults import FAULTS, Scale
-from rga.benchmark.faults.base import Base, foreign, load
-from rga.benchmark.faults.breaking import broken as broken_channels
-from rga.benchmark.faults.comparison import Comparison, comparisons
-from rga.benchmark.faults.judge import ERROR, Outcome
-from rga.benchmark.faults.run import measure
-from rga.benchmark.faults.table import markdown
-from rga.benchmark.faults.trial import LEFT_OUT, SOUND, WAYS, Trial, trials
 from rga.errors import InputError
+from rga_bench.faults import FAULTS, Scale
+from rga_bench.faults.base import Base, foreign, load
+from rga_bench.faults.comparison import Comparison, comparisons
+from rga_bench.faults.inject import broken as broken_channels
+from rga_bench.faults.judge import ERROR, Outcome
+from rga_bench.faults.run import measure
+from rga_bench.faults.table import markdown
+from rga_bench.faults.trial import LEFT_OUT, SOUND, WAYS, Trial, trials
 
 ROWS, ONSET = 240, 90
 SENSOR = {"kind": "strain", "unit": "microstrain", "noise": 1.0}

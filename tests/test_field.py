@@ -11,26 +11,26 @@ from typing import Any
 import numpy as np
 import pytest
 
-import rga.benchmark.field as field
-from rga.benchmark.challenge.design import Draw, draws
-from rga.benchmark.challenge.field_design import (
+import rga_bench.field as field
+from rga.errors import InputError
+from rga.model import load_model, read_model
+from rga.records import load_record
+from rga.simulation import Simulator
+from rga_bench.diagnosis.design import Draw, draws
+from rga_bench.diagnosis.field_design import (
     FIELD_CIRCUMSTANCES,
     FIELD_NULLS,
     FieldDraw,
     draw_of,
 )
-from rga.benchmark.challenge.judge import judge
-from rga.benchmark.challenge.spared import Spared
-from rga.benchmark.challenge.tables import tables
-from rga.benchmark.field import INSIDE, KINDS, OUTSIDE, STRUCTURES, Options, draw_field, fits
-from rga.benchmark.field.as_built import as_built
-from rga.benchmark.field.solver import Bars, Solved, axes_of
-from rga.benchmark.field.world import World, amplitudes, influence
-from rga.benchmark.truth import Case
-from rga.errors import InputError
-from rga.model import load_model, read_model
-from rga.records import load_record
-from rga.simulation import Simulator
+from rga_bench.diagnosis.judge import judge
+from rga_bench.diagnosis.spared_effects import Spared
+from rga_bench.diagnosis.tables import tables
+from rga_bench.field import INSIDE, KINDS, OUTSIDE, STRUCTURES, Options, draw_field, fits
+from rga_bench.field.as_built import as_built
+from rga_bench.field.solver import Bars, Solved, axes_of
+from rga_bench.field.world import World, amplitudes, influence
+from rga_bench.synthetic import Case
 
 E, A, INERTIA = 2.1e11, 0.01, 4.0e-5
 
@@ -58,8 +58,8 @@ def test_pinned_and_at_the_centroid_it_is_what_the_simulator_says(name: str) -> 
 @pytest.mark.parametrize("kind", INSIDE)
 def test_hidden_effects_are_what_the_simulator_says(kind: str, tmp_path: Path) -> None:
     """On a structure that is as drawn, the change is that of the same effect in a model."""
-    from rga.benchmark.challenge.hidden import Truth
-    from rga.benchmark.field.hidden import Setting
+    from rga_bench.diagnosis.hidden import Truth
+    from rga_bench.field.hidden import Setting
 
     name = "K truss" if kind == "support_spring" else "portal"
     structure = STRUCTURES[name](np.random.default_rng(2))
@@ -226,7 +226,12 @@ def test_its_physics_shares_nothing_with_the_simulator() -> None:
             names += [a.name for a in node.names] if isinstance(node, ast.Import) else []
             for name in names:
                 assert not name.startswith(
-                    ("rga.simulation", "rga.diagnosis", "rga._core", "rga.benchmark.truth.frame")
+                    (
+                        "rga.simulation",
+                        "rga.diagnosis",
+                        "rga._core",
+                        "rga_bench.synthetic.physics.frame",
+                    )
                 ), f"{path.name} imports {name}"
 
 

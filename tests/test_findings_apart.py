@@ -25,25 +25,25 @@ CRACK = {"kind": "member_stiffness", "member": "U2-U3", "factor": 0.7, "onset": 
 LOST = "could not be drawn"
 #: what each part of a report rests on, and how the report calls the part
 PARTS = {
-    "rga.report.page.draw_bridge": "The map of percentages",
-    "rga.report.page.draw_residuals": "The map of residuals",
-    "rga.report.page.member_forces": "The forces of the members",
-    "rga.report.page.draw_forces": "The forces of the members",
-    "rga.report.page.percent_off": "The table of the sensors",
-    "rga.report.page.draw_series": "The readings",
-    "rga.report.page.ranked": "The table of explanations",
-    "rga.report.page.draw_explanations": "The figure of explanations",
-    "rga.report.page.unseen_groups": "The channels left out",
-    "rga.report.page.draw_gain": "The figure of the gain",
-    "rga.report.page.generic": "The table of contexts",
-    "rga.report.unexplained.leftovers": "The patterns that are left",
-    "rga.report.page.actions": "What to do first",
-    "rga.report.page.evidence": "The evidence",
-    "rga.report.evidence.profiles": "The profiles",
-    "rga.report.evidence.onset_profile": "The profiles",
-    "rga.report.evidence.contrast": "The rival's fit",
-    "rga.report.evidence.hold": "What its lead hangs on",
-    "rga.report.evidence.least_seen": "The smallest effect that would have been named",
+    "rga.report.pages.diagnosis_page.draw_bridge": "The map of percentages",
+    "rga.report.pages.diagnosis_page.draw_residuals": "The map of residuals",
+    "rga.report.pages.diagnosis_page.member_forces": "The forces of the members",
+    "rga.report.pages.diagnosis_page.draw_forces": "The forces of the members",
+    "rga.report.pages.diagnosis_page.percent_off": "The table of the sensors",
+    "rga.report.pages.diagnosis_page.draw_series": "The readings",
+    "rga.report.pages.diagnosis_page.ranked": "The table of explanations",
+    "rga.report.pages.diagnosis_page.draw_explanations": "The figure of explanations",
+    "rga.report.pages.diagnosis_page.unseen_groups": "The channels left out",
+    "rga.report.pages.diagnosis_page.draw_gain": "The figure of the gain",
+    "rga.report.pages.diagnosis_page.generic": "The table of contexts",
+    "rga.report.figures.unexplained.leftovers": "The patterns that are left",
+    "rga.report.pages.diagnosis_page.actions": "What to do first",
+    "rga.report.pages.diagnosis_page.evidence": "The evidence",
+    "rga.report.pages.evidence.profiles": "The profiles",
+    "rga.report.pages.evidence.onset_profile": "The profiles",
+    "rga.report.pages.evidence.contrast": "The rival's fit",
+    "rga.report.pages.evidence.hold": "What its lead hangs on",
+    "rga.report.pages.evidence.least_seen": "The smallest effect that would have been named",
 }
 
 
@@ -111,7 +111,9 @@ def test_a_part_that_fails_is_told_in_its_place(
     assert whole(tmp_path, cracked)
 
 
-@pytest.mark.parametrize("broken", ["rga.report.page.card", "rga.report.write.page"])
+@pytest.mark.parametrize(
+    "broken", ["rga.report.pages.diagnosis_page.card", "rga.report.pages.write.page"]
+)
 def test_findings_stand_without_their_report(
     cracked: Findings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, broken: str
 ) -> None:
@@ -157,7 +159,7 @@ def test_the_command_says_in_one_line_that_the_report_is_missing(
     sound = rga(*command)
     assert (sound.code, sound.err) == (0, "")
     before = (files / "out" / "findings.json").read_bytes()
-    monkeypatch.setattr("rga.report.write.page", fails)
+    monkeypatch.setattr("rga.report.pages.write.page", fails)
     outcome = rga(*command)
     assert outcome.code == 1
     assert "Verdict: " in outcome.out
@@ -172,7 +174,7 @@ def test_the_command_says_in_one_line_that_the_report_is_missing(
 def test_of_many_bridges_no_findings_are_lost(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     listed = files / "list.csv"
     listed.write_text("name,model,record\nnorth,model.json,record.csv\n", encoding="utf-8")
-    monkeypatch.setattr("rga.report.write.page", fails)
+    monkeypatch.setattr("rga.report.pages.write.page", fails)
     with pytest.raises(ReportError, match="north"):
         diagnose_many(listed, files / "out")
     findings = load_findings(files / "out" / "north")
@@ -190,12 +192,12 @@ def test_of_many_bridges_no_findings_are_lost(files: Path, monkeypatch: pytest.M
             np.linalg.LinAlgError("Singular matrix"),
         ),
         (
-            "rga.diagnosis.tell.Advice",
+            "rga.diagnosis.assemble.Advice",
             "what would tell the causes from their rivals",
             InputError("the structure can move", "node L1, uz", "hold it"),
         ),
         (
-            "rga.diagnosis.leftover.in_words",
+            "rga.diagnosis.residuals.patterns.in_words",
             "what the structure that is left goes with",
             FloatingPointError("overflow"),
         ),
@@ -223,7 +225,7 @@ def test_a_stage_after_the_search_loses_no_findings(
     assert cause.effect == sound.effect
     assert (findings.verdict, findings.gap) == (cracked.verdict, cracked.gap)
     assert (findings.explanations == []) == (stage == "rga.diagnosis.pipeline.compare")
-    assert (cause.separated_by == "") == (stage == "rga.diagnosis.tell.Advice")
+    assert (cause.separated_by == "") == (stage == "rga.diagnosis.assemble.Advice")
     html = findings.write(tmp_path).read_text(encoding="utf-8")
     assert LOST not in html
     assert told in html

@@ -1,6 +1,6 @@
 """What a frame gets wrong at its bases, joints and sections: found, and nothing where all is right.
 
-The readings come from physics of their own (rga.benchmark.truth.frame).
+The readings come from physics of their own (rga_bench.synthetic.physics.frame).
 """
 
 from collections.abc import Iterator
@@ -13,7 +13,15 @@ import numpy as np
 import pytest
 
 import rga
-from rga.benchmark.truth.frame import (
+from rga.diagnosis.search.hypothesis import hypotheses
+from rga.findings.phrases import effect_words
+from rga.model import Effect, Model, read_effect, read_model
+from rga.records.record import Record
+from rga.report.pages.cards import values
+from rga.simulation import Simulator
+from rga.simulation.perturbation.trials import Vicinity
+from rga_bench.synthetic.noise import autoregressive, stream
+from rga_bench.synthetic.physics.frame import (
     Array,
     Frame,
     Geometry,
@@ -21,14 +29,6 @@ from rga.benchmark.truth.frame import (
     Stiffness,
     deformation_stiffness,
 )
-from rga.benchmark.truth.noise import autoregressive, stream
-from rga.diagnosis.hypothesis import hypotheses
-from rga.diagnosis.words import effect_words
-from rga.model import Effect, Model, read_effect, read_model
-from rga.records.record import Record
-from rga.report.cards import values
-from rga.simulation import Simulator
-from rga.simulation.vicinity import Vicinity
 from safe_words import check
 
 E, NU = 2.1e11, 0.3

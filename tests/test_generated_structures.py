@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from rga import _core
-from rga.benchmark.box_bridge import EXPANSION, PATTERNS, box_bridge, samples
-from rga.benchmark.double_layer_grid import DENSITY, GRAVITY, PANEL, double_layer_grid
-from rga.benchmark.space_truss import SpaceTruss
+from rga_bench.solver.box_bridge import EXPANSION, PATTERNS, box_bridge, samples
+from rga_bench.solver.double_layer_grid import DENSITY, GRAVITY, PANEL, double_layer_grid
+from rga_bench.solver.space_truss import SpaceTruss
 
 FOLDER = Path(__file__).resolve().parents[2] / "shared" / "verification"
 DIRECTIONS = ("ux", "uy", "uz")

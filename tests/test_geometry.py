@@ -11,7 +11,7 @@ from plane_models import ALPHA, E, force, model, moves, reacts
 from rga import _core
 from rga.errors import InputError, UnstableStructureError
 from rga.model.structure import build_structure
-from rga.simulation.response import patterns
+from rga.simulation.paths.response import patterns
 
 # --- a shallow arch of two bars (von Mises)
 

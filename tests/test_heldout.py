@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rga.diagnosis.heldout import gain, held_out_rows
+from rga.diagnosis.data.held_out import gain, held_out_rows
 from rga.errors import InputError
 
 ROWS, SENSORS = 300, 6

@@ -1,6 +1,6 @@
 """Effects hidden by seed are found, each beside its null twin in which nothing may be found.
 
-The cases come from physics of their own (rga.benchmark.truth). CI runs this fixed part of the
+The cases come from physics of their own (rga_bench.synthetic). CI runs this fixed part of the
 challenge; `rga benchmark diagnosis` runs as much of it as one likes.
 """
 
@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import pytest
 
-from rga.benchmark.challenge.design import Draw
-from rga.benchmark.challenge.judge import Outcome, judge
-from rga.benchmark.challenge.run import run
+from rga_bench.diagnosis.design import Draw
+from rga_bench.diagnosis.judge import Outcome, judge
+from rga_bench.diagnosis.run import run
 
 NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
 

@@ -1,6 +1,6 @@
 """Slip in joints and stops at bearings: two ways to simulate them agree, and hidden ones are found.
 
-The readings come from physics of their own (rga.benchmark.truth), which goes force by force where
+The readings come from physics of their own (rga_bench.synthetic), which goes force by force where
 the simulator goes by Newton steps on elongations.
 """
 
@@ -10,17 +10,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.benchmark.truth import Case, draw_case
-from rga.benchmark.truth.bridges import BRIDGES
-from rga.benchmark.truth.contexts import courses
-from rga.benchmark.truth.effect import Setting
-from rga.benchmark.truth.hidden import HIDDEN
-from rga.benchmark.truth.noise import stream
-from rga.benchmark.truth.response import respond
-from rga.benchmark.truth.world import World
 from rga.diagnosis import Findings
 from rga.model import read_model
 from rga.simulation import Simulator
+from rga_bench.synthetic import Case, draw_case
+from rga_bench.synthetic.bridges.catalogue import BRIDGES
+from rga_bench.synthetic.contexts import courses
+from rga_bench.synthetic.hidden.catalogue import HIDDEN
+from rga_bench.synthetic.hidden.effect import Setting
+from rga_bench.synthetic.noise import stream
+from rga_bench.synthetic.physics.response import respond
+from rga_bench.synthetic.physics.world import World
 
 KINDS = ("joint_slip", "support_gap")
 

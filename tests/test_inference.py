@@ -10,14 +10,14 @@ from scipy.stats import norm
 
 from rga.errors import InputError
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
-from rga.inference.design import Design, design
-from rga.inference.law import follow_law
-from rga.inference.networks import Encoder
-from rga.inference.polish import polish_line
-from rga.inference.posterior import covering_factor, laplace_spread
-from rga.inference.reduced import pretrain
-from rga.inference.reversal import reverse_gradient
-from rga.inference.ways import EitherWay
+from rga.inference.laws.over_time import follow_law
+from rga.inference.laws.refine import polish_line
+from rga.inference.laws.travel_direction import EitherWay
+from rga.inference.map.laplace import covering_factor, laplace_spread
+from rga.inference.networks.design_samples import Design, design
+from rga.inference.networks.gradient_reversal import reverse_gradient
+from rga.inference.networks.layers import Encoder
+from rga.inference.networks.surrogate import pretrain
 from rga.model import read_model
 from rga.model.schema import ContextVariable, Model
 from rga.simulation import Simulator

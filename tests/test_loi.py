@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from loi_tasks import RANGES, SIZES, nearest, task
-from rga.benchmark.loi.contexts import BEYOND, PART, Contexts
-from rga.benchmark.loi.data import LOAD_TESTS, calibration_of, stream_of
-from rga.benchmark.loi.drift import DRIFTS, ONE_IN, Measured, when
-from rga.benchmark.loi.floors import BEST_CONTEXT, FLOORS, NOISE, TRUE_CONTEXT, floor
-from rga.benchmark.loi.found import paired
-from rga.benchmark.loi.method import Calibrated, Estimate, Problem
-from rga.benchmark.loi.rows import Row
-from rga.benchmark.loi.score import score
-from rga.benchmark.loi.spread import Mean
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
+from rga_bench.contexts.context_regime import BEYOND, PART, Contexts
+from rga_bench.contexts.data import LOAD_TESTS, calibration_of, stream_of
+from rga_bench.contexts.drift import DRIFTS, ONE_IN, Measured, when
+from rga_bench.contexts.floors import BEST_CONTEXT, FLOORS, NOISE, TRUE_CONTEXT, floor
+from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.rows import Row
+from rga_bench.contexts.score import score
+from rga_bench.contexts.tables.aggregate import paired
+from rga_bench.contexts.tables.spread import Mean
 
 # Contexts
 

@@ -6,17 +6,17 @@ from functools import partial
 import numpy as np
 import pytest
 
-from rga.benchmark.loi.data import Calibration, calibration_of
-from rga.benchmark.loi.examination import Examination
-from rga.benchmark.loi.method import Calibrated
-from rga.benchmark.loi.methods.joint import joint_posterior
-from rga.benchmark.loi.methods.knows_frame import knows_the_frame
-from rga.benchmark.loi.methods.modes import maximum_posterior
-from rga.benchmark.loi.methods.networks import NETWORKS, learn
-from rga.benchmark.loi.methods.polished import polished_network
-from rga.benchmark.loi.score import Score
-from rga.benchmark.loi.setting import Sizes, Task
 from rga.inference.rows import Rows
+from rga_bench.contexts.data import Calibration, calibration_of
+from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.method import Calibrated
+from rga_bench.contexts.methods.joint import joint_posterior
+from rga_bench.contexts.methods.knows_frame import knows_the_frame
+from rga_bench.contexts.methods.modes import maximum_posterior
+from rga_bench.contexts.methods.networks import NETWORKS, learn
+from rga_bench.contexts.methods.polished import polished_network
+from rga_bench.contexts.score import Score
+from rga_bench.contexts.setting import Sizes, Task
 
 LITTLE = Sizes(source=256, unlabelled=30, test=40)
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rga.benchmark.ledger import NAME
-from rga.benchmark.loi.play import Outcome
-from rga.benchmark.loi.run import measure
-from rga.benchmark.loi.setting import Setting, Sizes
+from rga_bench.contexts.play import Outcome
+from rga_bench.contexts.run import measure
+from rga_bench.contexts.setting import Setting, Sizes
+from rga_bench.ledger import NAME
 
 SETTING = Setting(
     seed=11,

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from loi_tasks import SIZES, Nearest, nearest, task
-from rga.benchmark.loi.data import Stream, calibration_of, stream_of
-from rga.benchmark.loi.examination import Examination
-from rga.benchmark.loi.levels import Learned, State, live, most_likely
-from rga.benchmark.loi.lived import Played, lived
-from rga.benchmark.loi.method import Calibrated, Estimate, Problem
-from rga.benchmark.loi.methods.modes import maximum_posterior
-from rga.benchmark.loi.novel import with_novel
-from rga.benchmark.loi.rows import Row
-from rga.benchmark.loi.setting import Sizes, Task
 from rga.model.parameter import FloatArray
+from rga_bench.contexts.data import Stream, calibration_of, stream_of
+from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.levels import Learned, State, live, most_likely
+from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.methods.modes import maximum_posterior
+from rga_bench.contexts.novel import with_novel
+from rga_bench.contexts.rows import Row
+from rga_bench.contexts.setting import Sizes, Task
+from rga_bench.contexts.stream_results import Played, lived
 
 
 def lives(
@@ -243,7 +243,7 @@ def test_no_level_looks_at_labels(right: list[Played], monkeypatch: pytest.Monke
         ]
         return replace(stream, rows=wrong[0], drifted=wrong[1])
 
-    monkeypatch.setattr("rga.benchmark.loi.lived.stream_of", mislabelled)
+    monkeypatch.setattr("rga_bench.contexts.stream_results.stream_of", mislabelled)
     wrong = levels()
     assert any(one.recalibrations for one in right)
     assert unlabelled(right) == unlabelled(wrong)

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from loi_problems import coverage, easy, error, measured
-from rga.benchmark.loi.methods.discrepancy import smooth_discrepancy
-from rga.benchmark.loi.methods.ensemble_kalman import ensemble_kalman
-from rga.benchmark.loi.methods.iterated_kalman import iterated_kalman
-from rga.benchmark.loi.methods.low_rank import low_rank_discrepancy
-from rga.benchmark.loi.methods.modes import maximum_posterior
-from rga.benchmark.loi.methods.prior import prior_mean
-from rga.benchmark.loi.methods.unscented_kalman import unscented_kalman
-from rga.benchmark.loi.methods.updated_model import updated_model
-from rga.inference.posterior_mode import posterior_mode
+from rga.inference.map.array_simulator import TwinOnArrays
+from rga.inference.map.posterior_mode import posterior_mode
 from rga.inference.rows import Rows
-from rga.inference.twin_on_arrays import TwinOnArrays
 from rga.model.effects.bearings import SupportFlexibility
+from rga_bench.contexts.methods.discrepancy import smooth_discrepancy
+from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
+from rga_bench.contexts.methods.iterated_kalman import iterated_kalman
+from rga_bench.contexts.methods.low_rank import low_rank_discrepancy
+from rga_bench.contexts.methods.modes import maximum_posterior
+from rga_bench.contexts.methods.prior import prior_mean
+from rga_bench.contexts.methods.unscented_kalman import unscented_kalman
+from rga_bench.contexts.methods.updated_model import updated_model
 
 UNLABELLED = [
     prior_mean,
@@ -147,7 +147,7 @@ def test_a_model_error_is_learned_from_rows_without_contexts():
 
 
 def test_updating_finds_what_load_tests_show(monkeypatch):
-    monkeypatch.setattr("rga.benchmark.loi.methods.updated_model.MOST", 4)
+    monkeypatch.setattr("rga_bench.contexts.methods.updated_model.MOST", 4)
     problem, _ = easy()
     problem, judged = replace(problem, load_tests=wrong(problem, 6, 5)), wrong(problem, 24, 6)
     updated = updated_model(problem)

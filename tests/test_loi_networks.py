@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.benchmark.loi.method import Problem, Rows
-from rga.benchmark.loi.methods import networks
-from rga.benchmark.loi.methods.networks import NETWORKS, LearnedNetwork, learn
-from rga.benchmark.truth.full_case_study import full_case_study
-from rga.benchmark.truth.physical_twin import PhysicalTwin
 from rga.errors import InputError
 from rga.inference import ContextNetwork, Samples, TrainingSettings
-from rga.inference.design import design
-from rga.inference.selection import WORSE, choose
+from rga.inference.networks.design_samples import design
+from rga.inference.networks.selection import WORSE, choose
 from rga.model import read_model
 from rga.simulation import Simulator
+from rga_bench.contexts.method import Problem, Rows
+from rga_bench.contexts.methods import networks
+from rga_bench.contexts.methods.networks import NETWORKS, LearnedNetwork, learn
+from rga_bench.synthetic.bridges.full_case_study import full_case_study
+from rga_bench.synthetic.physical_twin import PhysicalTwin
 
 MODEL = read_model(full_case_study(), "case study")
 SIMULATOR = Simulator(MODEL)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from loi_problems import coverage, easy, error, measured
-from rga.benchmark.loi.methods import domain_adaptation, neural_posterior
-from rga.benchmark.loi.methods.domain_adaptation import skada_coral, skada_dann
+from rga_bench.contexts.methods import domain_adaptation, neural_posterior
+from rga_bench.contexts.methods.domain_adaptation import skada_coral, skada_dann
 
 NEEDS = {neural_posterior.neural_posterior: "sbi", skada_coral: "skada", skada_dann: "skada"}
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.benchmark.loi.data import Calibration, calibration_of
-from rga.benchmark.loi.examination import Examination
-from rga.benchmark.loi.methods import networks
-from rga.benchmark.loi.methods.networks import NETWORKS
-from rga.benchmark.loi.methods.polished import polished_network
-from rga.benchmark.loi.rows import METHODS
-from rga.benchmark.loi.setting import Sizes, Task
 from rga.inference.rows import Rows
+from rga_bench.contexts.data import Calibration, calibration_of
+from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.methods import networks
+from rga_bench.contexts.methods.networks import NETWORKS
+from rga_bench.contexts.methods.polished import polished_network
+from rga_bench.contexts.rows import METHODS
+from rga_bench.contexts.setting import Sizes, Task
 from test_loi_model_based import UNLABELLED
 from test_loi_peers import NEEDS
 
@@ -40,9 +40,9 @@ def easy() -> Calibration:
 @pytest.fixture
 def few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is asked is which labels a row looks at, and the model is right to begin with."""
-    monkeypatch.setattr("rga.inference.joint.ROUNDS", 1)
-    monkeypatch.setattr("rga.inference.joint.STEPS", 2)
-    monkeypatch.setattr("rga.benchmark.loi.methods.updated_model.MOST", 2)
+    monkeypatch.setattr("rga.inference.joint.infer.ROUNDS", 1)
+    monkeypatch.setattr("rga.inference.joint.infer.STEPS", 2)
+    monkeypatch.setattr("rga_bench.contexts.methods.updated_model.MOST", 2)
 
 
 @pytest.mark.usefixtures("few_steps")

@@ -8,20 +8,20 @@ from typing import Any
 import pytest
 
 from loi_tasks import SIZES, nearest, task
-from rga.benchmark.ledger import NAME
-from rga.benchmark.loi import setting
-from rga.benchmark.loi.contexts import MANNERS
-from rga.benchmark.loi.lived import Played
-from rga.benchmark.loi.play import Outcome, play
-from rga.benchmark.loi.rows import ORACLE, PAPERS, Row
-from rga.benchmark.loi.run import Result, measure
-from rga.benchmark.loi.score import Score
-from rga.benchmark.loi.setting import DRIFTING, Setting, Task
-from rga.benchmark.loi.sheet_asked import asked
-from rga.benchmark.loi.sheets_levels import order
-from rga.benchmark.loi.table import about, markdown
-from rga.benchmark.machine import machine, versions
 from rga.errors import InputError
+from rga_bench.contexts import setting
+from rga_bench.contexts.context_regime import MANNERS
+from rga_bench.contexts.play import Outcome, play
+from rga_bench.contexts.rows import ORACLE, PAPERS, Row
+from rga_bench.contexts.run import Result, measure
+from rga_bench.contexts.score import Score
+from rga_bench.contexts.setting import DRIFTING, Setting, Task
+from rga_bench.contexts.stream_results import Played
+from rga_bench.contexts.tables.sheets_levels import order
+from rga_bench.contexts.tables.table import about, markdown
+from rga_bench.contexts.tables.targets import asked
+from rga_bench.ledger import NAME
+from rga_bench.machine import machine, versions
 
 LITTLE = Setting(
     seed=3,
@@ -107,7 +107,7 @@ def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatc
         "labelled": Row(nearest, load_tests=20),
         ORACLE: Row(nearest, oracle=True),
     }
-    monkeypatch.setattr("rga.benchmark.loi.sheet_asked.METHODS", methods)
+    monkeypatch.setattr("rga_bench.contexts.tables.targets.METHODS", methods)
     errors = {
         "poor": (0.9, 0.9, 0.9),
         "good": (0.5, 0.4, 0.2),
@@ -159,7 +159,7 @@ def test_the_command(
     content = json.loads(file.read_text(encoding="utf-8"))
     assert content["command"] == "rga benchmark loi --quick --seed 3"
     assert {one["row"] for one in content["outcomes"]} == {"noise", "nearest"}
-    monkeypatch.setattr("rga.benchmark.loi.run.play", play_nothing)
+    monkeypatch.setattr("rga_bench.contexts.run.play", play_nothing)
     assert rga("benchmark", "loi", *given).code == 0
     wrong = rga("benchmark", "loi", "--quick", "--repository", "attic")
     assert wrong.code == 2

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 from threadpoolctl import threadpool_info
 
-from rga.benchmark.machine import versions
+from rga_bench.machine import versions
 
 #: asks before and after another BLAS is loaded, as CHOLMOD and others bring one
 BEFORE_AND_AFTER = """
 import ctypes, sys
 from threadpoolctl import threadpool_info
-from rga.benchmark.machine import versions
+from rga_bench.machine import versions
 alone, before = len(threadpool_info()), versions()
 ctypes.CDLL(sys.argv[1])
 assert len(threadpool_info()) > alone, "another BLAS was to be loaded"

@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 import rga as package
-from rga.benchmark.truth import draw_case
 from rga.errors import InputError
-from rga.workers import finished
+from rga.parallel import finished
+from rga_bench.synthetic import draw_case
 
 Rga = Callable[..., Any]
 FILES = ("findings.json", "model.json", "report.html")
@@ -139,7 +139,7 @@ def test_an_address_that_does_not_answer(
     bridges: Path, tmp_path: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch, address: str | None
 ) -> None:
     pytest.importorskip("distributed", reason="needs rga[dask]")
-    monkeypatch.setattr("rga.workers.PATIENCE", 0.5)
+    monkeypatch.setattr("rga.parallel.PATIENCE", 0.5)
     silent = _free_address() if address is None else address
     for command in (("diagnose-many", bridges), ("benchmark", "diagnosis", "--quick")):
         outcome = rga(*command, "-o", tmp_path / "out", "--dask", silent)
@@ -152,7 +152,7 @@ def test_a_port_that_never_answers(
     bridges: Path, tmp_path: Path, rga: Rga, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed", reason="needs rga[dask]")
-    monkeypatch.setattr("rga.workers.PATIENCE", 0.5)
+    monkeypatch.setattr("rga.parallel.PATIENCE", 0.5)
     with socket.socket() as silent:
         silent.bind(("127.0.0.1", 0))
         silent.listen()

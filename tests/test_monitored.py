@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 import rga
 from rga.twin import Settings
 from rga.twin.history import History
-from rga.twin.monitored import Monitored
-from rga.twin.running import taken_up
-from rga.twin.synchrony import OutOfSync, synchrony
-from rga.twin.window_rule import WindowRule
+from rga.twin.runner import taken_up
+from rga.twin.sync.monitor import Monitored
+from rga.twin.sync.protocol import OutOfSync, synchrony
+from rga.twin.sync.window_rule import WindowRule
 
 CHANNELS = ("D1", "D2", "dead", "stuck", "S1")
 Residuals = NDArray[np.float64]

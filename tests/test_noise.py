@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rga.benchmark.challenge.design import Draw
 from rga.diagnosis import Findings, diagnose
-from rga.diagnosis.noise import estimate_noise
-from rga.diagnosis.row_covariance import BoolArray, Noise, RowCovariance
+from rga.diagnosis.noise.row_covariance import BoolArray, Noise, RowCovariance
+from rga.diagnosis.noise.sensor_noise import estimate_noise
 from rga.model import load_model
 from rga.model.parameter import FloatArray
 from rga.records import load_record
+from rga_bench.diagnosis.design import Draw
 
 ROWS, SENSORS, MEMORY = 240, 24, 0.6
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from reference_solver import solve_case
-from rga.benchmark.verification import verify_case, verify_folder
+from rga.simulation.verification import verify_case, verify_folder
 
 FOLDER = Path(__file__).parent / "verification"
 CASES = sorted(FOLDER.glob("*.json"))

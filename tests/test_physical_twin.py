@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from rga.benchmark.truth.frame import Frame, Spring
-from rga.benchmark.truth.full_case_study import WEAKENED, full_case_study
-from rga.benchmark.truth.physical_twin import GAPS, PhysicalTwin
-from rga.benchmark.truth.world import World
 from rga.model import Model, read_model
 from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
+from rga_bench.synthetic.bridges.full_case_study import WEAKENED, full_case_study
+from rga_bench.synthetic.physical_twin import GAPS, PhysicalTwin
+from rga_bench.synthetic.physics.frame import Frame, Spring
+from rga_bench.synthetic.physics.world import World
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,11 @@ import polars as pl
 import pytest
 
 from rga import Findings, diagnose, load_findings, load_model, load_record, plan
-from rga.benchmark.truth.gauges import observe
-from rga.benchmark.truth.world import World
-from rga.diagnosis.words import effect_words
 from rga.errors import InputError
+from rga.findings.phrases import effect_words
 from rga.model import Model, read_model
+from rga_bench.synthetic.gauges import observe
+from rga_bench.synthetic.physics.world import World
 
 Hidden = Callable[[World], None]
 ROWS, INTERVAL = 120, 1800.0

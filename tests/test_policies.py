@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from rga.benchmark.policies import run, setting
-from rga.benchmark.policies.play import Played
-from rga.benchmark.policies.play import play as play_task
-from rga.benchmark.policies.setting import STREAMS, Setting
 from rga.inference import TrainingSettings
 from rga.model import load_model
 from rga.records import load_record
 from rga.twin import Settings
 from rga.twin.history import History
-from rga.twin.policy import Policy
-from rga.twin.running import taken_up
+from rga.twin.run_state import Standing
+from rga.twin.runner import taken_up
 from rga.twin.settings import Pace
-from rga.twin.standing import Standing
+from rga.twin.sync.policy import Policy
+from rga_bench.policies import run, setting
+from rga_bench.policies.play import Played
+from rga_bench.policies.play import play as play_task
+from rga_bench.policies.setting import STREAMS, Setting
 
 Stream = Callable[..., Path]
 POLICIES = ("event", "time", "hybrid", "adaptive")

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from rga import Simulator
-from rga.benchmark.faults.base import Base, Sound, load
-from rga.diagnosis.channel_prediction import own_parts
-from rga.diagnosis.lack_of_fit import misfits
-from rga.diagnosis.prepare import prepare
-from rga.diagnosis.problem import Problem, load_basis, pose
+from rga.diagnosis.preparation.channel_prediction import own_parts
+from rga.diagnosis.preparation.prepare import prepare
+from rga.diagnosis.residuals.lack_of_fit import misfits
+from rga.diagnosis.search.linearised import Problem, load_basis, pose
+from rga_bench.faults.base import Base, Sound, load
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from monitored_worlds import BASELINE, SENSORS, WORLDS, Rows, noise
 from rga.detection import SyncMonitor
-from rga.detection.reference import Reference
+from rga.detection.baseline.baseline_model import Reference
 from rga.detection.statistic import STATISTICS
 from rga.errors import InputError
 

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.diagnosis import findings as contract
-from rga.diagnosis.account import Account
-from rga.diagnosis.findings import Cause, Explanation, Findings, GroupGap, Unexplained
+from rga.findings import schema as contract
+from rga.findings.arrays import Account
+from rga.findings.schema import Cause, Explanation, Findings, GroupGap, Unexplained
 from rga.model import Model, read_model
 from rga.records import Record
 from rga.report import write_report
-from rga.report.deviation import percent_off
-from rga.report.gain import blocks
-from rga.report.projection import views
-from rga.report.quantities import number, percent, quantity
-from rga.report.series import runs_on
+from rga.report.drawing.projection import views
+from rga.report.figures.deviation import percent_off
+from rga.report.figures.gain import blocks
+from rga.report.figures.series import runs_on
+from rga.report.text.quantities import number, percent, quantity
 
 HOSTILE = "<script>alert('x')</script> $\\frac{a_b}$ & \"q\""
 #: what a full report says somewhere

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 import rga
-from rga.diagnosis.evidence import extended
-from rga.diagnosis.findings import Findings
-from rga.diagnosis.forces import member_forces
-from rga.diagnosis.grounds import contrast, hold, unseen_groups
-from rga.diagnosis.least_seen import least_seen
-from rga.diagnosis.leftover import known_contexts, leftovers
-from rga.diagnosis.profiles import onset_profile, profiles
+from rga.diagnosis.checks.detectability import least_seen
+from rga.diagnosis.checks.leave_one_out import contrast, hold, unseen_groups
+from rga.diagnosis.checks.profiles import onset_profile, profiles
+from rga.diagnosis.member_forces import member_forces
+from rga.diagnosis.residuals.patterns import known_contexts, leftovers
+from rga.diagnosis.search.laplace import extended
+from rga.findings.schema import Findings
 from rga.model import Effect, Model, read_model
 from rga.model.effect import seconds
 from rga.records import Record
 from rga.report import write_report
-from rga.report.actions import ACTIONS, BY_VERDICT, actions
+from rga.report.text.actions import ACTIONS, BY_VERDICT, actions
 from rga.simulation import Simulator
 
 HOSTILE = "<script>alert('x')</script> {place} $\\frac{a_b}$ & \"q\""

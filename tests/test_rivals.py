@@ -11,19 +11,19 @@ import pytest
 
 from rga import diagnose, load_findings, plan
 from rga.diagnosis import Findings
-from rga.diagnosis.forces import member_forces
-from rga.diagnosis.grounds import hold
-from rga.diagnosis.hypothesis import hypotheses
-from rga.diagnosis.screening import Prospect
-from rga.diagnosis.search import FITTED, HOPELESS, RIVAL, Alternative, Found, worth_fitting
-from rga.diagnosis.tell import MOST_RIVALS, causes, effects_of
-from rga.diagnosis.words import effect_words
+from rga.diagnosis.assemble import MOST_RIVALS, causes, effects_of
+from rga.diagnosis.checks.leave_one_out import hold
+from rga.diagnosis.member_forces import member_forces
+from rga.diagnosis.search.hypothesis import hypotheses
+from rga.diagnosis.search.screening import Prospect
+from rga.diagnosis.search.stepwise import FITTED, HOPELESS, RIVAL, Alternative, Found, worth_fitting
 from rga.errors import InputError
+from rga.experiments.defaults import strain_share, usual_truck
+from rga.experiments.truck import lane_of
+from rga.findings.phrases import effect_words
 from rga.model import Effect, Model, read_effect, read_model
 from rga.model.schema import Sensor
 from rga.planning.rivals import NEAREST, rival_pairs
-from rga.planning.truck import lane_of
-from rga.planning.usual import strain_share, usual_truck
 from rga.records import Record
 from rga.twin.simulation_model import mounted
 from safe_words import check

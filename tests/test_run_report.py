@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.benchmark.truth import draw_case
-from rga.diagnosis import findings as contract
-from rga.diagnosis.account import Account
-from rga.diagnosis.findings import Cause, Findings, Unexplained
+from rga.findings import schema as contract
+from rga.findings.arrays import Account
+from rga.findings.schema import Cause, Findings, Unexplained
 from rga.model import Model, read_model
 from rga.records import Record
-from rga.report.gap_map import MOST_CELLS, stretches
-from rga.report.run_gap import MOST_PHASES, phases, smoothed, standardised
-from rga.report.time_axis import spaced, thinned, time_axis
-from rga.report.write import write_report, write_run_report
+from rga.report.figures.gap_map import MOST_CELLS, stretches
+from rga.report.figures.run_gap import MOST_PHASES, phases, smoothed, standardised
+from rga.report.figures.time_axis import spaced, thinned, time_axis
+from rga.report.pages.write import write_report, write_run_report
 from rga.twin.history import Event, History, Version
+from rga_bench.synthetic import draw_case
 
 HOSTILE = "<script>alert('x')</script> $\\frac{a_b}$ & \"q\""
 SPRING = {"kind": "support_spring", "support": "rocker", "dof": "ux", "stiffness": 2.4e7}

@@ -9,10 +9,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rga import Findings, diagnose
-from rga.benchmark.faults import FAULTS
-from rga.benchmark.faults.base import Base, Sound, load
-from rga.benchmark.faults.breaking import broken
-from rga.benchmark.faults.trial import Trial
+from rga_bench.faults import FAULTS
+from rga_bench.faults.base import Base, Sound, load
+from rga_bench.faults.inject import broken
+from rga_bench.faults.trial import Trial
 from safe_words import check
 
 ROWS = 80

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import rga
-from rga.benchmark.challenge.design import Draw
 from rga.errors import InputError
 from rga.model import read_effect, read_model
+from rga_bench.diagnosis.design import Draw
 
 E, AREA, ALPHA = 2e11, 1e-3, 1.2e-5
 

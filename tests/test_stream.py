@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import rga
-from rga.benchmark.truth import STREAM_KINDS, Case, draw_stream
-from rga.benchmark.truth.case_study import SPAN, case_study_bridge
-from rga.benchmark.truth.gauges import observe
-from rga.benchmark.truth.score import d_prime
-from rga.benchmark.truth.sight import Sight
-from rga.benchmark.truth.world import World
 from rga.records import load_record
+from rga_bench.synthetic import STREAM_KINDS, Case, draw_stream
+from rga_bench.synthetic.bridges.case_study import SPAN, case_study_bridge
+from rga_bench.synthetic.gauges import observe
+from rga_bench.synthetic.hidden.observability import Sight
+from rga_bench.synthetic.hidden.score import d_prime
+from rga_bench.synthetic.physics.world import World
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """What is hidden is told as what it is and from when on it acts; its null twin names nothing.
 
-The readings come from physics of their own (rga.benchmark.truth).
+The readings come from physics of their own (rga_bench.synthetic).
 """
 
 import json
@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 
 from rga import Findings
-from rga.benchmark.challenge.design import Draw
-from rga.benchmark.truth import Case, Conditions, draw_case
-from rga.diagnosis.findings import Cause
+from rga.findings.schema import Cause
+from rga_bench.diagnosis.design import Draw
+from rga_bench.synthetic import Case, Conditions, draw_case
 
 Diagnosed = Callable[[Case], Findings]
 

@@ -2,7 +2,7 @@
 
 Most are null records, in which nothing is hidden: what a careless diagnosis makes of chance,
 memory, scatter, errors of the contexts or dynamics shows there as a cause. The readings come from
-physics of their own (rga.benchmark.truth).
+physics of their own (rga_bench.synthetic).
 """
 
 import json
@@ -15,12 +15,12 @@ import polars as pl
 import pytest
 
 from rga import Findings, diagnose, load_model, load_record
-from rga.benchmark.truth import Case, Conditions, draw_case
-from rga.benchmark.truth.gauges import observe
-from rga.benchmark.truth.noise import autoregressive
-from rga.benchmark.truth.world import World
-from rga.diagnosis.hypothesis import Hypothesis, hypotheses
+from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.model import read_model
+from rga_bench.synthetic import Case, Conditions, draw_case
+from rga_bench.synthetic.gauges import observe
+from rga_bench.synthetic.noise import autoregressive
+from rga_bench.synthetic.physics.world import World
 
 Diagnosed = Callable[[Case], Findings]
 #: standard deviations of the noise that are no chance

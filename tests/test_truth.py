@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import rga.benchmark.truth as package
-from rga.benchmark.truth import BRIDGES, KINDS, Case, draw_case
-from rga.benchmark.truth.frame import DOFS
-from rga.benchmark.truth.hidden import HIDDEN, fits
-from rga.benchmark.truth.noise import stream
+import rga_bench.synthetic as package
+from rga_bench.synthetic import BRIDGES, KINDS, Case, draw_case
+from rga_bench.synthetic.hidden.catalogue import HIDDEN, fits
+from rga_bench.synthetic.noise import stream
+from rga_bench.synthetic.physics.frame import DOFS
 
 PAIRS = [
     (bridge, kind)

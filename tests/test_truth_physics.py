@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rga.benchmark.truth import BRIDGES, draw_case
-from rga.benchmark.truth.frame import Frame, Geometry, Solution, Spring, Stiffness
-from rga.benchmark.truth.friction import slide
-from rga.benchmark.truth.gauges import observe
-from rga.benchmark.truth.noise import autoregressive, stream
-from rga.benchmark.truth.response import respond
-from rga.benchmark.truth.score import d_prime
-from rga.benchmark.truth.world import Friction, World
+from rga_bench.synthetic import BRIDGES, draw_case
+from rga_bench.synthetic.gauges import observe
+from rga_bench.synthetic.hidden.score import d_prime
+from rga_bench.synthetic.noise import autoregressive, stream
+from rga_bench.synthetic.physics.frame import Frame, Geometry, Solution, Spring, Stiffness
+from rga_bench.synthetic.physics.friction import slide
+from rga_bench.synthetic.physics.response import respond
+from rga_bench.synthetic.physics.world import Friction, World
 
 E, A, INERTIA, J = 2.0e11, 0.01, 4.0e-5, 1.0e-6
 

@@ -9,15 +9,15 @@ from pydantic import ValidationError
 from rga.errors import InputError
 from rga.model import read_model
 from rga.records import Record
+from rga.twin.calibration.channel_noise import noise_of
+from rga.twin.calibration.expectation import against_expected, scatter_share
 from rga.twin.digital_twin import DigitalTwin, State, follow
-from rga.twin.expectation import against_expected, scatter_share
-from rga.twin.hardware import HardwareInterface, Station
-from rga.twin.integration import novel, spacing
-from rga.twin.ledger import Ledger
-from rga.twin.messages import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
-from rga.twin.noise import noise_of
+from rga.twin.messages.hardware import HardwareInterface, Station
+from rga.twin.messages.queries import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
+from rga.twin.novelty import novel, spacing
+from rga.twin.row_buffer import Ledger
 from rga.twin.settings import Settings
-from rga.twin.window_rule import WindowRule
+from rga.twin.sync.window_rule import WindowRule
 
 
 def record(model: dict[str, Any], rows: int = 5, **more: Any) -> Record:

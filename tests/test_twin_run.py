@@ -17,9 +17,9 @@ import rga
 from rga.cli import main
 from rga.errors import InputError
 from rga.twin import Outcome, Settings, rollback
-from rga.twin.recall import log_of
 from rga.twin.repository import Repository
-from rga.twin.running import Running
+from rga.twin.restore import log_of
+from rga.twin.runner import Running
 
 Stream = Callable[..., Path]
 #: `RGA_TEST_KILLS=200` makes the test of killed runs as long as the acceptance wants it
@@ -204,7 +204,9 @@ def test_killed_at_random_it_loses_nothing_and_ends_the_same(
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
     # Processes begin as copies of one that has all modules: a kill meets the run at its work.
     context = get_context("forkserver")
-    context.set_forkserver_preload([main.__module__, Running.__module__, "rga.inference.training"])
+    context.set_forkserver_preload(
+        [main.__module__, Running.__module__, "rga.inference.networks.training"]
+    )
     draw = random.Random(5)
     command = ["run", stream / "model.json", stream / "record.csv"]
     command += ["--settings", stream / "settings.json", "-o"]

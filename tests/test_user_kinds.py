@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rga import Effect, Simulator
-from rga.diagnosis.hypothesis import hypotheses
+from rga.diagnosis.search.hypothesis import hypotheses
 from rga.model import Model, read_model
 from rga.model.parameter import Factor, Parameter, Place, Prior, Value
 from rga.model.structure import Structure

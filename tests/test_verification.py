@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from rga.benchmark.verification import verify_case
+from rga.simulation.verification import verify_case
 
 FOLDER = Path(__file__).resolve().parents[2] / "shared" / "verification"
 CASES = sorted(FOLDER.glob("*.json"))

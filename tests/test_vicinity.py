@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.diagnosis.hypothesis import hypotheses
+from rga.diagnosis.search.hypothesis import hypotheses
 from rga.model import Model, read_effect, read_model
 from rga.model.effect import Effect
 from rga.simulation import Simulator
-from rga.simulation.vicinity import Vicinity
+from rga.simulation.perturbation.trials import Vicinity
 
 ROWS = 40
 #: tried of every kind

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 from rga import Findings, Simulator, diagnose, load_model, load_record
-from rga.benchmark.truth import Case, Conditions, draw_case
-from rga.diagnosis.data import Data
-from rga.diagnosis.heldout import held_out_rows
-from rga.diagnosis.hypothesis import Hypothesis, hypotheses
-from rga.diagnosis.prepare import prepare
-from rga.diagnosis.problem import pose
-from rga.diagnosis.screening import Judged
-from rga.diagnosis.signatures import Block, signature
+from rga.diagnosis.data.held_out import held_out_rows
+from rga.diagnosis.data.observations import Data
+from rga.diagnosis.preparation.prepare import prepare
+from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
+from rga.diagnosis.search.linearised import pose
+from rga.diagnosis.search.screening import Judged
+from rga.diagnosis.search.signatures import Block, signature
 from rga.model import read_effect, read_model
 from rga.records import Record, RecordMapping
 from rga.records.zero import rows_within
+from rga_bench.synthetic import Case, Conditions, draw_case
 from safe_words import check
 
 ROWS, LATE = 120, 72

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rga.diagnosis import Findings, diagnose
-    from rga.diagnosis.many import diagnose_many
-    from rga.diagnosis.reading import load_findings
+    from rga.findings.io import load_findings
+    from rga.jobs.batch import diagnose_many
     from rga.model import Effect, Model, load_model
     from rga.planning.planner import plan
     from rga.planning.result import Plan
@@ -27,8 +27,8 @@ _DOORS = {
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
-    "diagnose_many": "rga.diagnosis.many",
-    "load_findings": "rga.diagnosis.reading",
+    "diagnose_many": "rga.jobs.batch",
+    "load_findings": "rga.findings.io",
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",

@@ -2,12 +2,12 @@
 
 import sys
 from collections.abc import Sequence
+from importlib.metadata import entry_points
 from typing import Annotated
 
 import typer
 
 from rga import __version__
-from rga.cli.benchmark import benchmark
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
@@ -32,7 +32,9 @@ for command in (
     doctor,
 ):  # fmt: skip
     app.command()(command)
-app.add_typer(benchmark, name="benchmark")
+# Other packages, as the benchmarks in this wheel, add commands of their own.
+for plugin in entry_points(group="rga.commands"):
+    app.add_typer(plugin.load(), name=plugin.name)
 
 
 def _show_version(wanted: bool) -> None:

@@ -9,7 +9,7 @@ from rga.cli.options import DaskAddress, JsonTarget, OutputDirectory, Seed, Work
 from rga.errors import InputError
 
 if TYPE_CHECKING:
-    from rga.diagnosis.many import Summary
+    from rga.jobs.batch import Summary
 
 ListFile = Annotated[
     Path,
@@ -33,8 +33,8 @@ def diagnose_many(
 
     from rga.cli.output import write_json
     from rga.cli.progress import shown_progress
-    from rga.diagnosis.many import SUMMARY
-    from rga.diagnosis.many import diagnose_many as diagnose
+    from rga.jobs.batch import SUMMARY
+    from rga.jobs.batch import diagnose_many as diagnose
 
     with shown_progress() as progress:
         summaries = diagnose(

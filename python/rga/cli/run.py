@@ -12,7 +12,7 @@ from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory,
 if TYPE_CHECKING:
     from rga.cli.progress import Shown
     from rga.twin import Event
-    from rga.twin.running import Running
+    from rga.twin.runner import Running
 
 Level = Annotated[
     str | None,

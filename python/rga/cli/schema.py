@@ -31,7 +31,7 @@ def schema(
 
         content = record_schema()
     else:
-        from rga.diagnosis.findings import Findings
+        from rga.findings.schema import Findings
 
         content = Findings.model_json_schema()
     write_json(content, json or "-")

@@ -16,8 +16,8 @@ def verify(cases: Cases, json: JsonTarget = None) -> None:
     from dataclasses import asdict
     from math import isfinite
 
-    from rga.benchmark.verification import verify_folder
     from rga.cli.output import write_json
+    from rga.simulation.verification import verify_folder
 
     if not any(cases.glob("*.json")):
         raise InputError("there are no cases", str(cases), "name a folder of case files (.json)")

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from rga import _core
 from rga.detection.alarm import Alarm, explain
-from rga.detection.calibration import Calibration, calibration, memory_of, simulated_memory
-from rga.detection.doubts import doubts
-from rga.detection.reference import Reference, unwatched
+from rga.detection.assumption_checks import doubts
+from rga.detection.baseline.baseline_model import Reference, unwatched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
+from rga.detection.thresholds import Calibration, calibration, memory_of, simulated_memory
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 

@@ -4,14 +4,14 @@ from contextlib import suppress
 
 import numpy as np
 
-from rga.diagnosis.data import Data
-from rga.diagnosis.search import RIVAL
+from rga.diagnosis.data.observations import Data
+from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
-from rga.model.schema import Model
-from rga.planning.candidates import added_sensors, settings, stands
-from rga.planning.explanation import Explanation
-from rga.planning.separation import (
+from rga.experiments.candidates import added_sensors, settings, stands
+from rga.experiments.defaults import usual_truck
+from rga.experiments.explanation import Explanation
+from rga.experiments.measurement_model import Site
+from rga.experiments.separation import (
     LIKELY,
     Pair,
     nothing,
@@ -21,9 +21,9 @@ from rga.planning.separation import (
     whitened_apart,
     with_one_more,
 )
-from rga.planning.site import Site
-from rga.planning.truck import lane_of
-from rga.planning.usual import usual_truck
+from rga.experiments.truck import lane_of
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
 
 #: rows of the record that stand for operation, and places at which a truck may stand
 ROWS, STANDS = 12, 9

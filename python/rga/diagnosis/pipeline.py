@@ -6,26 +6,29 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis import leftover, tell
-from rga.diagnosis.account import Account
-from rga.diagnosis.bends import bends, with_free_slopes
-from rga.diagnosis.curves import curves, free_channels
-from rga.diagnosis.data import Data
-from rga.diagnosis.explanations import Tried, compare, sensor_groups
-from rga.diagnosis.findings import Findings
-from rga.diagnosis.heldout import held_out_rows
-from rga.diagnosis.hypothesis import hypotheses
-from rga.diagnosis.lack_of_fit import misfits
-from rga.diagnosis.own_response import own_response
-from rga.diagnosis.prepare import Prepared, prepare
-from rga.diagnosis.problem import Problem
-from rga.diagnosis.robustness import (
+from rga.diagnosis import assemble
+from rga.diagnosis.checks.explanations import Tried, compare, sensor_groups
+from rga.diagnosis.checks.own_response import own_response
+from rga.diagnosis.checks.robustness import (
     with_better_prediction,
     with_hanging_leads,
     without_unhelpful,
 )
-from rga.diagnosis.screening import Screening
-from rga.diagnosis.search import (
+from rga.diagnosis.checks.support import supported
+from rga.diagnosis.checks.whole_record import WholeRecord
+from rga.diagnosis.data.held_out import held_out_rows
+from rga.diagnosis.data.observations import Data
+from rga.diagnosis.optional import spared
+from rga.diagnosis.preparation.prepare import Prepared, prepare
+from rga.diagnosis.residuals import patterns
+from rga.diagnosis.residuals.curvature import curves, free_channels
+from rga.diagnosis.residuals.lack_of_fit import misfits
+from rga.diagnosis.residuals.slopes import bends, with_free_slopes
+from rga.diagnosis.residuals.stated_noise import beyond_stated
+from rga.diagnosis.search.hypothesis import hypotheses
+from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.search.screening import Screening
+from rga.diagnosis.search.stepwise import (
     Found,
     search,
     settled,
@@ -33,11 +36,9 @@ from rga.diagnosis.search import (
     weighed,
     without_needless,
 )
-from rga.diagnosis.spared import spared
-from rga.diagnosis.stated_noise import beyond_stated
-from rga.diagnosis.support import supported
 from rga.diagnosis.verdict import doubts_of, verdict
-from rga.diagnosis.whole_record import WholeRecord
+from rga.findings.arrays import Account
+from rga.findings.schema import Findings
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
@@ -103,16 +104,16 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         failed,
     )
 
-    effects = tell.effects_of(found, prepared.record)
-    faults = {fault: tell.fault_effect(fault, prepared.record) for fault in prepared.faults}
-    named = {tell.cause_name(model, effect): effect for effect in effects}
+    effects = assemble.effects_of(found, prepared.record)
+    faults = {fault: assemble.fault_effect(fault, prepared.record) for fault in prepared.faults}
+    named = {assemble.cause_name(model, effect): effect for effect in effects}
     broken = {f"fault of {fault.sensor}": effect for fault, effect in faults.items()}
     extended = model.extended({**named, **broken})
     before, believed = whole.simulated(start), whole.believed(found.problem)
     after = whole.at_zero(found.problem, believed.predict(Simulator(extended.without_zeros())))
     gained = whole.gain(before, after, found.fit.hypotheses, seed)
     account = _account(model, extended, prepared, whole, believed, (before, after), found)
-    share = leftover.share_left(found.problem)
+    share = patterns.share_left(found.problem)
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
     doubts = doubts_of(record.sensors, prepared.faults, found, dropped, off, gained)
@@ -122,28 +123,28 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     )
     pattern = spared(
         "what the structure that is left goes with",
-        lambda: leftover.in_words(found.problem, leftover.known_contexts(found.problem, measured)),
+        lambda: patterns.in_words(found.problem, patterns.known_contexts(found.problem, measured)),
         "not known",
         failed,
     )
     findings = Findings(
         verdict=verdict(found, bool(prepared.faults), structure),
-        gap=tell.gap(account, gained),
+        gap=assemble.gap(account, gained),
         causes=[
-            *(tell.fault_cause(fault, effect) for fault, effect in faults.items()),
-            *tell.causes(found, effects, prepared.record, failed),
+            *(assemble.fault_cause(fault, effect) for fault, effect in faults.items()),
+            *assemble.causes(found, effects, prepared.record, failed),
         ],
-        unidentifiable=tell.unidentifiable(screening.first),
+        unidentifiable=assemble.unidentifiable(screening.first),
         unexplained={"share": share, "looks_like": "; ".join([*doubts, pattern])},
-        explanations=tell.explanations(tried, found, prepared.record),
-        groups=tell.groups(account, grouped),
-        contexts=tell.contexts(found.problem, model),
+        explanations=assemble.explanations(tried, found, prepared.record),
+        groups=assemble.groups(account, grouped),
+        contexts=assemble.contexts(found.problem, model),
         warnings=[*prepared.warnings, *(one.words for one in off if one.alone), *failed],
         misfits=list(dict.fromkeys(name for one in off for name in one.channels)),
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,
-        versions=tell.versions(),
+        versions=assemble.versions(),
     )
     findings._account = account
     progress("done", 1.0)
@@ -156,7 +157,7 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     A cause that was named only because it resembles a pattern of unknown origin falls here, and
     one that does not help channels which were not fitted.
     """
-    problem = leftover.with_leftovers(found.problem)
+    problem = patterns.with_leftovers(found.problem)
     doubtful = problem is not found.problem
     if doubtful:
         found = weighed(problem, found.base, found.fit, screening, progress)

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rga.diagnosis.channel_faults import Fault
-from rga.diagnosis.findings import Verdict
-from rga.diagnosis.heldout import Gain
-from rga.diagnosis.hypothesis import Hypothesis
-from rga.diagnosis.lack_of_fit import IMPLAUSIBLE, NEAR_ONE, PLAUSIBLE, Misfit
-from rga.diagnosis.search import RIVAL, Found
-from rga.diagnosis.words import place_words
+from rga.diagnosis.data.held_out import Gain
+from rga.diagnosis.preparation.single_channel import Fault
+from rga.diagnosis.residuals.lack_of_fit import IMPLAUSIBLE, NEAR_ONE, PLAUSIBLE, Misfit
+from rga.diagnosis.search.hypothesis import Hypothesis
+from rga.diagnosis.search.stepwise import RIVAL, Found
+from rga.findings.phrases import place_words
+from rga.findings.schema import Verdict
 
 #: misfits that are told in words
 MOST_MISFITS = 5

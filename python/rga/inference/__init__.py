@@ -1,13 +1,13 @@
 """Context inference: from sensor readings to the contexts that nothing measured."""
 
-from rga.inference.joint import Joint, infer_jointly
-from rga.inference.network import ContextNetwork
-from rga.inference.posterior_mode import Mode, posterior_mode
+from rga.inference.joint.infer import Joint, infer_jointly
+from rga.inference.joint.structural_parameters import Unknowns
+from rga.inference.map.posterior_mode import Mode, posterior_mode
+from rga.inference.networks.context_network import ContextNetwork
+from rga.inference.networks.dataset import Samples
+from rga.inference.networks.settings import TrainingSettings
+from rga.inference.networks.training import train
 from rga.inference.rows import Rows
-from rga.inference.samples import Samples
-from rga.inference.settings import TrainingSettings
-from rga.inference.training import train
-from rga.inference.unknowns import Unknowns
 from rga.inference.variables import Variables
 
 __all__ = [

@@ -2,7 +2,7 @@
 
 from rga.model import effects as effects
 from rga.model.effect import Effect
-from rga.model.load import load_model, model_content, read_model, write_model
+from rga.model.io import load_model, model_content, read_model, write_model
 from rga.model.schema import ContextVariable, Model, Sensor, model_schema, read_effect
 
 __all__ = [

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from rga.diagnosis.findings import Findings
-from rga.planning.candidates import Added, LoadTest
-from rga.planning.truck import Truck
+from rga.experiments.candidates import Added, LoadTest
+from rga.experiments.truck import Truck
+from rga.findings.schema import Findings
 
 
 def advised(

@@ -7,31 +7,31 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis import scatter
-from rga.diagnosis.findings import Findings
-from rga.diagnosis.reading import findings_sha256
-from rga.diagnosis.search import RIVAL
-from rga.diagnosis.tell import versions
+from rga.diagnosis.assemble import versions
+from rga.diagnosis.noise import random_effects
+from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
+from rga.experiments.candidates import LoadTest, added_sensors, settings, stands
+from rga.experiments.defaults import strain_share, usual_operation, usual_truck
+from rga.experiments.explanation import Explanation
+from rga.experiments.measurement_model import Errors, Site
+from rga.experiments.separation import LIKELY, Pair, paired, success
+from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
+from rga.findings.io import findings_sha256
+from rga.findings.schema import Findings
 from rga.model import Model
 from rga.model.parameter import FloatArray
 from rga.planning.advised import advised
-from rga.planning.candidates import LoadTest, added_sensors, settings, stands
-from rga.planning.check import Checked, checked
-from rga.planning.choice import Choice, Chooser
-from rga.planning.explanation import Explanation
+from rga.planning.monte_carlo import Checked, checked
+from rga.planning.predictions import planned_sensor, planned_test
 from rga.planning.result import Advised, Plan, PlannedTruck, Separation, Simulated
 from rga.planning.rivals import rival_pairs, working_sensors
-from rga.planning.separation import LIKELY, Pair, paired, success
-from rga.planning.site import Errors, Site
-from rga.planning.telling import planned_sensor, planned_test
-from rga.planning.truck import Lane, Truck, given_lane, lane_of, read_truck
-from rga.planning.usual import strain_share, usual_operation, usual_truck
+from rga.planning.selection import Choice, Chooser
 from rga.simulation import Simulator
 
 SENSORS, POSITIONS = 2, 3
 #: as-built scatter that is reckoned with: a deviation above what a diagnosis expects [-]
-LEVELS = np.array([level.median * np.exp(level.spread) for level in scatter.LEVELS])
+LEVELS = np.array([level.median * np.exp(level.spread) for level in random_effects.LEVELS])
 #: a truck that strains the structure so much more than its loads is told
 HEAVY = 1.1
 Progress = Callable[[str, float], None]

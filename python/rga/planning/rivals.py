@@ -6,11 +6,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from rga.diagnosis.findings import Cause, Findings
-from rga.diagnosis.words import effect_words
 from rga.errors import InputError
+from rga.experiments.explanation import Explanation, explanation
+from rga.findings.phrases import effect_words
+from rga.findings.schema import Cause, Findings
 from rga.model import Effect, Model, read_effect
-from rga.planning.explanation import Explanation, explanation
 
 #: rivals of a cause that are told apart, and alternatives against which one without is confirmed
 NEAREST = 4

@@ -17,8 +17,8 @@ from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
 from rga.model import Model
+from rga.parallel import finished
 from rga.simulation.simulator import Simulator
-from rga.workers import finished
 
 #: rows of a part: a power of two keeps the sequence of the contexts balanced
 CHUNK = 16_384

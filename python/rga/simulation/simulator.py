@@ -14,11 +14,11 @@ from rga.model.parameter import FloatArray
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import IntArray, Load, Structure, build_structure
-from rga.simulation.plan import Plan, Prepared, Request, answer
-from rga.simulation.sensitivity import jacobian, pull_back
+from rga.simulation.derivatives.forward import jacobian, pull_back
+from rga.simulation.dispatch import Plan, Prepared, Request, answer
 
 if TYPE_CHECKING:
-    from rga.simulation.differentiable import DifferentiableSimulator
+    from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ class Simulator:
             time: clock of the rows [s], float[rows], where the model needs one.
         """
         # Torch is heavy, and most uses of a simulator do without it.
-        from rga.simulation.differentiable import DifferentiableSimulator
+        from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
 
         return DifferentiableSimulator(self, None if time is None else np.asarray(time, float))
 

@@ -13,16 +13,16 @@ import numpy as np
 from rga.diagnosis import Findings
 from rga.model.parameter import FloatArray
 from rga.twin.archive import Archive
-from rga.twin.calibration import Calibration
-from rga.twin.exchange import QueryResponse
-from rga.twin.hardware import Station
+from rga.twin.calibration.capture import Calibration
 from rga.twin.history import Event, Kind
-from rga.twin.integration import novel, spacing
-from rga.twin.messages import Q1, R1
-from rga.twin.policy import Policy
+from rga.twin.messages.hardware import Station
+from rga.twin.messages.queries import Q1, R1
+from rga.twin.messages.query_bus import QueryResponse
+from rga.twin.novelty import novel, spacing
+from rga.twin.run_state import Standing
 from rga.twin.settings import Pace, Settings
-from rga.twin.standing import Standing
-from rga.twin.synchrony import synchrony
+from rga.twin.sync.policy import Policy
+from rga.twin.sync.protocol import synchrony
 
 Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version

@@ -9,11 +9,11 @@ import numpy as np
 
 from rga.model import Model
 from rga.model.parameter import FloatArray
-from rga.twin.hardware import Packet
 from rga.twin.history import Event
-from rga.twin.ledger import Ledger
-from rga.twin.messages import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256
+from rga.twin.messages.hardware import Packet
+from rga.twin.messages.queries import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256
 from rga.twin.repository import Run, Step
+from rga.twin.row_buffer import Ledger
 from rga.twin.simulation_model import SimulationModel
 from rga.twin.versions import extended, written
 

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rga.diagnosis import Findings
-from rga.diagnosis.prepare import check_length
+from rga.diagnosis.preparation.prepare import check_length
 from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record
 from rga.twin.history import History
-from rga.twin.running import Progress, Running, taken_up
+from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings
 
 FILE = "twin.sqlite"

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from rga.inference.settings import TrainingSettings
+from rga.inference.networks.settings import TrainingSettings
 
 Level = Literal["A", "B", "C"]
 PolicyName = Literal["event", "time", "hybrid", "adaptive"]

@@ -12,10 +12,12 @@ from rga.model import Effect, Model
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.archive import Archive
 from rga.twin.digital_twin import DigitalTwin, State
-from rga.twin.exchange import QueryResponse
 from rga.twin.history import Event, History
-from rga.twin.messages import Q1
-from rga.twin.recall import (
+from rga.twin.messages.log_text import retold
+from rga.twin.messages.queries import Q1
+from rga.twin.messages.query_bus import QueryResponse
+from rga.twin.repository import Repository, View
+from rga.twin.restore import (
     given_model,
     history_of,
     record_of,
@@ -24,8 +26,6 @@ from rga.twin.recall import (
     station_of,
     story_of,
 )
-from rga.twin.repository import Repository, View
-from rga.twin.retelling import retold
 from rga.twin.versions import extended
 
 

@@ -1,5 +1,0 @@
-"""The blind challenge: effects hidden by seed, each beside its null twin, diagnosed and scored.
-
-The cases come from `rga.benchmark.truth`, which shares no code with the simulator: reality is a
-truss or a frame with scatter in every member, gains in every channel and coloured noise.
-"""

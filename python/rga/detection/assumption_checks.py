@@ -1,0 +1,67 @@
+"""Reasons why false alarms may come more often than they should."""
+
+import numpy as np
+
+from rga.detection.baseline.baseline_model import Reference, after_prediction
+from rga.detection.baseline.decorrelation import repeating
+from rga.detection.baseline.stationarity import changed
+from rga.detection.thresholds import MEMORIES, WITHIN, Calibration, memory_of
+from rga.model.parameter import FloatArray
+
+#: a baseline that chance makes so changeable less often is doubted
+DOUBTED = 0.01
+#: part of a sensor's readings that may be one and the same
+SAME = 0.6
+
+
+def doubts(
+    reference: Reference, baseline: FloatArray, simulated: Calibration, columns: list[int]
+) -> tuple[str, ...]:
+    """What speaks against the promise about false alarms, in words.
+
+    Args:
+        reference: that was learned from the baseline.
+        baseline: float[rows, sensors], NaN where missing.
+        simulated: what thresholds are made of.
+        columns: of the sensors, as the user counts them.
+    """
+    found = []
+    if memory_of(reference.weights) > MEMORIES[-1] + WITHIN:
+        found.append(
+            "the readings wander: they go with the ones before almost entirely, more than "
+            "thresholds allow for; watch what they differ by from one row to the next"
+        )
+    if changed(reference, baseline, simulated) < DOUBTED:
+        found.append(
+            "the baseline changes by itself more than its memory explains: false alarms will come "
+            "more often; take a longer one, or one during which nothing changes"
+        )
+    same = [
+        column for column, readings in zip(columns, baseline.T, strict=True) if coarse(readings)
+    ]
+    if same:
+        found.append(
+            f"{named(same)} mostly one value: with steps so coarse false alarms may come more often"
+        )
+    innovations = after_prediction(baseline - reference.level, reference.weights)
+    copies = [columns[one] for one in repeating(reference.bent(innovations))]
+    if copies:
+        found.append(
+            f"{named(copies)} nearly what others of them read: false alarms will come more often; "
+            "leave some of them out"
+        )
+    return tuple(found)
+
+
+def coarse(readings: FloatArray) -> bool:
+    """Whether most readings of a sensor, float[rows], are one and the same."""
+    known = readings[np.isfinite(readings)]
+    _, counts = np.unique(known, return_counts=True)
+    return bool(counts.max(initial=0) > SAME * len(known))
+
+
+def named(sensors: list[int]) -> str:
+    """Sensors as the subject of a sentence about what they read."""
+    if len(sensors) == 1:
+        return f"sensor {sensors[0]} reads"
+    return f"sensors {', '.join(map(str, sensors))} read"

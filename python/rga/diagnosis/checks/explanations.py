@@ -1,0 +1,211 @@
+"""Explanations compared: alone and together, on the channels fitted and on channels left out.
+
+Free gains on every channel fit better than most causes and explain nothing. What explains must
+also hold for channels that were not fitted: whole groups of them are left out in turn.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from rga.diagnosis.noise.covariance import Covariance
+from rga.diagnosis.noise.row_covariance import RowCovariance
+from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
+from rga.diagnosis.search.laplace import Fit, fit, refit
+from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.search.screening import Prospect, Screening
+from rga.diagnosis.search.stepwise import Found, evidence
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.simulation import Simulator
+
+KINDS = {True: 14, False: 5}
+PARTNERS = 4
+#: log evidence below which a fit has gone astray: no effect at all is this much likelier
+POOR = -15.0
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An explanation as it came out.
+
+    Attributes:
+        fit: its hypotheses with their parameters; None for a free gain on every channel.
+        gap: mean squared residual over variance on the fitted rows.
+        gap_unseen: the same on groups of channels that were left out in turn.
+    """
+
+    fit: Fit | None
+    gap: float
+    gap_unseen: float
+
+
+def sensor_groups(model: Model, sensors: Sequence[str]) -> dict[str, list[str]]:
+    """Groups of like sensors: their own group, else kind and first group of the member."""
+    groups: dict[str, list[str]] = {}
+    for name in sensors:
+        sensor = model.sensors[name]
+        of = model.members[sensor.member].groups if sensor.member is not None else []
+        word = sensor.groups[0] if sensor.groups else " ".join([sensor.kind, *of[:1]])
+        groups.setdefault(word, []).append(name)
+    return groups
+
+
+def compare(
+    found: Found, prospects: Sequence[Prospect], progress: Callable[[float], None]
+) -> list[Tried]:
+    """The best of every kind alone, the causes found, and the causes with others beside them.
+
+    Args:
+        found: the search's end.
+        prospects: of the first screening, the best first.
+        progress: told the share that is done.
+    """
+    problem, base = found.problem, found.base
+    causes = found.fit
+    chosen: list[tuple[list[Hypothesis], list[float]]] = [([], [])]
+    best = _best_of_kinds(prospects)[: KINDS[bool(causes.hypotheses)]]
+    chosen += [([p.hypothesis], list(p.z)) for p in best]
+    for number, cause in enumerate(causes.hypotheses):
+        z = causes.z[causes.slices()[number]]
+        chosen.append(([cause], list(z)))
+        chosen += [
+            ([alternative.hypothesis], list(alternative.fit.z[alternative.fit.slices()[-1]]))
+            for alternative in found.alternatives[number][:PARTNERS]
+        ]
+    if causes.hypotheses:
+        chosen.append((list(causes.hypotheses), list(causes.z)))
+        taken = {one.kind for one in causes.hypotheses}
+        partners = [p for p in best if p.hypothesis.kind not in taken]
+        chosen += [
+            ([*causes.hypotheses, p.hypothesis], [*causes.z, *p.z]) for p in partners[:PARTNERS]
+        ]
+        chosen += _off_axis(problem, base, best)
+    tried = []
+    for number, (together, start) in enumerate(_each_once(chosen)):
+        first = together[: len(causes.hypotheses)]
+        more = len(together) > len(first) and first == list(causes.hypotheses)
+        one = fit(problem, base, together, start, beside=causes if more else None)
+        if len(together) == 1 and one.log_evidence < POOR:
+            # The signature of a kind that slips or opens misleads: begin from every trial value.
+            trials = product(*(prior.trials for prior in together[0].priors.values()))
+            one = max((fit(problem, base, together, z) for z in trials), key=evidence)
+        tried.append(
+            Tried(
+                one,
+                _gap(problem, one.simulated),
+                unseen_gap(problem, base, one),
+            )
+        )
+        progress((number + 1) / len(chosen))
+    gained = _free_gains(problem, tried[0])
+    return [*tried, Tried(None, _gap(problem, gained), tried[0].gap_unseen)]
+
+
+def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
+    """The same problem with some channels unseen; it is kept."""
+    key = tuple(sensors)
+    if key not in problem.hiding:
+        problem.hiding[key] = _hiding(problem, key)
+    return problem.hiding[key]
+
+
+def _hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
+    data = problem.data.without(set(sensors))
+    old = problem.covariance
+    jacobian = np.where(data.observed[:, :, None], old.rows.context_jacobian, 0.0)
+    rows = RowCovariance(problem.noise, data.time, data.observed, jacobian)
+    return replace(problem, data=data, covariance=Covariance(rows, old.scatter, old.spread))
+
+
+def variance(problem: Problem) -> FloatArray:
+    """Variance of each reading about a faultless simulation, float[rows, sensors].
+
+    Noise, that of the logger's zero too, and the errors of the contexts that were measured.
+    """
+    belief = problem.data.belief
+    measured = [k for k, name in enumerate(belief.spread) if name not in belief.latent]
+    jacobian = problem.covariance.rows.context_jacobian[:, :, measured]
+    contexts = (jacobian**2) @ problem.noise.context_sigma[measured] ** 2
+    return np.asarray(problem.noise.deviation**2 + problem.zero_variance + contexts)
+
+
+def _off_axis(
+    problem: Problem, base: Simulator, best: Sequence[Prospect]
+) -> list[tuple[list[Hypothesis], list[float]]]:
+    """Stiff joints, with the gauge off the axis of its member that then explains most."""
+    stiff = [p for p in best if p.hypothesis.name == "joint_rigidity"]
+    found = []
+    for prospect in stiff:
+        bent = base.extended({"stiff joints": prospect.hypothesis.effect(prospect.z)})
+        gauges = [
+            one
+            for one in hypotheses(bent.model, problem.data.sensors, ())
+            if one.name == "gauge_position"
+        ]
+        gauge = Screening(problem, bent, gauges).first[:1]
+        found += [([prospect.hypothesis, one.hypothesis], [*prospect.z, *one.z]) for one in gauge]
+    return found
+
+
+def _gap(problem: Problem, simulated: FloatArray) -> float:
+    square = problem.whole_residual(simulated) ** 2 / variance(problem)
+    return float(square[problem.data.observed].mean())
+
+
+def unseen_gap(problem: Problem, base: Simulator, one: Fit) -> float:
+    """Gap on groups of channels, each left out of the fit in turn; nan where there is one group.
+
+    Args:
+        problem: with all channels.
+        base: the simulator without causes.
+        one: the explanation, as fitted to all channels.
+    """
+    groups = sensor_groups(base.model, problem.data.sensors)
+    if len(groups) < 2:
+        return float("nan")
+    squares = []
+    for names in groups.values():
+        columns = [problem.data.sensors.index(name) for name in names]
+        part = refit(hiding(problem, names), base, one)
+        square = problem.whole_residual(part.simulated) ** 2 / variance(problem)
+        squares.append(square[:, columns][problem.data.observed[:, columns]])
+    return float(np.concatenate(squares).mean())
+
+
+def _free_gains(problem: Problem, nothing: Tried) -> FloatArray:
+    assert nothing.fit is not None  # the explanation by nothing is a fit of no hypotheses
+    simulated = nothing.fit.simulated
+    seen = problem.data.observed
+    target = np.where(seen, problem.data.readings - problem.shift, 0.0)
+    own = np.where(seen, simulated, 0.0)
+    gains = (target * own).sum(0) / np.maximum((own**2).sum(0), 1e-300)
+    return np.asarray(simulated * gains)
+
+
+def _best_of_kinds(prospects: Sequence[Prospect]) -> list[Prospect]:
+    best: dict[str, Prospect] = {}
+    for prospect in prospects:
+        if prospect.hypothesis.onset is None and np.isfinite(prospect.score):
+            best.setdefault(prospect.hypothesis.name, prospect)
+    return list(best.values())
+
+
+def _each_once(
+    chosen: Sequence[tuple[list[Hypothesis], list[float]]],
+) -> list[tuple[list[Hypothesis], list[float]]]:
+    kept: list[tuple[list[Hypothesis], list[float]]] = []
+    for together, z in chosen:
+        same = any(
+            len(others) == len(together)
+            and all(
+                a.same_place(b) and a.onset == b.onset
+                for a, b in zip(together, others, strict=True)
+            )
+            for others, _ in kept
+        )
+        if not same:
+            kept.append((together, z))
+    return kept

@@ -1,0 +1,75 @@
+"""A channel that answers the loads in a way of its own.
+
+A wire that picks up another channel, or a gauge that reads more than its member, answers the loads
+linearly, as a structure does, and alone among the channels. Causes of the structure may be bent to
+look like that. So a channel whose responses are free is held against all causes of the structure
+together: by the marginal likelihood, which charges for every response that is free.
+"""
+
+from math import ceil
+
+import numpy as np
+
+from rga.diagnosis.preparation.single_channel import Fault
+from rga.diagnosis.search.laplace import fit
+from rga.diagnosis.search.stepwise import NAMED, Found
+from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray
+
+#: spread of the response of a channel to a load pattern, where it is free [its own size]
+FREE = 0.3
+#: channels below which one cannot be told from what the others have in common
+FEWEST = 4
+
+
+def own_response(found: Found) -> Fault | None:
+    """A channel that is likelier to have a response of its own than causes are to act.
+
+    Args:
+        found: the end of a search.
+
+    Returns:
+        None where the causes of the structure are likelier, or where there are none.
+    """
+    problem, causes = found.problem, found.fit.hypotheses
+    kept = [k for k, one in enumerate(causes) if one.kind.at_sensors()]
+    if len(kept) == len(causes):
+        return None
+    slices = found.fit.slices()
+    start = np.concatenate([np.zeros(0), *(found.fit.z[slices[k]] for k in kept)])
+    without = fit(problem, found.base, [causes[k] for k in kept], start)
+    needed = found.fit.log_evidence - without.log_evidence
+
+    residual = problem.residual(without.simulated)
+    names, covariance, channel = problem.data.sensors, problem.covariance, problem.scatter.channel
+    gained = _gained(*covariance.posterior(residual), covariance.spread, channel)
+    best = int(np.argmax(gained))
+    odds = float(gained[best] - np.log(2 * len(names) * causes[0].kinds))
+    if len(names) < FEWEST or odds < max(NAMED, needed):
+        return None
+    why = (
+        "it answers the loads in a way of its own, which is likelier than causes that would move "
+        "other channels too"
+    )
+    return Fault(names[best], "erratic", why, ceil(odds / NAMED))
+
+
+def _gained(
+    mean: FloatArray, covariance: FloatArray, spread: FloatArray, channel: IntArray
+) -> FloatArray:
+    """Log likelihood that each channel gains where its responses are free, float[channels].
+
+    The prior precision of a block of random effects changes by a diagonal D. With m and H their
+    posterior mean and covariance, the log likelihood changes by
+    -1/2 (m' D (I + H D)^-1 m + log det(I + H D)) - log(new spread / old spread), by Woodbury's
+    identity and the lemma of matrix determinants.
+    """
+    found = np.zeros(channel.max(initial=-1) + 1)
+    for number in range(len(found)):
+        block = np.flatnonzero(channel == number)
+        change = FREE**-2.0 - spread[block] ** -2.0
+        inner = np.eye(len(block)) + covariance[np.ix_(block, block)] * change
+        fitted = float((mean[block] * change) @ np.linalg.solve(inner, mean[block]))
+        freedom = float(np.linalg.slogdet(inner)[1])
+        found[number] = -0.5 * (fitted + freedom) - float(np.log(FREE / spread[block]).sum())
+    return found

@@ -1,0 +1,101 @@
+"""Causes that readings speak for which were not fitted: rows that no step saw, channels left out.
+
+Evidence is only as good as the noise and the freedom that it assumes. A cause of the structure
+stays where it brings the model closer to held-out rows, by an interval that leaves zero out, and
+where channels left out of the fit get no worse by it. Channels are left out in groups. That the
+others tell a parameter badly, and miss a group by chance, is no harm: a larger gap counts where
+the readings of a group are less likely, as the others predict them. A cause at a sensor, which
+harms nobody else, stays where held-out rows do not speak against it, or where it is twice as sure.
+"""
+
+from collections.abc import Callable
+
+from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
+from rga.diagnosis.checks.whole_record import WholeRecord, about
+from rga.diagnosis.search.hypothesis import Hypothesis
+from rga.diagnosis.search.laplace import Fit, refit
+from rga.diagnosis.search.stepwise import NAMED, Found, settled_with, without_cause
+
+#: log-odds at which a cause at a sensor stands against held-out rows, in those of a name. These
+#: rows are few: chance turns them against a true cause that is barely sure, hardly a sure one
+TWICE = 2.0
+#: log-odds by which a group of channels must speak against a cause: a hundred to one
+AGAINST = 4.6
+#: gap on channels left out over that without a cause, above which it is larger: what the numbers of
+#: channels and rows leave to chance lies within a hundredth
+WORSE = 1.01
+
+
+def supported(
+    found: Found, whole: WholeRecord, seed: int, weighed: Callable[[Found], Found]
+) -> tuple[Found, list[Hypothesis]]:
+    """What was found, less the causes that nothing speaks for but the readings fitted.
+
+    Args:
+        found: the end of the search.
+        whole: the record with its held-out rows.
+        seed: of the bootstrap.
+        weighed: weighs causes that are left against each other anew.
+
+    Returns:
+        What is left, and what was taken out of the structure.
+    """
+    dropped: list[Hypothesis] = []
+    while True:
+        number = _least_supported(found, whole, seed)
+        if number is None:
+            return found, dropped
+        one = found.fit.hypotheses[number]
+        dropped += [] if one.kind.on_sensors else [one]
+        without = without_cause(found.problem, found.base, found.fit, number)
+        found = weighed(_settled(found, without))
+
+
+def _settled(found: Found, fit: Fit) -> Found:
+    problem, fit = settled_with(found.base, found.problem, fit)
+    none: tuple[()] = ()
+    return Found(problem, fit, found.base, none, none)
+
+
+def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
+    """The number of the cause that least speaks for, of those to take out; None: of none."""
+    problem, base = found.problem, found.base
+    after = whole.simulated(problem)
+    gains = {}
+    for number, one in enumerate(found.fit.hypotheses):
+        without = without_cause(problem, base, found.fit, number)
+        before = whole.simulated(about(problem, without.simulator(base)))
+        gained = whole.gain(before, after, found.fit.hypotheses, seed)
+        if one.kind.on_sensors:
+            sure = found.fit.log_evidence - without.log_evidence >= TWICE * NAMED
+            harmful = gained.before <= gained.after and not sure
+        else:
+            harmful = gained.interval[0] <= 0 or worsens(found, without)
+        if harmful:
+            gains[number] = gained.interval[0]
+    return min(gains, key=lambda number: gains[number]) if gains else None
+
+
+def worsens(found: Found, without: Fit) -> bool:
+    """Whether channels that were left out get worse by a cause.
+
+    What a cause leads by on all channels is its lead on those outside a group, and what it makes
+    of the group's readings given the others.
+
+    Args:
+        found: with the cause.
+        without: fitted without it.
+    """
+    problem, base, causes = found.problem, found.base, found.fit
+    groups = sensor_groups(base.model, problem.data.sensors)
+    if len(groups) < 2:
+        return False
+    if unseen_gap(problem, base, causes) <= WORSE * unseen_gap(problem, base, without):
+        return False
+    lead = causes.log_evidence - without.log_evidence
+    against = []
+    for names in groups.values():
+        part = hiding(problem, names)
+        others = (refit(part, base, one).log_evidence for one in (causes, without))
+        against.append(next(others) - next(others) - lead)
+    return max(against) > AGAINST

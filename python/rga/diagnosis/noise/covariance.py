@@ -1,0 +1,189 @@
+"""The covariance of a record about its simulation, and inner products under its inverse.
+
+Three things make a good simulation miss a record: sensor noise with memory, contexts that were
+measured with errors (`row_covariance`), and members and gains that are not quite as built. The last
+are random effects B, a dense system beside the rows: Woodbury's identity once more.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_solve, lapack
+
+from rga.diagnosis.noise.row_covariance import RowCovariance
+from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray
+
+#: courses of as many sensors at a time are put on the contexts' errors
+TOGETHER = 1024
+
+
+@dataclass(frozen=True)
+class RandomEffects:
+    """Random effects on a record, each a sum of few courses over the rows.
+
+    What a linear structure can do is a combination of the courses of its loads. So products with
+    many effects cost little more than products with the courses.
+
+    Attributes:
+        courses: float[rows, courses].
+        shares: of the courses in each effect, float[effects, sensors, courses].
+    """
+
+    courses: FloatArray
+    shares: FloatArray
+
+    def at(self, sizes: FloatArray) -> FloatArray:
+        """The sum of the effects at sizes float[effects], float[rows, sensors]."""
+        return np.asarray(self.courses @ np.tensordot(sizes, self.shares, 1).T)
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """Columns made ready for products.
+
+    Attributes:
+        white: whitened, float[k, channels, rows].
+        context: on the contexts' errors, float[rows * contexts, k].
+        score: on the random effects, float[effects, k].
+        scattered: the same on the factor of their precision, float[effects, k].
+    """
+
+    white: FloatArray
+    context: FloatArray
+    score: FloatArray
+    scattered: FloatArray
+
+
+class Covariance:
+    """The whole covariance: rows, and the scatter as random effects.
+
+    Args:
+        rows: noise and contexts' errors.
+        scatter: the random effects.
+        spread: standard deviation of each random effect, float[effects].
+    """
+
+    def __init__(self, rows: RowCovariance, scatter: RandomEffects, spread: FloatArray) -> None:
+        self.rows = rows
+        self.scatter = scatter
+        self._flat = scatter.shares.reshape(len(spread), -1)
+        sensors = rows.observed.shape[1]
+        of_sensors = np.tile(scatter.courses.T[:, None, :], (1, sensors, 1))
+        white = rows.whiten(of_sensors)
+        self._courses = np.ascontiguousarray(white.transpose(1, 2, 0))
+        self._context = rows.solve_contexts(self._on_contexts(rows.unwhiten(white)))
+        grams = np.matmul(self._courses.transpose(0, 2, 1), self._courses)
+        half = np.matmul(scatter.shares.transpose(1, 0, 2), grams).transpose(1, 0, 2)
+        self.information = half.reshape(self._flat.shape) @ self._flat.T
+        self.information -= self._context.T @ self._context
+        self.information = np.asfortranarray(self.information)
+        self._spread_as(spread)
+
+    def _on_contexts(self, courses: FloatArray) -> FloatArray:
+        """The random effects against the contexts' derivatives, float[rows * contexts, effects].
+
+        Args:
+            courses: W' W of the courses on every sensor, float[courses, sensors, rows].
+        """
+        jacobian = self.rows.context_jacobian
+        rows, sensors, contexts = jacobian.shape
+        count = len(courses)
+        back = np.zeros((rows * contexts, len(self._flat)), order="F")
+        if not contexts:
+            return back
+        by_row = courses.transpose(2, 1, 0)
+        step = max(1, TOGETHER // max(count, 1))
+        for first in range(0, sensors, step):
+            few = slice(first, min(first + step, sensors))
+            outer = np.einsum("tsj,tsp->tjsp", jacobian[:, few], by_row[:, few])
+            shares = self._flat[:, first * count : few.stop * count]
+            back += outer.reshape(rows * contexts, -1) @ shares.T
+        return back
+
+    def _spread_as(self, spread: FloatArray) -> None:
+        self.spread = spread
+        precision = self.information.copy(order="F")
+        precision[np.diag_indices_from(precision)] += spread**-2.0
+        self._factor, failed = lapack.dpotrf(precision, lower=1, clean=0, overwrite_a=1)
+        if failed:
+            raise np.linalg.LinAlgError("the precision of the scatter is not positive definite")
+
+    def with_spread(self, spread: FloatArray) -> "Covariance":
+        """The same with another scatter."""
+        other = object.__new__(Covariance)
+        other.__dict__.update(self.__dict__)
+        other._spread_as(spread)
+        return other
+
+    def reduce(self, columns: FloatArray, channels: IntArray | None = None) -> Reduced:
+        """Columns made ready for products.
+
+        Args:
+            columns: float[k, sensors, rows], or float[k, channels, rows].
+            channels: those that each column touches, int[k, channels]; None: all sensors.
+        """
+        white = self.rows.whiten(columns, channels)
+        context = self.rows.project(white, channels)
+        sensors, _, courses = self._courses.shape
+        if channels is None:
+            along = np.matmul(white.transpose(1, 0, 2), self._courses)
+        else:
+            along = np.zeros((sensors, len(white), courses))
+            for sensor in np.unique(channels):
+                which, place = np.nonzero(channels == sensor)
+                along[sensor, which] = white[which, place] @ self._courses[sensor]
+        along = along.transpose(0, 2, 1).reshape(sensors * courses, len(white))
+        score = self._flat @ along - self._context.T @ context
+        scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
+        return Reduced(white, context, score, scattered)
+
+    def product(self, a: Reduced, b: Reduced) -> FloatArray:
+        """x' C^-1 y of all pairs of columns on the same channels."""
+        own = a.white.reshape(len(a.white), -1) @ b.white.reshape(len(b.white), -1).T
+        return np.asarray(own - a.context.T @ b.context - a.scattered.T @ b.scattered)
+
+    def squares(self, a: Reduced) -> FloatArray:
+        """x' C^-1 x of every column."""
+        own = np.einsum("kct,kct->k", a.white, a.white) - (a.context**2).sum(0)
+        return np.asarray(own - (a.scattered**2).sum(0))
+
+    def scatter_estimate(self, residual: FloatArray) -> FloatArray:
+        """Most likely random effects, float[effects], given a residual float[rows, sensors]."""
+        return self._solved(self.reduce(residual.T[None]).score)[:, 0]
+
+    def posterior(self, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Random effects given a residual float[rows, sensors].
+
+        Returns:
+            Their mean, float[effects], and their covariance, float[effects, effects].
+        """
+        inverse, _ = lapack.dpotri(self._factor, lower=1)
+        lower = np.tril(inverse)
+        return self.scatter_estimate(residual), lower + np.tril(lower, -1).T
+
+    def inverse_times(self, residual: FloatArray) -> FloatArray:
+        """C^-1 of a residual float[rows, sensors], float[sensors, rows]."""
+        left = residual - self.scatter.at(self.scatter_estimate(residual))
+        error = self.rows.context_error(left)
+        left = left - np.einsum("tsi,ti->ts", self.rows.context_jacobian, error)
+        return self.rows.unwhiten(self.rows.whiten(left.T))
+
+    def log_likelihood(self, score: FloatArray) -> tuple[float, FloatArray]:
+        """Log likelihood of the scatter up to a constant, and its derivatives.
+
+        Args:
+            score: B' R^-1 residual, float[effects].
+
+        Returns:
+            The likelihood, and its derivatives by the logarithms of the spreads, float[effects]:
+            second moment of each effect over its prior variance, less one.
+        """
+        logdet = 2 * np.log(np.diag(self._factor)).sum() + 2 * np.log(self.spread).sum()
+        mean = self._solved(score)
+        inverse, _ = lapack.dpotri(self._factor, lower=1)
+        moment = mean**2 + np.diag(inverse)
+        return float(0.5 * score @ mean - 0.5 * logdet), moment / self.spread**2 - 1.0
+
+    def _solved(self, right: FloatArray) -> FloatArray:
+        return np.asarray(cho_solve((self._factor, True), right, check_finite=False))

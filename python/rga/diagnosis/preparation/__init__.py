@@ -1,0 +1,1 @@
+"""From a record to observations: broken channels out, zeros found, contexts believed."""

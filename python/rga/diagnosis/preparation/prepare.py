@@ -1,0 +1,285 @@
+"""From a record to the data that a diagnosis works on: rows, channels, contexts."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rga.diagnosis.data.observations import Data, first_belief
+from rga.diagnosis.data.tare import Tare
+from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
+from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
+from rga.diagnosis.preparation.single_channel import Fault, lost_zeros, stuck_channels
+from rga.diagnosis.preparation.undeclared_zeros import with_own_zeros
+from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
+from rga.diagnosis.search.linearised import load_basis
+from rga.diagnosis.search.signatures import signatures
+from rga.errors import InputError
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+from rga.records import Record
+from rga.records.zero import zeros_of
+from rga.simulation import Simulator
+
+#: rows that are analysed at most; more are thinned evenly
+MOST_ROWS = 800
+LEAST_ROWS = 12
+FEW_ROWS = 60
+#: correlation with the simulation beyond which a channel tells its unit, and how much larger or
+#: smaller readings are that look like another unit
+ALIKE, OTHER_UNIT = 0.8, 30.0
+#: share of the record that a context repeats its last value for, and is doubted
+STILL = 0.1
+#: times that broken channels are looked for: the worst may hide others
+GOES = 3
+#: share of a signature that courses of the loads must leave, to be no sum of them
+BEYOND = 1e-4
+#: places of a kind that show only such sums, before the kind is taken as linear
+LINEAR = 4
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A record made ready.
+
+    Attributes:
+        data: of all rows that are analysed.
+        record: the same rows of the record, its working and its rejected channels.
+        chosen: bool[rows of the record], the rows that are analysed.
+        faults: channels that do not work; the data leave them out.
+        warnings: in words.
+    """
+
+    data: Data
+    record: Record
+    chosen: BoolArray
+    faults: list[Fault]
+    warnings: list[str]
+
+    def leaving_out(self, fault: Fault, simulator: Simulator) -> "Prepared":
+        """The same without a further channel that does not work."""
+        data = _without_faults(simulator, self.data, [fault])
+        return replace(self, data=data, faults=[*self.faults, fault])
+
+
+def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> Prepared:
+    """Choose rows, reject channels that do not work, and guess the latent contexts.
+
+    Raises:
+        InputError: too few rows, or no channel that works.
+    """
+    check_length(record)
+    simulator = Simulator(model.without_zeros())
+    record, rezeroed = with_own_zeros(model, simulator, record, _data(model, record))
+    data = _data(model, record)
+    faults = stuck_channels(data.sensors, data.readings, data.observed)
+    found = {fault.sensor: fault for fault in faults}
+    data = _without(data, faults)
+    data = guess_lines(simulator, data, progress)
+    if data.belief.passing:
+        loaded = _acting(simulator.load_coefficients(data.belief.table))
+        lost = lost_zeros(data.sensors, data.readings, data.observed, loaded)
+        found |= {fault.sensor: fault for fault in lost}
+        data = _without(data, lost)
+    chosen = _loaded_rows(simulator, data)
+    data = guess_rows(simulator, data.rows(chosen))
+    doubts = _doubts(model, data, data.predict(simulator), record)
+    for _ in range(GOES):
+        broken = _broken(simulator, data, record)
+        if not broken:
+            break
+        found |= {fault.sensor: fault for fault in broken}
+        data = _without_faults(simulator, data, broken)
+    if not data.sensors:
+        fault = next(iter(found.values()))
+        raise InputError(
+            "none of the channels works",
+            f"record; of {fault.sensor!r}, {fault.why}",
+            "check the record and the mapping",
+        )
+    spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
+    warnings = [*record.warnings, *rezeroed, *doubts]
+    if chosen.sum() < FEW_ROWS:
+        warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
+    if passing := data.belief.passing:
+        warnings.append(
+            f"onsets were not looked for: {', '.join(passing)} passes once, and what depends on it "
+            "cannot be told from what begins on the way"
+        )
+    silent = int((~data.observed.any(1)).sum())
+    if silent:
+        warnings.append(f"{silent} rows without a context or without any reading were left aside")
+    if spikes.any():
+        of = ", ".join(np.array(data.sensors)[spikes.any(0)])
+        warnings.append(f"{int(spikes.sum())} lone spikes of {of} were taken as missing readings")
+        data = replace(data, observed=data.observed & ~spikes)
+    return Prepared(data, record.rows(chosen), chosen, list(found.values()), warnings)
+
+
+def _broken(simulator: Simulator, data: Data, record: Record) -> list[Fault]:
+    """Channels that do not work, of those that are left."""
+    if not data.sensors:
+        return []
+    basis = load_basis(simulator, data)
+
+    def effects() -> list[FloatArray]:
+        candidates = hypotheses(simulator.model, data.sensors, set(record.contexts))
+        structural = [one for one in candidates if not one.kind.on_sensors]
+        return _beyond_loads(data, simulator, structural, basis)
+
+    return broken_channels(
+        simulator.model,
+        data.sensors,
+        data.readings,
+        data.observed,
+        data.predict(simulator),
+        basis,
+        effects,
+        not data.belief.passing,
+    )
+
+
+def _beyond_loads(
+    data: Data, simulator: Simulator, candidates: Sequence[Hypothesis], basis: FloatArray
+) -> list[FloatArray]:
+    """The part of signatures that is no sum of courses of the loads, float[rows, sensors] each.
+
+    Kinds that show none at the first places that show anything are linear, and show none at others.
+    """
+    courses, _ = np.linalg.qr(np.column_stack([np.ones(len(basis)), basis]))
+    by_kind: dict[str, list[Hypothesis]] = {}
+    for one in candidates:
+        by_kind.setdefault(one.name, []).append(one)
+    found = []
+    for several in by_kind.values():
+        linear = 0
+        for sign in signatures(data, data.about(simulator), several):
+            change = np.zeros((len(basis), len(data.sensors)))
+            change[:, slice(None) if sign.channels is None else sign.channels] = sign.values.T
+            rest = change - courses @ (courses.T @ change)
+            if (rest**2).sum() > BEYOND * (change**2).sum():
+                linear = -len(candidates)
+                found.append(np.where(data.observed, rest, 0.0))
+            else:
+                linear += bool(change.any())
+            if linear >= LINEAR:
+                break
+    return found
+
+
+def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
+    """What looks like a slip with units, or a context that is measured no more."""
+    told = []
+    readings = np.where(data.observed, data.readings, np.nan)
+    factors = [
+        float(np.nanstd(own) / shown.std())
+        for own, shown in zip(readings.T, simulated.T, strict=True)
+        if shown.std() > 0 and abs(_correlation(own, shown)) > ALIKE
+    ]
+    if len(factors) > data.readings.shape[1] / 2:
+        factor = float(np.median(factors))
+        if not 1 / OTHER_UNIT < factor < OTHER_UNIT:
+            told.append(
+                f"the readings go with the simulation and are about {factor:.2g} times as large: "
+                "check the units of record and model before any cause"
+            )
+    for name in data.belief.spread:
+        column = record.contexts.get(name)
+        if column is None:
+            continue
+        low, high = model.context[name].range
+        if ((column < low) | (column > high)).all():
+            told.append(
+                f"{name} lies outside its range {low:g}..{high:g} in every row: check its unit and "
+                "its zero before any cause"
+            )
+        last = int((column[::-1] == column[-1]).argmin() if (column != column[-1]).any() else 0)
+        if last > STILL * len(column):
+            told.append(
+                f"{name} reads {column[-1]:g} exactly in the last {last} of {len(column)} rows: "
+                "check its sensor before any cause"
+            )
+    return told
+
+
+def _correlation(own: FloatArray, shown: FloatArray) -> float:
+    seen = np.isfinite(own)
+    if seen.sum() < LEAST_ROWS or np.ptp(own[seen]) == 0 or np.ptp(shown[seen]) == 0:
+        return 0.0
+    return float(np.corrcoef(own[seen], shown[seen])[0, 1])
+
+
+def check_length(record: Record) -> None:
+    """Refuse a record that is too short for a diagnosis (InputError)."""
+    if len(record) < LEAST_ROWS:
+        raise InputError(
+            f"the record has {len(record)} rows",
+            "record",
+            f"a diagnosis needs {LEAST_ROWS} at least",
+        )
+
+
+def _data(model: Model, record: Record) -> Data:
+    order = {name: number for number, name in enumerate(model.sensors)}
+    belief = first_belief(model, record.origin + record.time, record.contexts)
+    # A row whose context is missing cannot be simulated: its readings are left aside.
+    told = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
+    complete = np.all(told, axis=0) if told else np.ones(len(record.time), dtype=bool)
+    columns = [order[name] for name in record.sensors]
+    return Data(
+        sensors=tuple(record.sensors),
+        columns=columns,
+        readings=np.nan_to_num(record.readings),
+        observed=np.isfinite(record.readings) & complete[:, None],
+        belief=belief,
+        tare=Tare.of(record, belief.table, columns, zeros_of(model, record)),
+    )
+
+
+def _without_faults(simulator: Simulator, data: Data, faults: list[Fault]) -> Data:
+    """The data without faults, and their latent contexts without them."""
+    data = _without(data, faults)
+    if data.belief.latent and data.sensors:
+        # A channel that is broken spoils the contexts that are inferred with it.
+        data = guess_rows(simulator, data)
+    return data
+
+
+def _without(data: Data, faults: list[Fault]) -> Data:
+    """The data without channels that never work, and without the readings behind their fault."""
+    begun = {fault.sensor: fault.row for fault in faults}
+    observed = data.observed.copy()
+    for number, name in enumerate(data.sensors):
+        row = begun.get(name)
+        if row is not None:
+            observed[row:, number] = False
+    kept = [k for k, name in enumerate(data.sensors) if begun.get(name, 0) is not None]
+    data = replace(data, observed=observed)
+    return replace(
+        data,
+        sensors=tuple(data.sensors[number] for number in kept),
+        columns=[data.columns[number] for number in kept],
+        readings=data.readings[:, kept],
+        observed=data.observed[:, kept],
+    )
+
+
+def _loaded_rows(simulator: Simulator, data: Data) -> BoolArray:
+    """Rows that are analysed: without long unloaded ends, thinned evenly to a bounded number."""
+    rows = len(data.time)
+    first, last = 0, rows - 1
+    if data.belief.lines:
+        # Rows before and after a crossing say nothing of the structure; a little of them is kept.
+        acting = np.flatnonzero(_acting(simulator.load_coefficients(data.belief.table)))
+        if len(acting):
+            margin = max(2, len(acting) // 25)
+            first, last = max(0, acting[0] - margin), min(rows - 1, acting[-1] + margin)
+    step = -(-(last - first + 1) // MOST_ROWS)
+    chosen = np.zeros(rows, dtype=bool)
+    chosen[first : last + 1 : step] = True
+    return chosen
+
+
+def _acting(coefficients: FloatArray) -> BoolArray:
+    return np.asarray((np.abs(coefficients) > 0).any(1))

@@ -1,0 +1,275 @@
+"""Channels that do not work, told by what the loads and the other channels predict of them.
+
+A channel is rejected where it says what no structure under these loads says, alone among the
+channels, and far beyond its noise: whatever broke it. What an effect of the vocabulary could do to
+a channel is left to the search for causes: a jump, a slope, another response from some row on, or
+the course of a bearing that sticks.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.diagnosis.preparation.channel_prediction import (
+    ROWS_PER_COURSE,
+    OwnParts,
+    beyond_others,
+    own_parts,
+    robust_deviation,
+    robust_fit,
+    root_mean_square,
+)
+from rga.diagnosis.preparation.single_channel import Fault, copied, dead, scaled, silent
+from rga.model.effects.sensors import offset_scale
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+
+#: own part of a channel, in its usual size, from which on it is broken. Most sound ones of blind
+#: cases stay below 1.5, the worst of 100 records reached 2.2; broken ones mostly lie above 3
+BROKEN = 2.5
+#: the same of channels that nothing compares with: the share of the variation of the readings
+#: that neither loads nor other channels explain
+DROWNED = 0.9
+#: rows for each course of the loads to which the response may change then
+ROWS_PER_CHANGE = 16
+#: shares of the record over which a broken channel may have worked, and its size that says so
+PARTS, WORKS = np.arange(0.3, 0.96, 0.05), 1.8
+#: share of rows with large own parts below which a channel spikes
+FEW = 0.25
+#: readings further from the best fit than this many robust deviations are lone spikes
+SPIKE = 36.0
+#: rows that a spike lasts at most
+LONGEST_SPIKE = 2
+#: moments at which another response is tried, and the share of the rows before the first
+MOMENTS, MARGIN = 40, 0.05
+#: jump of a level that no bias explains, in the size of a large offset: beyond it a search for
+#: causes does not reach
+LARGEST_JUMP = 6.0
+#: share of an own part that an effect of the structure must explain to be the likelier reason
+EXPLAINED = 0.6
+
+#: modes that may begin at any row
+PARTIAL = ("spiking", "erratic")
+
+
+def broken_channels(
+    model: Model,
+    sensors: tuple[str, ...],
+    readings: FloatArray,
+    observed: BoolArray,
+    simulated: FloatArray,
+    basis: FloatArray,
+    effects: Callable[[], Sequence[FloatArray]],
+    onsets: bool,
+) -> list[Fault]:
+    """Channels that do not work, by the simulation and by what the others predict of them.
+
+    Args:
+        model: states the noise of sensors, and which are of a kind.
+        sensors: names.
+        readings: float[rows, sensors].
+        observed: bool[rows, sensors].
+        simulated: float[rows, sensors].
+        basis: courses of the loads, float[rows, courses].
+        effects: asked where a channel is suspect: what effects of the structure change that no
+            course of the loads shows, float[rows, sensors] each.
+        onsets: whether a search for causes may say that something begins late.
+    """
+    parts = own_parts(model, sensors, readings, observed, basis, simulated)
+    suspects = [
+        number
+        for number in range(len(sensors))
+        if observed[:, number].sum() > 3 and _too_large(parts, readings, observed, number)
+    ]
+    possible = effects() if suspects else []
+    faults = []
+    for number, sensor in enumerate(sensors):
+        seen = observed[:, number]
+        if seen.sum() <= 3:
+            continue
+        found = (
+            silent(sensor, readings[:, number], seen, simulated[:, number])
+            or copied(sensors, readings, observed, simulated, number)
+            or scaled(model, sensors, readings, observed, simulated, number)
+            or dead(sensor, readings[seen, number], simulated[seen, number])
+        )
+        if found is None and number in suspects:
+            others = [k for k in range(len(sensors)) if k == number or k not in suspects]
+            if not _explained(parts, possible, number, others):
+                found = _erratic(model, sensor, parts, observed, basis, simulated, number, onsets)
+        if found is not None:
+            faults.append(found)
+    if any(one.mode in PARTIAL and one.row is None for one in faults):
+        until = dict(
+            zip(
+                sensors,
+                _working_until(model, sensors, readings, observed, basis, simulated),
+                strict=True,
+            )
+        )
+        faults = [_begun(one, int(until[one.sensor])) for one in faults]
+    return faults
+
+
+def _begun(fault: Fault, row: int) -> Fault:
+    """A fault from the row on up to which its channel works."""
+    if fault.mode not in PARTIAL or fault.row is not None or row == 0:
+        return fault
+    return replace(fault, row=row, why=f"{fault.why} (it works up to row {row})")
+
+
+def lone_spikes(readings: FloatArray, observed: BoolArray, basis: FloatArray) -> BoolArray:
+    """Readings of working channels that jump far away from what the loads allow."""
+    spikes = np.zeros_like(observed)
+    for number in range(readings.shape[1]):
+        seen = observed[:, number]
+        column = readings[seen, number]
+        if len(column) > 3 * basis.shape[1]:
+            rest = column - robust_fit(column, basis[seen])
+            far = np.abs(rest) > SPIKE * max(robust_deviation(rest), 1e-12)
+            spikes[seen, number] = _lone(far)
+    return spikes
+
+
+def _too_large(parts: OwnParts, readings: FloatArray, observed: BoolArray, number: int) -> bool:
+    if np.isfinite(parts.usual[number]):
+        return bool(parts.size[number] > BROKEN)
+    column = readings[observed[:, number], number]
+    return bool(root_mean_square(parts.own)[number] > DROWNED * column.std())
+
+
+def _explained(
+    parts: OwnParts, effects: Sequence[FloatArray], number: int, channels: list[int]
+) -> bool:
+    """Whether an effect of the structure explains a channel's own part, the others with it."""
+    usual = np.where(np.isfinite(parts.usual), parts.usual, root_mean_square(parts.own))
+    weight = 1 / np.maximum(usual[channels], 1e-300)
+    place = channels.index(number)
+    left = parts.left[:, channels] * weight
+    before = float((left[:, place] ** 2).sum())
+    for change in effects:
+        shown = change[:, channels] * weight
+        power = float((shown**2).sum())
+        if power > 0:
+            rest = left[:, place] - float((shown * left).sum()) / power * shown[:, place]
+            if float((rest**2).sum()) < (1 - EXPLAINED) * before:
+                return True
+    return False
+
+
+def _erratic(
+    model: Model,
+    sensor: str,
+    parts: OwnParts,
+    observed: BoolArray,
+    basis: FloatArray,
+    simulated: FloatArray,
+    number: int,
+    onsets: bool,
+) -> Fault | None:
+    """A channel of its own ways over the record."""
+    seen = observed[:, number]
+    count = int(seen.sum())
+    if not np.isfinite(parts.usual[number]):
+        why = "neither the loads nor other channels explain how it varies"
+        return Fault(sensor, "erratic", why, count)
+    change = _changed(parts.left[seen, number], basis[seen], simulated[seen, number], onsets)
+    left = parts.left.copy()
+    left[seen, number] = change.rest
+    unchanged = replace(parts, left=left, own=beyond_others(left, observed))
+    rest, size = unchanged.own[seen, number], float(unchanged.size[number])
+    usual = float(unchanged.allowed[number])
+    if size <= BROKEN:
+        if abs(change.jump) <= LARGEST_JUMP * offset_scale(model, sensor):
+            return None
+        unit = model.sensors[sensor].unit
+        why = f"it jumps by {change.jump:.3g} {unit} in row {change.row + 1}"
+        begun = change.row >= PARTS[0] * count
+        row = int(np.flatnonzero(seen)[change.row]) if begun else None
+        return Fault(sensor, "erratic", why, count - change.row, row)
+    far = np.abs(rest) > 2 * BROKEN * usual
+    if far.mean() < FEW and robust_deviation(rest[~far]) < BROKEN * usual:
+        why = f"{far.mean():.1%} of its readings jump away from what loads and channels predict"
+        return Fault(sensor, "spiking", why, max(int(far.sum()), 1))
+    why = f"it leaves what loads and other channels predict by {size:.1f} times its usual noise"
+    return Fault(sensor, "erratic", why, count)
+
+
+def _working_until(
+    model: Model,
+    sensors: tuple[str, ...],
+    readings: FloatArray,
+    observed: BoolArray,
+    basis: FloatArray,
+    simulated: FloatArray,
+) -> NDArray[np.int64]:
+    """Rows over which each channel works before it breaks, int[sensors]; 0: too few."""
+    rows = len(readings)
+    until = np.zeros(len(sensors), dtype=np.int64)
+    for share in PARTS:
+        end = int(share * rows)
+        first = slice(0, end)
+        parts = own_parts(
+            model, sensors, readings[first], observed[first], basis[first], simulated[first]
+        )
+        until[parts.size <= WORKS] = end
+    return until
+
+
+@dataclass(frozen=True)
+class _Change:
+    """The moment at which an own part changes most, and what the change does not explain.
+
+    Attributes:
+        row: number of the reading.
+        jump: of the level there.
+        rest: float[readings].
+    """
+
+    row: int
+    jump: float
+    rest: FloatArray
+
+
+def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: bool) -> _Change:
+    """An own part less the level, the slope and the response that change most at some row.
+
+    That much a drift, a jump, or a member that gives way may do. Where onsets are not looked for,
+    that is a slope over the record.
+    """
+    rows = len(own)
+    clock = np.arange(rows)
+    courses = basis[:, : rows // ROWS_PER_COURSE]
+    always = np.column_stack([np.ones(rows), clock / rows, courses])
+    few = np.column_stack([simulated, basis[:, : rows // ROWS_PER_CHANGE]])
+
+    def at(row: int) -> _Change:
+        slope = np.maximum(clock - row, 0) / rows
+        later = (clock >= row)[:, None] * np.column_stack([np.ones(rows), slope, few])
+        design = np.hstack([always, later])
+        weights = np.linalg.lstsq(design, own, rcond=None)[0]
+        return _Change(row, float(weights[always.shape[1]]), own - design @ weights)
+
+    def left(change: _Change) -> float:
+        return float((change.rest**2).sum())
+
+    if not onsets:
+        weights = np.linalg.lstsq(always, own, rcond=None)[0]
+        return _Change(0, 0.0, own - always @ weights)
+    first, last = int(MARGIN * rows), int((1 - MARGIN) * rows)
+    step = max(1, (last - first) // MOMENTS)
+    best = min((at(row) for row in range(first, last + 1, step)), key=left)
+    near = range(max(first, best.row - step), min(last, best.row + step) + 1)
+    return min((at(row) for row in near), key=left)
+
+
+def _lone(far: BoolArray) -> BoolArray:
+    """Those that stand alone or in short runs: what stays away has moved, and is no spike."""
+    edges = np.flatnonzero(np.diff(far.astype(int), prepend=0, append=0))
+    lone = far.copy()
+    for first, end in zip(edges[::2], edges[1::2], strict=True):
+        lone[first:end] = end - first <= LONGEST_SPIKE
+    return lone

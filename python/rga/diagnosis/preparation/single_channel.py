@@ -1,0 +1,205 @@
+"""Faults of a channel that its readings tell by themselves, or beside the simulation."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.model.parameter import FloatArray
+from rga.model.schema import Model
+
+#: share of rows that repeat the last one exactly, beyond which a channel is stuck
+REPEATS = 0.5
+#: a channel that shows less than this share of the expected variation is dead
+DEAD = 0.05
+#: how much larger or smaller than its like a channel answers where its unit or range is wrong:
+#: no single cause changes a response so much, and units differ by tens at least
+SCALE = 8.0
+#: share of its like's variation that a simulation must have to tell the scale of a channel
+TELLING = 0.1
+#: correlation with the simulation from which on a channel tells its scale
+ALIKE = 0.8
+#: rows that a channel repeats itself to the last, or another channel, before that is no chance;
+#: times what chance allows of coarse readings, and the share of its variation that the simulation
+#: must have meanwhile
+SILENT, UNLIKELY, MOVES = 10, 4.0, 0.2
+#: share of its largest reading by which a channel may be off behind a crossing: dynamics and
+#: bearings leave a few percent
+RETURNS = 0.15
+
+Mode = Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A channel that does not work.
+
+    Attributes:
+        sensor: its name.
+        mode: how: see `SensorFault`.
+        why: what in the data shows it.
+        row: from which on it does not work; None: from the first.
+        readings: number of readings that a working channel would show once in a thousand.
+    """
+
+    sensor: str
+    mode: Mode
+    why: str
+    readings: int
+    row: int | None = None
+
+
+def stuck_channels(
+    sensors: tuple[str, ...], readings: FloatArray, observed: BoolArray
+) -> list[Fault]:
+    """Channels that stand still over most of the record, whatever the loads are.
+
+    Args:
+        sensors: names.
+        readings: float[rows, sensors].
+        observed: bool[rows, sensors].
+    """
+    faults = []
+    for number, sensor in enumerate(sensors):
+        column = readings[observed[:, number], number]
+        repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
+        if repeats > REPEATS:
+            why = f"{repeats:.0%} of its readings repeat the one before exactly"
+            faults.append(Fault(sensor, "stuck", why, int(repeats * len(column))))
+    return faults
+
+
+def lost_zeros(
+    sensors: tuple[str, ...], readings: FloatArray, observed: BoolArray, loaded: BoolArray
+) -> list[Fault]:
+    """Channels that do not read the same behind a crossing as before it.
+
+    Args:
+        sensors: names.
+        readings: float[rows, sensors].
+        observed: bool[rows, sensors].
+        loaded: rows under load, bool[rows].
+    """
+    rows = np.flatnonzero(loaded)
+    if not len(rows):
+        return []
+    faults = []
+    for number, sensor in enumerate(sensors):
+        seen = observed[:, number]
+        before, behind = seen.copy(), seen.copy()
+        before[rows[0] :] = False
+        behind[: rows[-1] + 1] = False
+        during = seen & ~before & ~behind
+        if min(before.sum(), behind.sum()) < SILENT or not during.any():
+            continue
+        level = float(np.median(readings[before, number]))
+        off = float(np.median(readings[behind, number])) - level
+        peak = float(np.abs(readings[during, number] - level).max())
+        if abs(off) > RETURNS * peak:
+            why = (
+                f"behind the crossing it stays off by {off:.3g}, {abs(off) / peak:.0%} of its peak"
+            )
+            faults.append(Fault(sensor, "erratic", why, int(behind.sum())))
+    return faults
+
+
+def silent(sensor: str, column: FloatArray, seen: BoolArray, simulated: FloatArray) -> Fault | None:
+    """A channel that repeats itself to the last reading, where it should move."""
+    told, expected = column[seen], simulated[seen]
+    changes = np.flatnonzero(np.diff(told) != 0)
+    first = int(changes[-1]) + 1 if len(changes) else 0
+    # Readings of coarse steps repeat themselves by chance, the more the coarser.
+    repeats = float((np.diff(told[: first + 1]) == 0).mean()) if first else 1.0
+    by_chance = 1 + np.log(len(told)) / np.log(1 / max(repeats, 1e-3)) if repeats < 1 else np.inf
+    silent = len(told) - first
+    if silent < max(SILENT, UNLIKELY * by_chance):
+        return None
+    if expected[first:].std() <= MOVES * expected.std():
+        return None
+    row, value = int(np.flatnonzero(seen)[first]), told[first]
+    why = f"it reads {value:.6g} exactly from row {row + 1} to the last"
+    return Fault(sensor, "dead" if value == 0 else "stuck", why, silent, row)
+
+
+def copied(
+    sensors: tuple[str, ...],
+    readings: FloatArray,
+    observed: BoolArray,
+    simulated: FloatArray,
+    number: int,
+) -> Fault | None:
+    """A channel that holds the readings of another, and not its own."""
+    for other in range(len(sensors)):
+        both = observed[:, number] & observed[:, other]
+        if other == number or both.sum() <= 3:
+            continue
+        same = both & (readings[:, number] == readings[:, other])
+        first, end = _longest(same)
+        copied = slice(first, end)
+        if end - first < SILENT or np.ptp(readings[copied, other]) == 0:
+            continue
+        own, theirs = (_misfit(readings[copied, k], simulated[copied, k]) for k in (number, other))
+        if own > theirs:
+            row = first if end == len(same) and first > 0 else None
+            why = f"{end - first} readings in a row are exactly those of {sensors[other]}"
+            return Fault(sensors[number], "copy", why, end - first, row)
+    return None
+
+
+def _longest(marked: BoolArray) -> tuple[int, int]:
+    """First row and end of the longest run of marked rows."""
+    edges = np.flatnonzero(np.diff(marked.astype(int), prepend=0, append=0)).reshape(-1, 2)
+    if not len(edges):
+        return 0, 0
+    first, end = edges[int(np.argmax(edges[:, 1] - edges[:, 0]))]
+    return int(first), int(end)
+
+
+def _misfit(column: FloatArray, simulated: FloatArray) -> float:
+    """How little a channel goes with its simulation: share of the simulation that it misses."""
+    power = float(((simulated - simulated.mean()) ** 2).sum())
+    off = column - column.mean() - (simulated - simulated.mean())
+    return float((off**2).sum()) / max(power, 1e-300)
+
+
+def scaled(
+    model: Model,
+    sensors: tuple[str, ...],
+    readings: FloatArray,
+    observed: BoolArray,
+    simulated: FloatArray,
+    number: int,
+) -> Fault | None:
+    """A channel that answers as it should, many times too much or too little."""
+    kind = model.sensors[sensors[number]].kind
+    like = [k for k, name in enumerate(sensors) if model.sensors[name].kind == kind]
+    slopes, sizes = {}, {}
+    for k in like:
+        seen = observed[:, k]
+        expected = simulated[seen, k]
+        if seen.sum() <= 3 or expected.std() == 0 or readings[seen, k].std() == 0:
+            continue
+        sizes[k] = float(expected.std())
+        if abs(float(np.corrcoef(readings[seen, k], expected)[0, 1])) > ALIKE:
+            slopes[k] = float(np.cov(readings[seen, k], expected)[0, 1] / expected.var(ddof=1))
+    if number not in slopes or len(slopes) < 3:
+        return None
+    usual = float(np.median([abs(one) for k, one in slopes.items() if k != number]))
+    if sizes[number] < TELLING * float(np.median(list(sizes.values()))) or usual == 0:
+        return None
+    factor = slopes[number] / usual
+    largest = max(abs(slopes[k]) * sizes[k] for k in slopes if k != number)
+    beyond = abs(slopes[number]) * sizes[number] > SCALE * largest
+    if (abs(factor) > SCALE and beyond) or abs(factor) < 1 / SCALE**2:
+        why = f"it answers {factor:.3g} times as much as its like: check its unit and its range"
+        return Fault(sensors[number], "scale", why, int(observed[:, number].sum()))
+    return None
+
+
+def dead(sensor: str, column: FloatArray, simulated: FloatArray) -> Fault | None:
+    spread, expected = float(column.std()), float(simulated.std())
+    if spread >= DEAD * expected:
+        return None
+    why = f"it varies by {spread:.3g} where {expected:.3g} is expected"
+    return Fault(sensor, "dead", why, len(column))

@@ -1,0 +1,1 @@
+"""What the causes leave: patterns, nonlinear responses, channels that do not fit."""

@@ -1,0 +1,118 @@
+"""Lack of fit: what a model misses beyond noise, contexts' errors and a plausible scatter.
+
+A record that a model explains leaves residuals of the size of the noise on rows that no step saw,
+and no channel, nor group of like channels, answers more or less than simulated by more than
+members and gauges of a sound structure scatter. That scatter is bounded by a stated one: what is
+estimated from the record alone would take up any defect.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.diagnosis.noise.random_effects import MEDIANS, lines
+from rga.diagnosis.search.linearised import Problem
+from rga.model.parameter import FloatArray
+
+#: spread of EA of members, of gains of channels, and of what a linear structure does otherwise [-]:
+#: JCSS Probabilistic Model Code, part 3.2 (steel): modulus 3 % and area of a section 4 %, together
+#: 5 %; gauge factor 1 %, its alignment, amplifier and cable together 2 %
+PLAUSIBLE = np.array([0.05, 0.02, 0.01])
+#: times that scatter, above which an estimate says that something else passes for scatter: that of
+#: a dozen channels is known to a fifth
+IMPLAUSIBLE = 1.5
+#: deviations beyond which no channel of a hundred lies by chance
+FAR = 4.0
+#: held-out gap above which residuals are no noise, whatever the channels do together
+NEAR_ONE = 2.0
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """Channels that answer more or less than a model says.
+
+    Attributes:
+        group: name of the group, or of the channel.
+        channels: names.
+        percent: how much more they read than simulated [%].
+        deviations: the same over what noise, contexts and plausible scatter make of it [-].
+    """
+
+    group: str
+    channels: tuple[str, ...]
+    percent: float
+    deviations: float
+
+    @property
+    def alone(self) -> bool:
+        """True of a single channel."""
+        return self.channels == (self.group,)
+
+    @property
+    def words(self) -> str:
+        """What is off and by how much."""
+        what = "channel" if self.alone else "group"
+        return (
+            f"{what} {self.group} reads {self.percent:+.0f} % against the model, "
+            f"{abs(self.deviations):.1f} times what noise and a plausible scatter of members and "
+            "gauges allow"
+        )
+
+
+def misfits(
+    problem: Problem, simulated: FloatArray, groups: Mapping[str, Sequence[str]]
+) -> list[Misfit]:
+    """Channels and groups of like channels that a model misses, the worst first.
+
+    Args:
+        problem: gives the residual, the noise and how members and gauges act.
+        simulated: by the model, float[rows, sensors].
+        groups: names of like channels by the name of the group.
+    """
+    sensors = problem.data.sensors
+    single = {name: (name,) for name in sensors}
+    several = {word: tuple(names) for word, names in groups.items() if len(names) > 1}
+    residual = problem.residual(simulated)
+    found = []
+    for word, names in {**single, **several}.items():
+        columns = [sensors.index(name) for name in names]
+        weight = _weight(problem, simulated, columns)
+        if weight is None:
+            continue
+        off = float((weight * residual[:, columns]).sum())
+        spread = float(np.sqrt(_variance(problem, weight, columns)))
+        if abs(off) > FAR * spread:
+            found.append(Misfit(word, names, 100 * off, off / spread))
+    return sorted(found, key=lambda one: -abs(one.deviations))
+
+
+def _weight(problem: Problem, simulated: FloatArray, columns: list[int]) -> FloatArray | None:
+    """What a residual is multiplied by to tell the share by which channels read too much.
+
+    float[rows, columns]; None where nothing is simulated.
+    """
+    seen = problem.data.observed[:, columns]
+    shown = np.where(seen, simulated[:, columns], 0.0) / problem.noise.sigma[columns] ** 2
+    power = float((shown * simulated[:, columns]).sum())
+    return shown / power if power > 0 else None
+
+
+def _variance(problem: Problem, weight: FloatArray, columns: list[int]) -> float:
+    """Variance of the weighted sum of a sound record's residual."""
+    noise, rows = problem.noise, problem.covariance.rows
+    long_run = noise.sigma**2 * (1 + noise.phi) / (1 - noise.phi)
+    own = float((weight**2).sum(0) @ long_run[columns])
+    measured = [
+        number
+        for number, name in enumerate(problem.data.belief.spread)
+        if name not in problem.data.belief.latent
+    ]
+    along = np.einsum("tc,tcj->tj", weight, rows.context_jacobian[:, columns][:, :, measured])
+    of_contexts = float(((along * noise.context_sigma[measured]) ** 2).sum())
+    effects = problem.covariance.scatter
+    spread = problem.scatter.spread(np.clip(problem.levels, MEDIANS, PLAUSIBLE))
+    # Where a train stands was fitted with the rest: its prior is no uncertainty any more.
+    spread[len(spread) - len(lines(problem.data)) :] = 0.0
+    shares = np.einsum("tc,tp,kcp->k", weight, effects.courses, effects.shares[:, columns])
+    return own + of_contexts + float(((shares * spread) ** 2).sum())

@@ -1,0 +1,38 @@
+"""Channels whose noise is far beyond what the model states of it.
+
+Noise is estimated from the record. A channel that wanders, or reads what has nothing to do with
+the structure, shows no more than a large noise with a long memory where no other channel tells what
+it should read; and so do channels that wander together. Then nothing else is off by more than that
+noise, and only the stated one says that it is none.
+"""
+
+from collections.abc import Collection
+
+from rga.diagnosis.search.linearised import Problem
+
+#: times the stated noise: sound records of blind cases reach 2, rarely 3
+BEYOND = 4.0
+#: channels that are told by name
+MOST_TOLD = 5
+
+
+def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
+    """In words: channels whose readings vary more than their stated noise allows.
+
+    Args:
+        problem: the end of the search.
+        told_already: channels that do not work for a part of the record, left out here.
+    """
+    model, sensors = problem.simulator.model, problem.data.sensors
+    told = []
+    for name, deviation in zip(sensors, problem.noise.deviation, strict=True):
+        stated = model.sensors[name].noise
+        if name in told_already or stated is None:
+            continue
+        if deviation > BEYOND * stated:
+            told.append(
+                f"channel {name} varies by {deviation:.2g} {model.sensors[name].unit} that no load "
+                f"explains, {deviation / stated:.2g} times its stated noise"
+            )
+    more = len(told) - MOST_TOLD
+    return told if more <= 0 else [*told[:MOST_TOLD], f"{more} more channels vary as much"]

@@ -1,0 +1,1 @@
+"""The search for causes: hypotheses, screening, evidence, change points."""

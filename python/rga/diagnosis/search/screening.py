@@ -1,0 +1,352 @@
+"""Screening: which hypotheses are worth a fit, from their signatures alone."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga.diagnosis.data.observations import Data
+from rga.diagnosis.noise.covariance import Covariance
+from rga.diagnosis.search.hypothesis import LATE, Hypothesis, Profile
+from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.search.signatures import Block, chunks, signature, signatures
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+#: prospects that are judged anew, by signatures about the simulation as it stands
+JUDGED = 100
+#: d' below which not even the largest of a hypothesis' trial values will ever be named
+HOPELESS = 1.5
+#: d' below which a signature has no size: what rounding leaves of it, which promises nothing
+NO_SIZE = 1e-6
+PROFILES: tuple[Profile, ...] = ("step", "ramp")
+
+
+@dataclass(frozen=True)
+class Prospect:
+    """A hypothesis with what its signature promises.
+
+    Attributes:
+        number: of the hypothesis among the candidates.
+        hypothesis: with an onset where one promises more.
+        z: coordinates to start a fit from.
+        score: approximate log evidence.
+        largest: d' of the largest of the trial values, or of two prior deviations, of an effect
+            that always acts.
+        largest_late: the same of one that begins after the logger's zero, before any other row.
+        trial: coordinates of the signature that promised it.
+    """
+
+    number: int
+    hypothesis: Hypothesis
+    z: tuple[float, ...]
+    score: float
+    largest: float
+    largest_late: float
+    trial: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Signatures with their sizes under the covariance of the first screening.
+
+    The logger's zero takes a constant off each of them. One that begins after the zero keeps it:
+    it is its shares of the whole. One that has a mean share m in the zero rows is m times the
+    signature, and its shares less m of the whole.
+
+    Attributes:
+        block: the signatures.
+        size: x' C^-1 x, float[k].
+        whole_size: the same with what the zero takes off, float[k].
+        by_row: of every row, its part of x' W' W x with what the zero takes off, float[k, rows].
+        across: its part of x' W' W y, x without and y with it, float[k, rows]; None where they are
+            the same.
+        white: x' W' W x, float[k].
+        open_share: share of y' W' W y that errors of the contexts leave, float[k].
+    """
+
+    block: Block
+    size: FloatArray
+    whole_size: FloatArray
+    by_row: NDArray[np.float32]
+    across: NDArray[np.float32] | None
+    white: FloatArray
+    open_share: FloatArray
+
+    @classmethod
+    def of(cls, block: Block, covariance: Covariance) -> "Judged":
+        """Signatures, judged by a covariance."""
+        reduced = whole = covariance.reduce(block.values, block.channels)
+        size = whole_size = np.maximum(covariance.squares(reduced), 0.0)
+        across = None
+        if block.zero.any():
+            whole = covariance.reduce(block.values + block.zero[:, :, None], block.channels)
+            whole_size = np.maximum(covariance.squares(whole), 0.0)
+            across = (reduced.white * whole.white).sum(1).astype(np.float32)
+        by_row = (whole.white**2).sum(1)
+        by_contexts = (whole.context**2).sum(0) / np.maximum(by_row.sum(1), 1e-300)
+        return cls(
+            block=replace(block, values=block.values.astype(np.float32)),
+            size=size,
+            whole_size=whole_size,
+            by_row=by_row.astype(np.float32),
+            across=across,
+            white=np.einsum("kct,kct->k", reduced.white, reduced.white),
+            open_share=1.0 - by_contexts,
+        )
+
+    def begun(
+        self, along: FloatArray, weight: FloatArray, at_zero: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sums with a residual and sizes of the signatures that begin late.
+
+        Args:
+            along: products with the residual, as `Block.along` and `Block.zero_along` have them,
+                float[2, k, rows].
+            weight: share of the effect in each row, float[beginnings, rows].
+            at_zero: mean of that share over the zero rows, float[beginnings].
+
+        Returns:
+            float[k, beginnings] each.
+        """
+        rest, mean = weight - at_zero[:, None], at_zero[:, None]
+        by_row = self.by_row.astype(float)
+        sums = along.sum(0) @ rest.T + along[0].sum(1)[:, None] * at_zero
+        sizes = by_row @ (rest**2).T
+        if at_zero.any():
+            across = self.by_row if self.across is None else self.across
+            sizes += 2 * across.astype(float) @ (rest * mean).T + self.white[:, None] * at_zero**2
+        sizes = np.maximum(sizes, 0.0)
+        # Scatter is the same in all rows. Of some rows it takes that part of what it takes of all.
+        total = np.maximum(by_row.sum(1), 1e-300)[:, None]
+        taken = self.open_share[:, None] - self.whole_size[:, None] / total
+        shares = self.open_share[:, None] - np.minimum(sizes / total, 1.0) * taken
+        return sums, sizes * np.maximum(shares, 0.0)
+
+    def of_numbers(self, numbers: Collection[int]) -> "Judged":
+        """The signatures of some of the candidates."""
+        which = np.array([number in numbers for number, _, _ in self.block.members], dtype=bool)
+        return Judged(
+            self.block.kept(which),
+            self.size[which],
+            self.whole_size[which],
+            self.by_row[which],
+            None if self.across is None else self.across[which],
+            self.white[which],
+            self.open_share[which],
+        )
+
+
+class Screening:
+    """The signatures of all candidates about one simulation.
+
+    Generalised least squares under the whole covariance gives the likelihood that the best
+    amplitude of a signature gains; the prior takes off what the freedom costs. Working out
+    signatures and their sizes is most of the work, and both change little when causes are added to
+    the simulation. So they are kept: about another simulation they rank the candidates, and the
+    best are judged anew.
+
+    Args:
+        problem: gives residual and covariance.
+        simulator: the simulation to which the candidates are added.
+        candidates: hypotheses without onset.
+        progress: told the share that is done.
+
+    Attributes:
+        first: prospects about that simulation, the best first, each candidate once.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        simulator: Simulator,
+        candidates: Sequence[Hypothesis],
+        progress: Callable[[float], None] = lambda done: None,
+    ) -> None:
+        data, covariance = problem.data, problem.covariance
+        self._judged: list[Judged] = []
+        done = 0
+        for block in chunks(signatures(data, data.about(simulator), candidates)):
+            self._judged.append(Judged.of(block, covariance))
+            done = max(done, *(number + 1 for number, _, _ in block.members))
+            progress(done / len(candidates))
+        self.first = self.again(problem, simulator, ())
+        hopeful = {
+            one.number for one in self.first if max(one.largest, one.largest_late) >= HOPELESS
+        }
+        self._judged = [one.of_numbers(hopeful) for one in self._judged]
+
+    def again(
+        self,
+        problem: Problem,
+        simulator: Simulator,
+        taken: Collection[Hypothesis],
+        beginning: Hypothesis | None = None,
+    ) -> list[Prospect]:
+        """Prospects about another simulation of the same record, the best first.
+
+        Args:
+            problem: gives residual and covariance.
+            simulator: the simulation to which the candidates are added.
+            taken: hypotheses that are left out.
+            beginning: a candidate acts always, or begins as this one does; None: candidates may
+                begin at any time.
+        """
+        data = problem.data
+        base = data.predict(simulator)
+        weighted = problem.covariance.inverse_times(problem.residual(base))
+        best: dict[tuple[int, Profile | None], Prospect] = {}
+        largest: dict[int, tuple[float, float]] = {}
+        for judged in self._judged:
+            for one in _promises(judged, weighted, data, beginning):
+                # What an onset promises is rough, and must not hide another way to begin.
+                late = one.hypothesis.onset is not None
+                key = one.number, one.hypothesis.profile if late else None
+                best[key] = max(best.get(key, one), one, key=lambda each: each.score)
+                before = largest.get(one.number, (0.0, 0.0))
+                largest[one.number] = (
+                    max(before[0], one.largest),
+                    max(before[1], one.largest_late),
+                )
+        kept = [
+            replace(one, largest=largest[one.number][0], largest_late=largest[one.number][1])
+            for one in best.values()
+            if not any(one.hypothesis.same_place(other) for other in taken)
+        ]
+        kept.sort(key=_rank)
+        kept = [*judged_anew(problem, simulator, kept[:JUDGED], weighted), *kept[JUDGED:]]
+        first: dict[int, Prospect] = {}
+        for one in sorted(kept, key=_rank):
+            first.setdefault(one.number, one)
+        return list(first.values())
+
+
+def judged_anew(
+    problem: Problem,
+    simulator: Simulator,
+    prospects: Sequence[Prospect],
+    weighted: FloatArray,
+) -> list[Prospect]:
+    """Prospects by signatures about a simulation, each at the trial that promised it.
+
+    Args:
+        problem: gives the covariance.
+        simulator: the simulation to which the hypotheses are added.
+        prospects: the hypotheses.
+        weighted: C^-1 of the residual, float[sensors, rows].
+    """
+    data, covariance = problem.data, problem.covariance
+    about = data.about(simulator)
+    largest = {one.number: (one.largest, one.largest_late) for one in prospects}
+    several = (signature(data, about, one.number, one.hypothesis, one.trial) for one in prospects)
+    found = []
+    for block in chunks(one for one in several if one is not None):
+        size = covariance.squares(covariance.reduce(block.values, block.channels))
+        sums = block.along(weighted).sum(1)
+        prior = np.array([hypothesis.log_prior for _, hypothesis, _ in block.members])
+        score, start = _scored(block, sums, np.maximum(size, 0.0), prior)
+        found += [
+            Prospect(number, hypothesis, _coordinates(z, s), float(points), *largest[number], z)
+            for (number, hypothesis, z), points, s in zip(block.members, score, start, strict=True)
+        ]
+    return found
+
+
+def _promises(
+    judged: Judged, weighted: FloatArray, data: Data, beginning: Hypothesis | None
+) -> list[Prospect]:
+    """The prospects of every signature: from the start, and from its likeliest moment on."""
+    block, time, tare = judged.block, data.time, data.tare
+    along = np.stack([block.along(weighted), block.zero_along(weighted)])
+    members = block.members
+    onsets = not data.belief.passing
+    largest = np.sqrt([judged.size, judged.whole_size if onsets else judged.size])
+    straight = block.straight & block.free
+    largest[:, straight] *= 2 / np.abs(block.z[straight, 0])
+    before = np.array([hypothesis.log_prior for _, hypothesis, _ in members])
+    later = before + LATE
+    options: list[tuple[FloatArray, FloatArray]] = []
+    moments: list[tuple[FloatArray | None, Profile]] = []
+    options.append(_scored(block, along[0].sum(1), judged.size, before))
+    moments.append((None, "step"))
+    if beginning is not None and beginning.onset is not None:
+        weight, weight_at_zero = data.weights(beginning.effect([0.0] * len(beginning.priors)))
+        at_zero = tare.mean_weight(weight_at_zero[None])
+        sums, sizes = judged.begun(along, weight[None], at_zero)
+        options.append(_scored(block, sums[:, 0], sizes[:, 0], later))
+        moments.append((np.full(len(members), beginning.onset), beginning.profile))
+    if beginning is None and onsets:
+        margin = max(2, len(time) // 50)
+        inner = slice(margin, len(time) - margin)
+        every = np.arange(len(members))
+        for profile in PROFILES:
+            weight = _weights(time[inner], time, profile, time[-1])
+            at_zero = tare.mean_weight(_weights(time[inner], tare.time, profile, time[-1]))
+            sums, sizes = judged.begun(along, weight, at_zero)
+            row = np.argmax(_gained(sums, sizes), axis=1)
+            options.append(_scored(block, sums[every, row], sizes[every, row], later))
+            moments.append((time[inner][row], profile))
+    found = []
+    for k, (number, hypothesis, z) in enumerate(members):
+        for (moment, profile), (score, start) in zip(moments, options, strict=True):
+            one = hypothesis
+            if moment is not None:
+                end = None if beginning is None else beginning.end
+                one = hypothesis.beginning(float(moment[k]), profile, end)
+            start_z = _coordinates(z, start[k])
+            always, late = map(float, largest[:, k])
+            found.append(Prospect(number, one, start_z, float(score[k]), always, late, z))
+    return found
+
+
+def _weights(beginnings: FloatArray, time: FloatArray, profile: Profile, end: float) -> FloatArray:
+    """Shares at times of effects that begin at moments, float[beginnings, times].
+
+    Args:
+        beginnings: moments [s], float[beginnings].
+        time: times [s], float[times].
+        profile: of the effects.
+        end: when a ramp is full [s].
+    """
+    later = time >= beginnings[:, None]
+    if profile == "step":
+        return later.astype(float)
+    left = np.maximum(end - beginnings[:, None], 1e-12)
+    return np.where(later, (time - beginnings[:, None]) / left, 0.0)
+
+
+def _gained(along: FloatArray, size: FloatArray) -> FloatArray:
+    """What signatures gain in likelihood at their best amplitude, twice its log."""
+    sized = size > NO_SIZE**2
+    return np.where(sized, along**2 / np.where(sized, size, 1.0), 0.0)
+
+
+def _scored(
+    block: Block, along: FloatArray, size: FloatArray, prior: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Scores of signatures with x' C^-1 r = along and x' C^-1 x = size, and z of their best.
+
+    The latter is float[k], the value of all coordinates, or NaN: those of the trial.
+    """
+    sized = size > NO_SIZE**2
+    size, along = np.where(sized, size, 1.0), np.where(sized, along, 0.0)
+    first = np.where(block.free & block.straight, block.z[:, 0], 1.0)
+    # A straight line in z: the evidence is exact.
+    per_z = size / first**2
+    straight = (along / first) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
+    # A curve: the amplitude may differ a little from that of the trial, not in sign.
+    amplitude = np.clip(along / size, 0.0, 3.0)
+    curve = amplitude * along - amplitude**2 * size / 2 - (block.z**2).sum(1) / 2
+    fixed = along - size / 2
+    score = np.where(block.free, np.where(block.straight, straight, curve), fixed)
+    start = np.where(block.free & block.straight, along / first / (1 + per_z), np.nan)
+    return np.where(sized, score + prior, -np.inf), start
+
+
+def _coordinates(z: tuple[float, ...], start: float) -> tuple[float, ...]:
+    return z if np.isnan(start) else (float(start),) * len(z)
+
+
+def _rank(one: Prospect) -> tuple[float, int]:
+    return -one.score, one.number

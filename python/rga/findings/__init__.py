@@ -1,0 +1,1 @@
+"""Findings: what a diagnosis says, as pure data; its words, its file."""

@@ -1,0 +1,54 @@
+"""Findings read back from their file."""
+
+import hashlib
+import json
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from rga.errors import InputError
+from rga.findings.schema import Findings
+
+
+def load_findings(path: str | Path) -> Findings:
+    """Read findings.json; its arrays (`Findings.account`) are not kept there.
+
+    Args:
+        path: the file, or the directory that holds it.
+
+    Raises:
+        InputError: the file is missing or unreadable, or holds no findings.
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / "findings.json"
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        reason = (error.strerror or "unreadable").lower()
+        raise InputError(
+            f"the findings cannot be read, {reason}",
+            str(path),
+            "give findings.json of `rga diagnose` or `rga run`, or its directory",
+        ) from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"this is no JSON: {error}", str(path), "mend the syntax") from None
+    if not isinstance(content, dict) or "rga_findings" not in content:
+        raise InputError(
+            "these are no findings: there is no key 'rga_findings'",
+            str(path),
+            "give findings.json of `rga diagnose` or `rga run`",
+        )
+    try:
+        return Findings.model_validate(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(
+            f"{key}: {first['msg']}", str(path), "give findings as the diagnosis wrote them"
+        ) from None
+
+
+def findings_sha256(findings: Findings) -> str:
+    """Hash of the content of findings."""
+    return hashlib.sha256(findings.to_json().encode()).hexdigest()

@@ -1,0 +1,212 @@
+"""Findings: what a diagnosis says, as it stands in findings.json."""
+
+import json
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
+
+from rga.errors import ReportError, in_short
+from rga.findings.arrays import Account
+
+Interval = tuple[float, float]
+Verdict = Literal["nothing_wrong", "named", "ambiguous", "partial", "unknown", "unidentifiable"]
+
+
+class Part(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class SensorGap(Part):
+    """Gap of one sensor: mean squared residual over noise variance [-]."""
+
+    before: float
+    after: float
+
+
+class HeldOut(Part):
+    """Gap by the readings of blocks of rows that no step of the diagnosis saw.
+
+    Attributes:
+        before: of the model as given under the loads of the whole record: the change of the
+            simulation is known in every row, what the extended model leaves in those blocks.
+        after: of the extended model in those blocks.
+        gain: before less after, with its 90 % interval.
+    """
+
+    before: float
+    after: float
+    gain: float
+    gain_ci90: Interval
+
+
+class Gap(Part):
+    """The reality gap before and after the extension."""
+
+    before: float
+    after: float
+    noise_floor: float = 1.0
+    unit: str = "mean squared residual over noise variance"
+    held_out: HeldOut
+    by_sensor: dict[str, SensorGap]
+
+
+class Cause(Part):
+    """A cause: the effect that the model lacked.
+
+    Attributes:
+        effect: as it stands in the extended model.
+        log_odds: against leaving this cause out, the number of places and kinds counted.
+        d_prime: size of the effect under the whole covariance [-].
+        d_perp: the same after projecting off the nearest rival [-].
+        rivals: effects within 4.6 log-odds: the nearest of each other kind, the nearest first, then
+            further places of these kinds and of its own.
+        rivals_omitted: how many more there are.
+        separated_by: in words: the sensor or load test that would tell it from its rivals.
+        why: in words: what in the data shows it.
+    """
+
+    effect: dict[str, Any]
+    onset: float | str | None = None
+    onset_ci90: tuple[float | str, float | str] | None = None
+    status: Literal["named", "ambiguous"]
+    log_odds: float
+    d_prime: float
+    d_perp: float
+    rivals: list[dict[str, Any]] = []
+    rivals_omitted: int = Field(default=0, ge=0)
+    separated_by: str = ""
+    why: str = ""
+
+
+class Unidentifiable(Part):
+    """A kind and place whose largest physical value stays below d' = 3."""
+
+    kind: str
+    place: str
+    d_prime_at_largest: float
+
+
+class Unexplained(Part):
+    """Structure that is left after the extension."""
+
+    share: float
+    looks_like: str
+
+
+class Explanation(Part):
+    """An explanation that was tried, alone or with others.
+
+    Attributes:
+        words: the effects in words with their values.
+        effects: as they would stand in a model.
+        log_odds: against no effect at all; the prior counted.
+        gap: on the rows that were fitted.
+        gap_unseen_channels: on groups of channels left out in turn; None where not tried.
+        remark: why it was kept or rejected.
+    """
+
+    words: str
+    effects: list[dict[str, Any]]
+    log_odds: float
+    gap: float
+    gap_unseen_channels: float | None = None
+    remark: str = ""
+
+
+class GroupGap(Part):
+    """Measured over simulated by group of sensors, as percent off."""
+
+    group: str
+    sensors: list[str]
+    before_percent: float
+    after_percent: float
+
+
+class Findings(Part):
+    """What a diagnosis found: the verdict, the causes, the gain, and what stays unexplained.
+
+    Attributes:
+        misfits: sensors that work and do not fit the extended model as their like do.
+    """
+
+    rga_findings: Literal[1] = 1
+    verdict: Verdict
+    gap: Gap
+    causes: list[Cause] = []
+    unidentifiable: list[Unidentifiable] = []
+    unexplained: Unexplained
+    explanations: list[Explanation] = []
+    groups: list[GroupGap] = []
+    contexts: dict[str, dict[str, Any]] = {}
+    warnings: list[str] = []
+    misfits: list[str] = []
+    seed: int
+    model_sha256: str
+    record_sha256: str
+    versions: dict[str, str] = Field(default_factory=dict)
+
+    _account: Account | None = PrivateAttr(default=None)
+
+    @property
+    def account(self) -> Account:
+        """The arrays behind the findings, for the report."""
+        if self._account is None:
+            raise ValueError("these findings were read from a file: the arrays are not kept there")
+        return self._account
+
+    def sentence(self) -> str:
+        """The verdict in plain words."""
+        from rga.findings.phrases import verdict_sentence
+
+        return verdict_sentence(self)
+
+    def write(
+        self, directory: str | Path, report: Callable[["Findings", Path], Path] | None = None
+    ) -> Path:
+        """Write findings.json and model.json to a directory, then report.html.
+
+        Every file is written under a temporary name first and then renamed.
+
+        Args:
+            directory: is made where it is missing.
+            report: writes another report than that of a diagnosis.
+
+        Returns:
+            The path of the report.
+
+        Raises:
+            ReportError: the report could not be drawn. Findings and model are there, and a line
+                that says so in the place of the report.
+        """
+        from rga.model import write_model
+
+        directory, extended = Path(directory), self.account.extended
+        directory.mkdir(parents=True, exist_ok=True)
+        path = directory / "findings.json"
+        temporary = path.with_name("findings.json.partial")
+        temporary.write_text(self.to_json() + "\n", encoding="utf-8")
+        write_model(extended, directory / "model.json")
+        temporary.replace(path)
+        shown = directory / "report.html"
+        try:
+            return (report or _write_report)(self, shown)
+        except Exception as error:  # of any kind: the findings do not hang on their report
+            fault = ReportError(in_short(error), directory)
+            # A report that stood here is of other findings.
+            said = f"The report could not be drawn: {fault.reason}."
+            shown.write_text(f"<!doctype html><title>No report</title><p>{escape(said)}</p>\n")
+            raise fault from error
+
+    def to_json(self) -> str:
+        """The content of findings.json."""
+        return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False)
+
+
+def _write_report(findings: Findings, path: Path) -> Path:
+    # What draws is loaded when it is needed, and may be what fails.
+    from rga.report import write_report
+
+    return write_report(findings, path)

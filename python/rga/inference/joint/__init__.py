@@ -1,0 +1,1 @@
+"""Contexts of all rows and unknowns of the structure, inferred together."""

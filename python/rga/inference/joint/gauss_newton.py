@@ -1,0 +1,308 @@
+"""Gauss-Newton steps of the contexts of all rows and the unknowns of the structure together."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rga.inference.joint.sensor_errors import CorrectedTwin
+from rga.inference.joint.structural_parameters import Unknowns
+from rga.inference.map.bounded_newton import EDGE
+from rga.inference.map.initial_guess import QuadraticGuess
+from rga.inference.map.posterior_mode import posterior_mode, standard
+from rga.inference.rows import Rows
+from rga.model.parameter import FloatArray
+from rga.simulation import Simulator
+
+#: prior spread of the gain of a sensor [-], and of its offset [standard deviations of its noise]
+GAIN, OFFSET = 0.01, 0.3
+#: degrees of freedom of what changes: few parameters do, and by far more than the others
+TAILS = 3.0
+#: what parameters have changed by since an earlier result, in units of their priors; what is
+#: thought of it at first, of unknowns and of sensors
+CHANGE, FIRST = 0.03, (0.5, 10.0)
+#: variance that the contexts of the measured rows may have, in that of their ranges
+POPULATION = (0.05, 1.5)
+#: shares of a step that are tried; share of the misfit below which a step is not worth another
+SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 1e-3
+#: readings that a sensor's own noise is held against that of all by, and the first guess [spreads]
+HELD_BY, GUESS = 30.0, 5.0
+
+
+class Beforehand(NamedTuple):
+    """What is known of the parameters beforehand, in units of their priors.
+
+    They are normal around something that has changed, each by Student's distribution.
+
+    Attributes:
+        mean: unknowns, then gains, then offsets, float[parameters], in their own units.
+        covariance: float[parameters, parameters].
+        change: scale of what each has changed by, float[parameters].
+        first: what is thought of it at first.
+    """
+
+    mean: FloatArray
+    covariance: FloatArray
+    change: FloatArray
+    first: FloatArray
+
+    @classmethod
+    def fresh(cls, unknowns: Unknowns, sensors: int) -> "Beforehand":
+        """Unknowns as their priors say; sensors are sound, but for some."""
+        own = np.repeat([1.0, 0.0], [len(unknowns.centre), 2 * sensors])
+        mean = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
+        return cls(mean, np.diag(own), 1.0 - own, 1.0 - own)
+
+    @classmethod
+    def later(cls, mean: FloatArray, covariance: FloatArray, unknowns: int) -> "Beforehand":
+        """What was found earlier, with its covariance."""
+        first = np.repeat(FIRST, [unknowns, len(mean) - unknowns])
+        return cls(mean, covariance, np.full(len(mean), CHANGE), first)
+
+
+class Linear(NamedTuple):
+    """Rows as straight in contexts and parameters, each reading in units of its deviation.
+
+    Attributes:
+        off: what readings differ by from the twin, float[rows, sensors].
+        slopes: by parameters in their units, float[rows, sensors, parameters].
+        near: by contexts in theirs, float[rows, sensors, contexts].
+    """
+
+    off: FloatArray
+    slopes: FloatArray
+    near: FloatArray
+
+
+class Search:
+    """Where the search for the joint mode stands.
+
+    Parameters are the unknowns, then the gains, then the offsets of the sensors.
+
+    Args:
+        unknowns: of the structure.
+        readings: measured rows, float[n, sensors], NaN where missing.
+        noise: standard deviation of each sensor's noise, float[sensors].
+        load_tests: measured rows whose contexts are known.
+        beforehand: what is known of the parameters.
+
+    Attributes:
+        contexts: of measured rows, then of load tests, float[rows, contexts].
+        value: of the parameters, float[parameters].
+        variance: of what readings differ by from the twin, float[sensors].
+        slopes: of readings by parameters in their units, at the last solution.
+        covariance: of parameters in their units, were the rows of a sensor independent.
+        pull: what the sensors disagree on about them.
+    """
+
+    def __init__(
+        self,
+        unknowns: Unknowns,
+        readings: FloatArray,
+        noise: FloatArray,
+        load_tests: Rows | None,
+        beforehand: Beforehand,
+    ) -> None:
+        self.unknowns, self.noise, self.many = unknowns, noise, len(readings)
+        ranges = np.array([one.range for one in unknowns.model.context.values()])
+        self.ranges = ranges
+        self.middle, self.scale = standard(ranges)
+        known = load_tests or Rows(np.zeros((0, len(ranges))), np.zeros((0, len(noise))))
+        self.readings = np.vstack([readings, known.readings])
+        self.seen = np.isfinite(self.readings)
+        self.contexts = np.vstack([np.tile(self.middle, (self.many, 1)), known.contexts])
+        self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
+        self.count = len(unknowns.centre)
+        self.unit = np.concatenate([unknowns.spread, np.full(len(noise), GAIN), OFFSET * noise])
+        self.beforehand, self.centre, self.tails = beforehand, beforehand.mean, TAILS
+        self._suppose(beforehand.first**2)
+        self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
+        self.population = np.zeros(len(ranges)), np.ones(len(ranges))
+        self.seen_population = self.population
+        self.volume = np.zeros(len(self.unit))
+
+    def begin(self, value: FloatArray, variance: FloatArray) -> None:
+        """Where to begin: parameters, and what readings differ by, float[sensors].
+
+        Sensors are then thought to be about as they were for most of the rows.
+        """
+        self.value, self.variance, self.tails = value.copy(), variance, np.inf
+
+    def split(self, value: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unknowns, gains and offsets of parameters."""
+        unknowns, gains, offsets = np.split(value, [self.count, self.count + len(self.noise)])
+        return unknowns, gains, offsets
+
+    @property
+    def twin(self) -> CorrectedTwin:
+        return self._twin(self.value)
+
+    def _twin(self, value: FloatArray) -> CorrectedTwin:
+        unknowns, gains, offsets = self.split(value)
+        return CorrectedTwin(Simulator(self.unknowns.at(unknowns)), gains, offsets)
+
+    def place(self, source: FloatArray) -> None:
+        """Contexts of the measured rows anew, from two starts, the unknowns as they stand."""
+        twin = self.twin
+        self.population = self.seen_population
+        simulated = Rows(source, twin.simulate(source))
+        measured = self.readings[: self.many]
+        guess = QuadraticGuess(simulated, np.sqrt(self.variance), self.ranges, seed=0)
+        mode, kept = (
+            posterior_mode(
+                twin.simulate, twin.jacobian, measured, np.diag(self.variance), self.ranges, start
+            )
+            for start in (guess(measured), self.contexts[: self.many])
+        )
+        better = (mode.misfit < kept.misfit)[:, None]
+        self.contexts[: self.many] = np.where(better, mode.value, kept.value)
+        self._weigh(self._residual(self.value, self.contexts), 0.0)
+        self.volume = self._volume_slope()
+
+    def _volume_slope(self) -> FloatArray:
+        """Half the slope of the log determinant of the rows' precision along the parameters.
+
+        The mode over contexts and unknowns is off: contexts that vary less please their prior, so
+        that a structure that is too soft would be found (Neyman and Scott, Econometrica 16, 1948).
+        The likelihood of the unknowns alone has the determinant beside it (Laplace).
+        """
+        here, bent = self.unknowns.sample
+        root = self.scale / np.sqrt(self.variance)[:, None]
+        here, bent = here * root, bent * root
+        turned = here.transpose(0, 2, 1)
+        spread = np.linalg.inv(turned @ here + np.diag(1.0 / self.population[1] ** 2))
+        back = here @ spread
+        of_unknowns = np.einsum("nsc,knsc->k", back, bent, optimize=True)
+        of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
+        slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])
+        return np.asarray(slope * self.many / len(here))
+
+    def step(self) -> bool:
+        """A step of contexts and parameters together; False where no more is to be gained."""
+        change, moved = self.solve()
+        here = self._misfit(self.value, self.contexts)
+        low, high = self._bounds()
+        for share in SHARES:
+            value = np.clip(self.value + share * self.unit * change, low, high)
+            contexts = self.contexts + share * self.scale * moved
+            contexts = np.clip(contexts, *self.ranges.T)
+            contexts = np.where(self.free, contexts, self.contexts)
+            there = self._misfit(value, contexts)
+            if there < here:
+                self.value, self.contexts = value, contexts
+                self._weigh(self._residual(value, contexts), self.freedom)
+                self._trust()
+                return here - there > WORTH * here
+        return False
+
+    def solve(self) -> tuple[FloatArray, FloatArray]:
+        """Change of the parameters and of the contexts, in their units.
+
+        The normal equations of the parameters are left by eliminating the contexts of each row.
+        """
+        off, slopes, near = self._linear()
+        z = (self.contexts - self.middle) / self.scale
+        middle, width = self.population
+        turned = near.transpose(0, 2, 1)
+        pull = (turned @ off[:, :, None])[:, :, 0] - (z - middle) / width**2
+        pull = np.where(self.free, pull, 0.0)
+        # A context at an end of its range that would leave stays there.
+        held = (np.abs(z) > EDGE * (1.0 - 1e-9)) & (pull * z > 0)
+        near, pull = np.where(held[:, None], 0.0, near), np.where(held, 0.0, pull)
+        turned = near.transpose(0, 2, 1)
+        own = turned @ near + np.diag(1.0 / width**2)
+        cross = turned @ slopes
+        solved = np.linalg.solve(own, np.concatenate([cross, pull[:, :, None]], axis=2))
+        through, alone = solved[:, :, :-1], solved[:, :, -1]
+
+        table, flat = (part.reshape(-1, part.shape[2]) for part in (slopes, cross))
+        whole = table.T @ table + self.precision - flat.T @ through.reshape(flat.shape)
+        right = table.T @ off.ravel() - flat.T @ alone.ravel()
+        right -= self.precision @ self._standard(self.value) + self.volume
+        self.covariance = np.linalg.inv(whole)
+        change = self.covariance @ right
+
+        self._see_population(np.asarray(np.linalg.inv(own)), through, z)
+        self.slopes = slopes * np.sqrt(self.variance)[:, None]
+        # What is wrong with a model stays wrong from row to row: each sensor is one cluster of rows
+        # (Liang and Zeger, Biometrika 73, 1986).
+        pulls = np.einsum("nsp,ns->sp", slopes - near @ through, off)
+        self.pull = pulls.T @ pulls
+        return change, alone - (through @ change)
+
+    def _linear(self) -> Linear:
+        unknowns, gains, offsets = self.split(self.value)
+        plain, by_contexts, by_unknowns = self.unknowns.linearise(self.contexts, unknowns)
+        weight = np.where(self.seen, 1.0 / np.sqrt(self.variance), 0.0)
+        off = np.where(self.seen, self.readings - gains * plain - offsets, 0.0)
+        each = np.eye(plain.shape[1])
+        by_gains, by_offsets = plain[:, :, None] * each, np.ones_like(plain)[:, :, None] * each
+        slopes = np.concatenate([by_unknowns * gains[:, None], by_gains, by_offsets], axis=2)
+        near = np.where(self.free[:, :, None], by_contexts * gains[:, None], 0.0)
+        heavy = weight[:, :, None]
+        return Linear(off * weight, slopes * self.unit * heavy, near * self.scale * heavy)
+
+    def _see_population(self, inside: FloatArray, through: FloatArray, z: FloatArray) -> None:
+        """Where contexts of measured rows lie, and of how many readings they take the freedom.
+
+        Args:
+            inside: covariance of contexts in their units, were parameters known.
+            through: how contexts follow parameters.
+            z: contexts in their units.
+        """
+        rows = slice(0, self.many)
+        spread = inside + through @ self.covariance @ through.transpose(0, 2, 1)
+        unsure = np.diagonal(spread[rows], axis1=1, axis2=2).mean(axis=0)
+        variance = z[rows].var(axis=0) + unsure
+        self.seen_population = z[rows].mean(axis=0), np.sqrt(np.clip(variance, *POPULATION))
+        # Of as many readings the parameters take the freedom that the priors do not.
+        taken = (z.shape[1] - np.trace(inside, axis1=1, axis2=2))[rows].sum()
+        left = np.sum(self.precision * self.covariance)
+        self.freedom = float(taken + len(self.unit) - left)
+
+    def _residual(self, value: FloatArray, contexts: FloatArray) -> FloatArray:
+        simulated = self._twin(value).simulate(contexts)
+        return np.where(self.seen, self.readings - simulated, 0.0)
+
+    def _misfit(self, value: FloatArray, contexts: FloatArray) -> float:
+        off = self._residual(value, contexts)
+        middle, width = self.population
+        z = np.where(self.free, ((contexts - self.middle) / self.scale - middle) / width, 0.0)
+        at = self._standard(value)
+        prior = (z**2).sum() + at @ self.precision @ at + 2.0 * self.volume @ at
+        return float((off**2 / self.variance).sum() + prior)
+
+    def _standard(self, value: FloatArray) -> FloatArray:
+        """What parameters differ by from what is known of them beforehand, in their units."""
+        return np.asarray((value - self.centre) / self.unit)
+
+    def _weigh(self, off: FloatArray, freedom: float) -> None:
+        """What noise and model error are left, sensor by sensor, never below the stated noise."""
+        counts = self.seen.sum(axis=0)
+        left = max(1.0 - freedom / max(counts.sum(), 1), 0.2)
+        own = (off**2).sum(axis=0) / self.noise**2 / left
+        all_ = own.sum() / max(counts.sum(), 1)
+        ratio = (own + HELD_BY * all_) / (counts + HELD_BY)
+        self.variance = self.noise**2 * np.maximum(ratio, 1.0)
+
+    def _trust(self) -> None:
+        """What parameters have changed by, by Student's distribution.
+
+        Expectation and maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39, 1977).
+        """
+        if np.isinf(self.tails):
+            return
+        own, scale = np.diag(self.beforehand.covariance), self.beforehand.change
+        share = self.changed / np.where(self.changed > 0, self.changed + own, 1.0)
+        moved = self._standard(self.value) ** 2 + np.diag(self.covariance)
+        square = share**2 * moved + share * own
+        self._suppose((self.tails * scale**2 + square) / (self.tails + 1.0))
+
+    def _suppose(self, changed: FloatArray) -> None:
+        """That parameters have changed by so much: variances in units of their priors."""
+        self.changed = changed
+        self.precision = np.linalg.inv(self.beforehand.covariance + np.diag(changed))
+
+    def _bounds(self) -> tuple[FloatArray, FloatArray]:
+        wide = np.full(2 * len(self.noise), np.inf)
+        low = np.concatenate([self.unknowns.low, -wide])
+        return low, np.concatenate([self.unknowns.high, wide])

@@ -1,0 +1,319 @@
+"""What a structure may have otherwise than its model says, as parameters to be inferred."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.stats import qmc
+
+from rga.errors import InputError
+from rga.inference.joint.joint_stiffness_surrogate import BENDING, with_bending
+from rga.model import Model, model_content, read_model
+from rga.model.parameter import FloatArray, listed
+from rga.simulation import Simulator
+
+#: spread of the stiffness of a whole group of members: decks, joints; and of a stretch of it [-]
+GROUP, STRETCH = 0.08, 0.04
+#: stretches that a group of so many members is cut into, along the bridge
+STRETCHES, MANY = 5, 12
+#: decimal logarithm of the share of rigid joints' bending, and its spread
+FIXITY, FIXITY_SPREAD = -0.5, 0.6
+#: decimal logarithm of the stiffness [N/m] of a bearing that the model takes as rigid
+BEARING, BEARING_SPREAD = 9.0, 0.7
+#: spread of the settlement of a support [m], and what it cannot exceed
+SETTLEMENT, SUNK = 0.005, 0.1
+#: share of a spread by which unknowns are moved to see how derivatives change
+BENT = 0.1
+#: rows by which it is seen
+SAMPLE = 32
+#: how much warmer one side gets than the other, per unit of a context that warms
+SIDEWAYS = 0.5
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A parameter that the model does not have.
+
+    Attributes:
+        name: in words; of the context variable that stands for it.
+        effect: as in a model file, without the parameter.
+        key: the parameter.
+        driven: how the parameter follows the unknown, as in a model file.
+        centre, spread: of its normal prior.
+        bounds: beyond which it makes no sense.
+        follows: context that it is a rate of; None where it is constant.
+        straight: whether readings are straight in it.
+    """
+
+    name: str
+    effect: dict[str, Any]
+    key: str
+    driven: dict[str, Any]
+    centre: float
+    spread: float
+    bounds: tuple[float, float]
+    follows: str | None = None
+    straight: bool = False
+
+    def at(self, value: float) -> dict[str, Any]:
+        """The effect with the unknown at a value."""
+        if self.follows is not None:
+            return {**self.effect, self.key: {"context": self.follows, "times": value}}
+        moved = self.driven.get("times", 1.0) * (value - self.driven.get("minus", 0.0))
+        return {**self.effect, self.key: 10.0**moved if self.driven.get("log10") else moved}
+
+
+class Unknowns:
+    """All unknowns of a model, and the model with them.
+
+    Stretches of every group of members may be stiffer or softer, pinned joints may be stiff, rigid
+    bearings may give way, supports may have settled, and the sun may warm one side more than the
+    other.
+
+    Args:
+        model: as it was given.
+
+    Raises:
+        InputError: the model is one that was found with its unknowns.
+
+    Attributes:
+        model: as it was given.
+        parts: the unknowns.
+        centre, spread: of their priors, float[unknowns].
+        low, high: bounds, float[unknowns].
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._bending = with_bending(model)
+        self.parts = [
+            *_stretches(model), *_joints(self._bending), *_bearings(model), *_settlements(model),
+            *_sides(model),
+        ]  # fmt: skip
+        twice = [part.name for part in self.parts if part.name in model.effects]
+        if twice or BENDING in model.groups:
+            raise InputError(
+                f"the model holds unknowns already, {(twice or [BENDING])[0]!r} among them",
+                "unknowns",
+                "give the model without them, and what was found as `start` or `prior`",
+            )
+        self.centre = np.array([part.centre for part in self.parts])
+        self.spread = np.array([part.spread for part in self.parts])
+        self.low, self.high = np.array([part.bounds for part in self.parts]).reshape(-1, 2).T
+
+    @property
+    def names(self) -> list[str]:
+        """Of contexts and unknowns."""
+        return [*self.model.context, *(part.name for part in self.parts)]
+
+    @cached_property
+    def spread_contexts(self) -> FloatArray:
+        """Contexts spread over their ranges, float[SAMPLE, contexts]."""
+        low, high = np.array([one.range for one in self.model.context.values()]).T
+        share = qmc.Sobol(len(low), scramble=True, rng=0).random(SAMPLE)
+        return np.asarray(low + (high - low) * share)
+
+    @cached_property
+    def sample(self) -> tuple[FloatArray, FloatArray]:
+        """`bend` at contexts spread over their ranges."""
+        return self.bend(self.spread_contexts)
+
+    def at(self, values: FloatArray) -> Model:
+        """The model extended by the unknowns at values, float[unknowns]."""
+        content = model_content(self._bending)
+        # They come first: what does not vary is put on the structure once.
+        found = {
+            part.name: part.at(float(value)) for part, value in zip(self.parts, values, strict=True)
+        }
+        content["effects"] = {**found, **content["effects"]}
+        return read_model(content, "the model with its unknowns")
+
+    def linearise(
+        self, contexts: FloatArray, values: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Readings, and their derivatives by contexts and by unknowns.
+
+        Args:
+            contexts: float[n, contexts].
+            values: of the unknowns, float[unknowns].
+
+        Returns:
+            float[n, sensors], float[n, sensors, contexts] and float[n, sensors, unknowns].
+        """
+        count, rates = contexts.shape[1], self._rates
+        straight = [number for number, part in enumerate(self.parts) if part.straight]
+        driven = [number for number, part in enumerate(self.parts) if not part.straight]
+        readings = self.predict(contexts, values)
+        by_unknowns = np.empty((*readings.shape, len(values)))
+        # Where readings are straight, a difference is the derivative. That it changes with
+        # contexts is left out: it hardly does.
+        moved = np.vstack([values, values + np.diag(self.spread)[straight]])
+        one = np.tile(contexts.mean(axis=0), (len(moved), 1))
+        there = self.predict(one, moved)
+        by_unknowns[:, :, straight] = (there[1:] - there[0]).T / self.spread[straight]
+        slopes = self._of_driven.jacobian(self._table(contexts, values, driven))
+        by_contexts, by_unknowns[:, :, driven] = slopes[:, :, :count].copy(), slopes[:, :, count:]
+        for number, followed in rates.items():
+            by_contexts[:, :, followed] += by_unknowns[:, :, number] * values[number]
+            by_unknowns[:, :, number] *= contexts[:, None, followed]
+        return readings, by_contexts, by_unknowns
+
+    def predict(self, contexts: FloatArray, values: FloatArray) -> FloatArray:
+        """Readings of contexts, float[n, contexts], and unknowns, float[unknowns] or one a row."""
+        return self._of_all.predict(self._table(contexts, values, range(len(self.parts))))
+
+    def _table(
+        self, contexts: FloatArray, values: FloatArray, chosen: Sequence[int]
+    ) -> dict[str, FloatArray]:
+        """Columns of contexts and of chosen unknowns, rates times what they follow."""
+        columns = np.array(np.broadcast_to(values, (len(contexts), len(self.parts))))
+        for number, followed in self._rates.items():
+            columns[:, number] *= contexts[:, followed]
+        names = [*self.model.context, *(self.parts[number].name for number in chosen)]
+        return dict(zip(names, np.hstack([contexts, columns[:, chosen]]).T, strict=True))
+
+    @cached_property
+    def _rates(self) -> dict[int, int]:
+        """Numbers of unknowns that are rates, and of the contexts that they follow."""
+        names = list(self.model.context)
+        followed = {number: part.follows for number, part in enumerate(self.parts)}
+        return {number: names.index(name) for number, name in followed.items() if name is not None}
+
+    def bend(self, contexts: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Derivatives by contexts, and how they change with each unknown about its centre.
+
+        Args:
+            contexts: float[n, contexts].
+
+        Returns:
+            float[n, sensors, contexts] and float[unknowns, n, sensors, contexts], the latter per
+            prior spread of the unknown.
+        """
+
+        def slopes(values: FloatArray) -> FloatArray:
+            table = dict(zip(self.model.context, contexts.T, strict=True))
+            return Simulator(self.at(values)).jacobian(table)
+
+        here = slopes(self.centre)
+        moved = [
+            np.zeros_like(here) if part.straight else slopes(self.centre + step) - here
+            for part, step in zip(self.parts, np.diag(BENT * self.spread), strict=True)
+        ]
+        return here, np.stack(moved) / BENT
+
+    @cached_property
+    def _of_all(self) -> Simulator:
+        return self._driven(self.parts)
+
+    @cached_property
+    def _of_driven(self) -> Simulator:
+        return self._driven([part for part in self.parts if not part.straight])
+
+    def _driven(self, parts: Sequence[Unknown]) -> Simulator:
+        """The simulator in which each of some unknowns is a context of its own."""
+        content = model_content(self._bending)
+        for part in parts:
+            content["context"][part.name] = {"unit": "-", "range": list(part.bounds)}
+            driven = {"context": part.name, **part.driven}
+            content["effects"][part.name] = {**part.effect, part.key: driven}
+        return Simulator(read_model(content, "the model with its unknowns"))
+
+
+def _stretches(model: Model) -> Iterator[Unknown]:
+    """Stiffness of the members of each group, side by side and stretch by stretch."""
+    points = np.array(list(model.nodes.values()))
+    along = int(np.argmax(np.ptp(points[:, :2], axis=0)))
+    lowest, width = points.min(axis=0), np.ptp(points, axis=0)
+    groups: dict[str, list[tuple[FloatArray, str]]] = {}
+    for name, member in model.members.items():
+        middle = np.mean([model.nodes[node] for node in member.nodes], axis=0)
+        across = (middle[1 - along] - lowest[1 - along]) / (width[1 - along] or 1.0)
+        side = "" if 0.25 < across < 0.75 else (" near side" if across < 0.5 else " far side")
+        if width[1 - along] == 0:
+            side = ""
+        groups.setdefault((member.groups or ["members"])[0] + side, []).append((middle, name))
+    first = dict.fromkeys(m.groups[0] for m in model.members.values() if m.groups)
+    for group in first:
+        yield _stiffness(f"stiffness of {group}", {"group": group}, GROUP)
+    for group, members in groups.items():
+        cuts = STRETCHES if len(members) >= MANY else 1
+        cut: dict[int, list[str]] = {}
+        for middle, name in members:
+            share = (middle[along] - lowest[along]) / width[along]
+            cut.setdefault(min(int(cuts * share), cuts - 1), []).append(name)
+        for number, names in sorted(cut.items()):
+            if len(groups) > len(first) or cuts > 1:
+                words = f", stretch {number + 1}" if cuts > 1 else ""
+                yield _stiffness(f"stiffness of {group}{words}", {"member": names}, STRETCH)
+
+
+def _stiffness(name: str, place: dict[str, Any], spread: float) -> Unknown:
+    effect = {"kind": "member_stiffness", **place}
+    return Unknown(name, effect, "factor", {"minus": -1.0}, 0.0, spread, (-0.6, 1.5))
+
+
+def _joints(model: Model) -> Iterator[Unknown]:
+    """Share of the bending of rigid joints that the joints of a group leave to its members."""
+    for group in model.groups:
+        if group.startswith("bending of "):
+            effect = {"kind": "member_stiffness", "group": group}
+            yield Unknown(
+                group, effect, "factor", {"log10": True}, FIXITY, FIXITY_SPREAD, (-2.0, 1.0)
+            )
+
+
+def _bearings(model: Model) -> Iterator[Unknown]:
+    """Upright stiffness of supports that the model takes as rigid."""
+    for name, place in _upright(model, "support_flexibility"):
+        bounds = (BEARING - 3.0, BEARING + 3.0)
+        yield Unknown(
+            f"bearing {name}", place, "stiffness", {"log10": True}, BEARING, BEARING_SPREAD, bounds
+        )
+
+
+def _settlements(model: Model) -> Iterator[Unknown]:
+    """Upright settlement of supports."""
+    for name, place in _upright(model, "support_settlement"):
+        yield Unknown(
+            f"settlement of {name}", place, "displacement", {}, 0.0, SETTLEMENT, (-SUNK, SUNK),
+            straight=True,
+        )  # fmt: skip
+
+
+def _upright(model: Model, kind: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Supports that hold uz and have no effect of a kind yet, each with that effect's place."""
+    taken = {
+        name
+        for effect in model.effects.values()
+        if effect.kind == kind
+        for name in listed(getattr(effect, "support"))  # noqa: B009
+    }
+    for name, support in model.supports.items():
+        if "uz" in support.fixed and name not in taken:
+            yield name, {"kind": kind, "support": name, "dof": "uz"}
+
+
+def _sides(model: Model) -> Iterator[Unknown]:
+    """Warmth of one side beyond the other, in proportion to what warms."""
+    points = np.array(list(model.nodes.values()))
+    if np.ptp(points[:, 1]) == 0:
+        return
+    warming = {
+        context: None
+        for effect in model.effects.values()
+        if effect.kind in ("temperature", "thermal_gradient")
+        for context in sorted(effect.drivers())
+    }
+    for context in warming:
+        yield Unknown(
+            f"warmth of one side with {context}",
+            {"kind": "thermal_gradient", "axis": "lateral"},
+            "difference",
+            {},
+            0.0,
+            SIDEWAYS,
+            (-5.0, 5.0),
+            follows=context,
+        )

@@ -1,0 +1,1 @@
+"""How a context moves over time: estimates of single rows, combined."""

@@ -1,0 +1,1 @@
+"""The most probable contexts of measured rows under a simulator."""

@@ -1,0 +1,1 @@
+"""Networks that infer contexts, trained adversarially and guided by physics (torch)."""

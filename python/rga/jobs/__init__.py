@@ -1,0 +1,1 @@
+"""Whole jobs, from models and records to files: a run of the twin, many diagnoses."""

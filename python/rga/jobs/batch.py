@@ -1,0 +1,222 @@
+"""Many bridges at once: a list of models and records in, findings for each and a summary out."""
+
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import polars as pl
+
+from rga.diagnosis.pipeline import diagnose
+from rga.errors import InputError, ReportError
+from rga.findings.phrases import effect_words
+from rga.findings.schema import Findings
+from rga.model import Model, load_model
+from rga.parallel import finished
+from rga.records import Record, load_record
+from rga.records.read import read_table
+
+NEEDED = ("name", "model", "record")
+OPTIONAL = ("import",)
+SUMMARY = "summary.csv"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What became of a bridge; a line of summary.csv.
+
+    Attributes:
+        name: of the bridge.
+        verdict: of the findings; None where there is an error.
+        causes: in words.
+        gain: on rows that no step saw [noise variances]; None where there is an error.
+        error: what kept the bridge from being diagnosed.
+    """
+
+    name: str
+    verdict: str | None = None
+    causes: str | None = None
+    gain: float | None = None
+    error: str | None = None
+
+
+@dataclass(frozen=True)
+class _Bridge:
+    """A line of the list."""
+
+    name: str
+    model: Path
+    record: Path
+    mapping: Path | None
+
+
+@dataclass(frozen=True)
+class _Task:
+    """All that a worker needs, which may share no disk with us."""
+
+    name: str
+    model: Model
+    record: Record
+    seed: int
+
+
+@dataclass(frozen=True)
+class _Done:
+    """The files of a diagnosis, by name, and why its report could not be drawn."""
+
+    files: dict[str, bytes]
+    fault: ReportError | None
+
+
+def diagnose_many(
+    bridges: str | Path,
+    output: str | Path,
+    *,
+    seed: int = 0,
+    workers: int = 1,
+    dask: str | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> list[Summary]:
+    """Diagnose many bridges; an error of one does not stop the others.
+
+    Findings, extended model and report of a bridge are written to a directory of its name as soon
+    as they are there, and `summary.csv` at the end. They do not depend on where the work is done.
+
+    Args:
+        bridges: CSV or Parquet file, a bridge a line: `name`, `model`, `record` and, where wanted,
+            `import` (a mapping); files relative to the list.
+        output: directory for the results.
+        seed: of each diagnosis.
+        workers: processes at work on this machine.
+        dask: address of the scheduler of a Dask cluster, whose workers do the work instead; they
+            need rga, and none of the files.
+        progress: told a stage and the share of it that is done.
+
+    Returns:
+        A summary for each bridge, in the order of the list.
+
+    Raises:
+        InputError: the list cannot be used, the output cannot be written, or there is no cluster.
+        ReportError: a report could not be drawn; all else is written.
+    """
+    listed = _read(Path(bridges))
+    output = Path(output)
+    _make(output)
+    errors: dict[str, Exception] = {}
+    faults: list[ReportError] = []
+    told: dict[str, Summary] = {}
+    for task, future in finished(_work, _tasks(listed, seed, errors), workers=workers, dask=dask):
+        error = future.exception()
+        if isinstance(error, Exception):
+            errors[task.name] = error
+        else:
+            done: _Done = future.result()
+            told[task.name] = _keep(task.name, done, output / task.name)
+            faults += (
+                [] if done.fault is None else [ReportError(done.fault.reason, output / task.name)]
+            )
+        if progress is not None:
+            progress("diagnosing bridges", len({*told, *errors}) / len(listed))
+    for name, error in errors.items():
+        told[name] = Summary(name, error=" ".join(str(error).split()) or type(error).__name__)
+    summaries = [told[bridge.name] for bridge in listed]
+    frame = pl.DataFrame([asdict(one) for one in summaries], infer_schema_length=None)
+    _write({SUMMARY: frame.write_csv().encode()}, output)
+    for error in errors.values():
+        if not isinstance(error, InputError):
+            raise error
+    for fault in faults:
+        raise fault
+    return summaries
+
+
+def _tasks(bridges: Iterable[_Bridge], seed: int, errors: dict[str, Exception]) -> Iterator[_Task]:
+    """Bridges as they are read; errors are kept by the name of the bridge."""
+    for bridge in bridges:
+        try:
+            model = load_model(bridge.model)
+            record = load_record(bridge.record, model, bridge.mapping)
+        except Exception as error:
+            errors[bridge.name] = error
+        else:
+            yield _Task(bridge.name, model, record, seed)
+
+
+def _work(task: _Task) -> _Done:
+    findings = diagnose(task.model, task.record, seed=task.seed)
+    fault = None
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            findings.write(folder)
+        except ReportError as error:
+            fault = error
+        return _Done({path.name: path.read_bytes() for path in Path(folder).iterdir()}, fault)
+
+
+def _keep(name: str, done: _Done, directory: Path) -> Summary:
+    _make(directory)
+    _write(done.files, directory)
+    findings = Findings.model_validate_json(done.files["findings.json"])
+    causes = " and ".join(effect_words(cause.effect) for cause in findings.causes)
+    return Summary(name, findings.verdict, causes, findings.gap.held_out.gain)
+
+
+def _write(files: Mapping[str, bytes], directory: Path) -> None:
+    """Write files under temporary names, and rename them when all are whole."""
+    drafts = {directory / name: directory / f"{name}.partial" for name in files}
+    for path, draft in drafts.items():
+        draft.write_bytes(files[path.name])
+    for path, draft in drafts.items():
+        draft.replace(path)
+
+
+def _make(directory: Path) -> None:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = (error.strerror or "refused").lower()
+        raise InputError(
+            f"the directory cannot be made, {reason}", str(directory), "give another place"
+        ) from None
+
+
+def _read(path: Path) -> list[_Bridge]:
+    table = read_table(path)
+    columns = table.frame.columns
+    if missing := [name for name in NEEDED if name not in columns]:
+        raise InputError(
+            f"the list has no column {missing[0]!r}", str(path), f"give {', '.join(NEEDED)}"
+        )
+    if unknown := [name for name in columns if name not in NEEDED + OPTIONAL]:
+        known = ", ".join(NEEDED + OPTIONAL)
+        raise InputError(f"the column {unknown[0]!r} is unknown", str(path), f"known are {known}")
+    seen: dict[str, int] = {}
+    bridges = []
+    for number, row in enumerate(table.frame.iter_rows(named=True)):
+        for column in NEEDED:
+            if not isinstance(row[column], str):
+                raise InputError(
+                    f"there is no {column}", table.where(number, column), "fill the cell with text"
+                )
+        name = row["name"]
+        if name.startswith(".") or not name.isprintable() or {*name} & {"/", "\\", ":"}:
+            raise InputError(
+                f"{name!r} cannot name a directory",
+                table.where(number, "name"),
+                "leave out slashes, colons and a dot in front",
+            )
+        # Disks that do not tell capitals apart would mix up their results.
+        if (first := seen.setdefault(name.casefold(), number)) < number:
+            raise InputError(
+                f"the name {name!r} stands twice",
+                table.where(number, "name"),
+                f"give another than in {table.row_name} {table.first + first}",
+            )
+        if name.casefold() == SUMMARY:
+            raise InputError(
+                f"{name!r} is the name of the summary", table.where(number), "give another"
+            )
+        model, record = path.parent / row["model"], path.parent / row["record"]
+        mapping = path.parent / row["import"] if row.get("import") else None
+        bridges.append(_Bridge(name, model, record, mapping))
+    return bridges

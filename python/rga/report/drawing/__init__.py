@@ -1,0 +1,1 @@
+"""Drawings of the structure with a value at every sensor."""

@@ -1,0 +1,1 @@
+"""The pages of the reports: what stands on them, and their writing."""

@@ -1,0 +1,271 @@
+"""What stands on the page, made ready for the template."""
+
+import re
+from typing import Any
+
+import numpy as np
+
+from rga.diagnosis.checks.leave_one_out import unseen_groups
+from rga.diagnosis.member_forces import member_forces
+from rga.findings.phrases import effect_words
+from rga.findings.schema import Findings
+from rga.report.figures.bridge import draw_bridge, draw_residuals
+from rga.report.figures.deviation import percent_off, runs
+from rga.report.figures.explanations import draw_explanations, kept, ranked
+from rga.report.figures.figure_style import FONTS
+from rga.report.figures.gain import draw_gain
+from rga.report.figures.member_forces import draw_forces, force_table, restraint_words
+from rga.report.figures.series import draw_series
+from rga.report.figures.unexplained import unexplained
+from rga.report.figures.unseen import draw_unseen
+from rga.report.pages.cards import card, generic, moment, plain
+from rga.report.pages.evidence import evidence
+from rga.report.pages.fault_tolerant_parts import part
+from rga.report.text.actions import BY_VERDICT, actions
+from rga.report.text.quantities import DASH, duration, number, percent, short
+
+VERDICTS = {
+    "nothing_wrong": "Nothing wrong found",
+    "named": "Cause named",
+    "ambiguous": "More than one cause fits",
+    "partial": "Cause named, structure left",
+    "unknown": "Cause not known",
+    "unidentifiable": "These data cannot show it",
+}
+#: longer lists are folded
+LONG_LIST = 12
+
+
+def page(findings: Findings) -> dict[str, Any]:
+    """The variables of the template."""
+    account = findings.account
+    model, record = account.model, account.record
+    effects = [cause for cause in findings.causes if cause.effect.get("kind") != "sensor_fault"]
+    series = part("The readings", draw_series, findings)
+    # The first sentence is the headline; what follows is read below it, and the gain only once.
+    headline, *rest = re.split(r"(?<=\.) (?=[A-Z])", findings.sentence())
+    if not any("no step saw" in sentence for sentence in rest):
+        rest.insert(0, gain(findings))
+    return {
+        "fonts": FONTS,
+        "model_name": model.name,
+        "verdict": VERDICTS[findings.verdict],
+        "verdict_key": findings.verdict,
+        "headline": headline,
+        "rest": " ".join(rest),
+        "period": period(findings),
+        "gain": gain(findings),
+        "warnings": list(dict.fromkeys([*findings.warnings, *record.warnings])),
+        "next": BY_VERDICT[findings.verdict],
+        "tasks": part("What to do first", tasks, findings),
+        "cards": [
+            {
+                "said": card(
+                    cause,
+                    model,
+                    effect_words(cause.effect),
+                    [effect_words(rival) for rival in cause.rivals],
+                ),
+                "actions": part("What to do about it", actions, cause.effect),
+                "evidence": part("The evidence", evidence, findings, cause),
+            }
+            for cause in effects
+        ],
+        "rejected": rejected(findings),
+        "bridge": part("The map of percentages", draw_bridge, findings) if len(record) else None,
+        "residuals": part("The map of residuals", draw_residuals, findings)
+        if len(record)
+        else None,
+        "forces": part("The forces of the members", forces, findings),
+        "groups": [
+            (
+                group.group,
+                ", ".join(group.sensors),
+                percent(group.before_percent),
+                percent(group.after_percent),
+            )
+            for group in findings.groups
+        ],
+        "sensors": part("The table of the sensors", sensors, findings),
+        "series": series[0] if series else series,
+        "over_time": bool(series and series[1]),
+        "explanations": part("The table of explanations", explanations, findings),
+        "explanations_figure": part("The figure of explanations", draw_explanations, findings),
+        "unseen": part("The channels left out", unseen, findings),
+        "gain_figure": part("The figure of the gain", draw_gain, findings),
+        "contexts": part("The table of contexts", contexts, findings),
+        "share": percent(100 * findings.unexplained.share, sign=False),
+        "looks_like": findings.unexplained.looks_like,
+        "unexplained": part("The patterns that are left", unexplained, account),
+        "unidentifiable": [
+            (plain(one.kind), one.place, number(one.d_prime_at_largest))
+            for one in sorted(findings.unidentifiable, key=lambda one: (one.kind, one.place))
+        ],
+        "fold": len(findings.unidentifiable) > LONG_LIST,
+        "unused": sorted(record.unused.items()),
+        "provenance": provenance(findings),
+    }
+
+
+def period(findings: Findings) -> str:
+    """Which time the record spans, its rows, and how many of them no step saw."""
+    account = findings.account
+    record = account.record
+    if not len(record):
+        return "a record without rows"
+    first, last = (moment(record.time_label(float(record.time[row]))) for row in (0, -1))
+    if len(record) == 1:
+        return f"{first}, one row"
+    length, unit = duration(float(record.time[-1] - record.time[0]))
+    step, step_unit = duration(float(np.median(np.diff(record.time))))
+    pieces = len(runs(account.held_out))
+    held = f"{int(account.held_out.sum())} of them held out in {pieces} block"
+    return (
+        f"{first} to {last} ({short(length)} {unit}), {len(record)} rows every "
+        f"{short(step)} {step_unit}, {held}{'s' if pieces != 1 else ''}"
+    )
+
+
+def gain(findings: Findings) -> str:
+    """The gain by held-out readings in one line."""
+    held = findings.gap.held_out
+    low, high = held.gain_ci90
+    went = "fell" if held.after <= held.before else "rose"
+    said = "By readings that no step saw the gap "
+    if not findings.causes:
+        return (
+            f"{said}is {number(held.before)}; noise alone gives {short(findings.gap.noise_floor)}."
+        )
+    return (
+        f"{said}{went} from {number(held.before)} to {number(held.after)}; noise alone gives "
+        f"{short(findings.gap.noise_floor)}. Gain {number(held.gain)}, 90\u00a0% interval "
+        f"{number(low)} to {number(high)}."
+    )
+
+
+def rejected(findings: Findings) -> list[dict[str, str]]:
+    """Channels that do not work, with the reason."""
+    account = findings.account
+    faults = {
+        str(cause.effect.get("sensor")): cause
+        for cause in findings.causes
+        if cause.effect.get("kind") == "sensor_fault"
+    }
+    names = [n for n, out in zip(account.record.sensors, account.rejected, strict=True) if out]
+    found = []
+    for name in dict.fromkeys([*faults, *names]):
+        cause = faults.get(name)
+        since = "" if cause is None or cause.onset is None else f" from {moment(cause.onset)}"
+        found.append(
+            {
+                "sensor": name,
+                "mode": str(cause.effect.get("mode", "faulty")) + since if cause else "rejected",
+                "why": cause.why if cause else "",
+            }
+        )
+    return found
+
+
+def tasks(findings: Findings) -> list[tuple[str, str, str]]:
+    """The first thing that every cause calls for: its kind, what sort of action, in words."""
+    effects = [cause.effect for cause in findings.causes]
+    return [(plain(str(effect.get("kind"))), *actions(effect)[0]) for effect in effects]
+
+
+def forces(findings: Findings) -> dict[str, Any] | None:
+    """What the causes mean for the members; None where no cause changes a force."""
+    account = findings.account
+    found = member_forces(account)
+    if found is None:
+        return None
+    table = force_table(found, account.model)
+    if not table.lines:
+        return None
+    record = account.record
+    return {
+        "table": table,
+        "row": moment(record.time_label(float(record.time[found.row]))),
+        "restraint": restraint_words(found, [str(c.effect["kind"]) for c in findings.causes]),
+        "figure": draw_forces(found, account.model),
+    }
+
+
+def unseen(findings: Findings) -> dict[str, Any] | None:
+    """Groups of channels that were left out and predicted; None where there are none."""
+    account = findings.account
+    groups = unseen_groups(account.found) if account.found is not None else []
+    figure = draw_unseen(groups, account.model)
+    if figure is None:
+        return None
+    lines = [
+        (one.group, len(one.channels), number(one.gap_without), number(one.gap_with))
+        for one in groups
+    ]
+    return {"figure": figure, "lines": lines}
+
+
+def explanations(findings: Findings) -> list[dict[str, Any]]:
+    """The explanations that were tried, the likeliest first."""
+    best = kept(findings)
+    return [
+        {
+            "words": one.words or "no effect at all",
+            "log_odds": number(one.log_odds),
+            "gap": number(one.gap),
+            "unseen": DASH if one.gap_unseen_channels is None else number(one.gap_unseen_channels),
+            "remark": one.remark,
+            "best": one is best,
+        }
+        for one in ranked(findings.explanations)
+    ]
+
+
+def sensors(findings: Findings) -> list[dict[str, str]]:
+    """Every channel: percent off and gap, before and after."""
+    account = findings.account
+    off = [percent_off(account, simulated) for simulated in (account.before, account.after)]
+    found = []
+    for column, name in enumerate(account.record.sensors):
+        gap = findings.gap.by_sensor.get(name)
+        sensor = account.model.sensors.get(name)
+        place = "" if sensor is None else sensor.member or f"node {sensor.node}"
+        found.append(
+            {
+                "name": name,
+                "what": "" if sensor is None else sensor.kind,
+                "place": place,
+                "off_before": percent(float(off[0][column])),
+                "off_after": percent(float(off[1][column])),
+                "before": number(gap.before) if gap else DASH,
+                "after": number(gap.after) if gap else DASH,
+                "note": "rejected" if account.rejected[column] else "",
+            }
+        )
+    return found
+
+
+def contexts(findings: Findings) -> list[tuple[str, str, list[tuple[str, str]]]]:
+    """Context, its unit, and what was inferred of it."""
+    known = findings.account.model.context
+    found = []
+    for name, inferred in findings.contexts.items():
+        unit = known[name].unit if name in known else ""
+        shown = f" [{unit}]" if unit and "unit" not in inferred else ""
+        items = [(plain(str(key)), generic(value)) for key, value in inferred.items()]
+        found.append((name, shown, items))
+    return found
+
+
+def provenance(findings: Findings) -> list[tuple[str, str]]:
+    """What made this report."""
+    account = findings.account
+    found = [("seed", str(findings.seed))]
+    if account.model.path is not None:
+        found.append(("model file", account.model.path.name))
+    found.append(("model SHA-256", findings.model_sha256 or DASH))
+    found.append(("record SHA-256", findings.record_sha256 or DASH))
+    if account.record.zero is not None:
+        first, last = account.record.zero
+        found.append(("channels zeroed over", f"{number(first)} to {number(last)} s of the record"))
+    found += [(f"{name} version", version) for name, version in sorted(findings.versions.items())]
+    return found

@@ -1,0 +1,131 @@
+"""The evidence for one cause: how sure its values are, how its rival fits, what would change it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from rga.diagnosis.assemble import last_effect
+from rga.diagnosis.checks.detectability import Least, least_seen
+from rga.diagnosis.checks.leave_one_out import Hold, contrast, hold
+from rga.diagnosis.checks.profiles import onset_profile, profiles
+from rga.diagnosis.search.stepwise import NAMED, RIVAL, Found
+from rga.findings.arrays import Account
+from rga.findings.phrases import effect_words
+from rga.findings.schema import Cause, Findings
+from rga.model.effect import Effect
+from rga.model.schema import Model
+from rga.report.figures.contrast import draw_contrast
+from rga.report.figures.profiles import draw_profiles
+from rga.report.figures.series import runs_on
+from rga.report.pages.cards import moment, own_unit, plain
+from rga.report.pages.fault_tolerant_parts import Lost, part
+from rga.report.text.quantities import number, percent, quantity
+
+
+def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
+    """Variables of the template for one cause; None where nothing was searched."""
+    account = findings.account
+    found = account.found
+    if found is None:
+        return None
+    # Faults of channels were told before what the search found.
+    place = findings.causes.index(cause)
+    place -= len(findings.causes) - len(found.fit.hypotheses)
+    rivalry = part("The rival's fit", _rivalry, account, found, place)
+    return {
+        "profiles": part("The profiles", _profiles, account, found, place, cause),
+        "onset": cause.onset is not None,
+        "rivalry": rivalry,
+        "doubts": doubts(found, place, cause, account.model, rivalry.lead if rivalry else ""),
+    }
+
+
+@dataclass(frozen=True)
+class Rivalry:
+    """A cause against its nearest rival.
+
+    Attributes:
+        rival: in words.
+        lead: of the cause over it, in words.
+        figure: of the channels on which they differ most.
+    """
+
+    rival: str
+    lead: str
+    figure: Markup
+
+
+def _profiles(account: Account, found: Found, place: int, cause: Cause) -> Markup:
+    shown = profiles(found, place)
+    units = [own_unit(one.unit, cause.effect, account.model) for one in shown]
+    record = account.record
+    onset = onset_profile(found, place, record.origin + float(record.time[0]))
+    likeliest = "" if cause.onset is None else moment(cause.onset)
+    return draw_profiles(shown, units, onset, likeliest, f"profiles-{place}")
+
+
+def _rivalry(account: Account, found: Found, place: int) -> Rivalry | None:
+    """The cause against its nearest rival; None where it has none."""
+    against = contrast(found, place)
+    if against is None:
+        return None
+    rival = effect_words(last_effect(against.against, account.record))
+    lead = (
+        f"It leads by {number(against.lead)} log-odds over its nearest rival, {rival}; below "
+        f"{RIVAL:g} the two cannot be told apart. On no channel do they differ by more than "
+        f"{number(max(against.size), 2)} times its noise (root mean square)."
+    )
+    figure = draw_contrast(against, account.model, runs_on(account), f"contrast-{place}")
+    return Rivalry(rival, lead, figure)
+
+
+def doubts(found: Found, place: int, cause: Cause, model: Model, lead: str) -> list[str]:
+    """What would change the verdict, in words and numbers.
+
+    Args:
+        found, place: the end of a search, and the number of the cause in it.
+        cause: as it is told.
+        model: as it was given.
+        lead: of the cause over its nearest rival, in words; empty where it has none.
+    """
+    alone = f"It leads by {number(cause.log_odds)} log-odds over leaving it out; "
+    told = [f"{alone}below {NAMED:g} it would not be named."]
+    if lead:
+        told.append(lead)
+    hangs = part("What its lead hangs on", hold, found, place)
+    least = part("The smallest effect that would have been named", least_seen, found, place)
+    if hangs is not None:
+        told.append(hangs.words if isinstance(hangs, Lost) else _hold_words(hangs))
+    if least is not None:
+        told.append(least.words if isinstance(least, Lost) else _least_words(least, cause, model))
+    if cause.separated_by:
+        told.append(f"To tell it from its rivals: {cause.separated_by}.")
+    return told
+
+
+def _hold_words(one: Hold) -> str:
+    over = "leaving it out" if one.alone else "its nearest rival"
+    least = NAMED if one.alone else RIVAL
+    then = (
+        "the verdict does not hang on any one channel"
+        if one.left >= least
+        else "the verdict hangs on this channel: check it first"
+    )
+    return (
+        f"Its lead hangs most on channel {one.channel}: without it {number(one.left)} log-odds "
+        f"over {over} would be left; {then}."
+    )
+
+
+def _least_words(one: Least, cause: Cause, model: Model) -> str:
+    share = percent(100 * one.share, sign=False)
+    if one.value is None:
+        return f"An effect of less than {share} of its size would not have been named."
+    name = next(key for key, value in cause.effect.items() if isinstance(value, dict))
+    unit = Effect.vocabulary[cause.effect["kind"]].unit(name, cause.effect)
+    shown = quantity(one.value, own_unit(unit, cause.effect, model))
+    return (
+        f"At a {plain(name)} of {shown} its effect would be {share} as large, and would not have "
+        "been named."
+    )

@@ -1,0 +1,1 @@
+"""Derivatives of the sensors by contexts and effects."""

@@ -1,0 +1,239 @@
+"""Derivatives of the sensors by the contexts.
+
+Coefficients of loads and stiffnesses are straight in the contexts but for kinks, so that their
+central differences have no truncation error (1e-7 of them where a context is a logarithm); the
+response to them is differentiated exactly, along the contexts (`jacobian`) or backwards from the
+sensors (`pull_back`). Where whole structures vary, where friction remembers, or where displacements
+are large, the response itself is differenced.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rga import _core
+from rga.model.effect import Values
+from rga.model.parameter import FloatArray
+from rga.simulation.dispatch import coefficients, linear_paths, variation_under
+from rga.simulation.paths.condensation import Condensation, DependentTerms
+from rga.simulation.paths.factorisation import Factorisation
+from rga.simulation.paths.variation import unvaried
+
+if TYPE_CHECKING:
+    from rga.simulation.simulator import Response, Simulator
+
+#: step of differences, as a share of the range of a context, and its least: nearer to an end of
+#: the range than that, the difference is taken to the other side alone
+STEP, LEAST = 1e-4, 1e-6
+
+
+@dataclass(frozen=True)
+class Sides:
+    """A little ahead of the rows and a little behind, along each context that drives something.
+
+    Attributes:
+        columns: which contexts, among all of the model.
+        ahead, behind: how far, in their units, float[rows, contexts].
+        tables: contexts of all rows, ahead and behind in turn.
+        values: parameters of all effects in all these tables, one behind the other.
+    """
+
+    columns: list[int]
+    ahead: FloatArray
+    behind: FloatArray
+    tables: list[Values]
+    values: dict[str, Values]
+
+    def of(self, number: int, rows: int) -> dict[str, Values]:
+        """Parameters in one of the tables."""
+        own = slice(number * rows, (number + 1) * rows)
+        return {
+            name: {key: column[own] for key, column in values.items()}
+            for name, values in self.values.items()
+        }
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """A linear path at the rows, and how fast what it depends on follows the contexts.
+
+    Attributes:
+        system: the path.
+        coefficients, stiffness: float[rows, patterns] and float[rows, elements].
+        coefficient_rates, stiffness_rates: their derivatives by the contexts, float[rows, patterns,
+            contexts] and float[rows, elements, contexts].
+        per_si: units of the sensors, float[sensors].
+    """
+
+    system: Condensation | Factorisation
+    coefficients: FloatArray
+    stiffness: FloatArray
+    coefficient_rates: FloatArray
+    stiffness_rates: FloatArray
+    per_si: FloatArray
+
+
+def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
+    """Derivatives, float[rows, sensors, contexts].
+
+    Args:
+        simulator: of a model.
+        table: contexts and time, checked, float[rows] each.
+    """
+    model = simulator.model
+    out = np.zeros((len(table["time"]), len(model.sensors), len(model.context)))
+    if not (contexts := _followed(simulator)):
+        return out
+    response = simulator.respond(table)
+    sides = _sides(simulator, response, contexts)
+    rates = None
+    for tangent in _tangents(simulator, response, sides):
+        try:
+            found = tangent.system.differentiate(
+                tangent.coefficients,
+                tangent.stiffness,
+                tangent.coefficient_rates,
+                tangent.stiffness_rates,
+            )
+        except (_core.UnstableSample, DependentTerms):
+            continue  # the next path decides
+        rates = found * tangent.per_si[:, None]
+        break
+    if rates is not None and simulator.reads_plainly:
+        out[:, :, sides.columns] = rates
+        return out
+    shown = []
+    for number, one in enumerate(sides.tables):
+        if rates is None:
+            shown.append(simulator.predict(one))
+            continue
+        way = -sides.behind if number % 2 else sides.ahead
+        along = rates[:, :, number // 2] * way[:, [number // 2]]
+        moved = response.quantities + along
+        values = sides.of(number, len(moved))
+        shown.append(
+            simulator.read(replace(response, contexts=one, values=values, quantities=moved))
+        )
+    ahead, behind = np.stack(shown[::2], 2), np.stack(shown[1::2], 2)
+    out[:, :, sides.columns] = (ahead - behind) / (sides.ahead + sides.behind)[:, None]
+    return out
+
+
+def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> FloatArray:
+    """Derivatives of the sum of the sensors times gradients, float[rows, contexts].
+
+    The adjoint: its cost does not grow with the number of contexts. Where sensors show more than
+    the structure tells, and where there is no linear path, the Jacobian takes its place.
+
+    Args:
+        simulator, table: as for `jacobian`.
+        gradients: float[rows, sensors].
+    """
+    model = simulator.model
+    out = np.zeros((len(table["time"]), len(model.context)))
+    if not (contexts := _followed(simulator)):
+        return out
+    if not simulator.reads_plainly:
+        return _product(gradients, jacobian(simulator, table))
+    response = simulator.respond(table)
+    sides = _sides(simulator, response, contexts)
+    for tangent in _tangents(simulator, response, sides):
+        try:
+            found = tangent.system.pull_back(
+                tangent.coefficients, tangent.stiffness, gradients * tangent.per_si
+            )
+        except (_core.UnstableSample, DependentTerms):
+            continue  # the next path decides
+        by_loads, by_stiffness = np.split(found, [tangent.coefficients.shape[1]], axis=1)
+        along = _product(by_loads, tangent.coefficient_rates)
+        along += _product(by_stiffness, tangent.stiffness_rates)
+        out[:, sides.columns] = along
+        return out
+    return _product(gradients, jacobian(simulator, table))
+
+
+def _followed(simulator: "Simulator") -> list[str]:
+    """Contexts that drive something."""
+    return [name for name in simulator.model.context if name in simulator.needed]
+
+
+def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) -> Sides:
+    model, table = simulator.model, response.contexts
+    ahead, behind, tables = [], [], []
+    for name in contexts:
+        here = table[name]
+        up, down = _steps(here, *model.context[name].range)
+        ahead.append(up)
+        behind.append(down)
+        tables += [{**table, name: here + up}, {**table, name: here - down}]
+    if any(effect.remembers for effect in model.effects.values()):
+        apart = [simulator.resolve(one) for one in tables]
+        values = {
+            name: {key: np.concatenate([one[name][key] for one in apart]) for key in own}
+            for name, own in response.values.items()
+        }
+    else:
+        values = simulator.resolve(
+            {name: np.concatenate([one[name] for one in tables]) for name in table}
+        )
+        for name, effect in model.effects.items():
+            for key in effect.of_all_rows:
+                values[name][key] = np.tile(response.values[name][key], len(tables))
+    columns = [list(model.context).index(name) for name in contexts]
+    return Sides(columns, np.stack(ahead, 1), np.stack(behind, 1), tables, values)
+
+
+def _steps(value: FloatArray, low: float, high: float) -> tuple[FloatArray, FloatArray]:
+    """How far to go ahead and behind inside the range: at its end there may be no stiffness."""
+    width = high - low
+    room = np.minimum(value - low, high - value) / 2
+    inside = (room >= 0) & (room < LEAST * width)
+    middle = np.where(room < 0, STEP * width, np.minimum(STEP * width, room))
+    at_low = inside & (value - low < high - value)
+    ahead = np.where(inside, np.where(at_low, LEAST * width, 0.0), middle)
+    behind = np.where(inside, np.where(at_low, 0.0, LEAST * width), middle)
+    return ahead, behind
+
+
+def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Iterator[Tangent]:
+    """Linear paths at the rows, the cheapest first; none where there is no tangent."""
+    rows = len(response.contexts["time"])
+    middle = simulator.request(response.values, rows)
+    every = np.arange(rows * len(sides.tables))
+    around = simulator.request(sides.values, len(every))
+    states = np.unique(np.concatenate([middle.states, around.states]), axis=0)
+    start = middle.change(states[0])
+    loads = middle.loads(start, np.arange(rows))
+    if start.bearings or start.laws or start.nonlinear or not loads:
+        return
+    varied = unvaried(start, states.shape[1])
+    if len(states) > 1:
+        found = variation_under(middle, states)
+        if found is None:
+            return
+        varied = found
+    ends, moved = coefficients(around.loads(start, every)), varied.at(around.of_rows)
+    for _, system in linear_paths(middle.prepared, varied, loads):
+        yield Tangent(
+            system,
+            coefficients(loads),
+            varied.at(middle.of_rows),
+            _rates(ends, sides),
+            _rates(moved, sides),
+            start.per_si,
+        )
+
+
+def _product(gradients: FloatArray, derivatives: FloatArray) -> FloatArray:
+    # A faulty sensor says nothing; its derivative must not spoil the others' sum.
+    return np.asarray(np.einsum("ts,tsc->tc", gradients, np.nan_to_num(derivatives)))
+
+
+def _rates(entries: FloatArray, sides: Sides) -> FloatArray:
+    """Derivatives of what is known on all sides, float[rows, entries, contexts]."""
+    rows, contexts = sides.ahead.shape
+    apart = entries.reshape(contexts, 2, rows, entries.shape[1])
+    far = (sides.ahead + sides.behind).T[:, :, None]
+    return np.asarray(((apart[:, 0] - apart[:, 1]) / far).transpose(1, 2, 0))

@@ -1,0 +1,1 @@
+"""Exact paths from loads to responses, by what varies between rows."""

@@ -1,0 +1,78 @@
+"""Bearings with Coulomb friction: the response row after row, on condensed quantities."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga import _core
+from rga.errors import InputError
+from rga.model.parameter import FloatArray
+from rga.model.structure import Load, Structure
+from rga.simulation.paths.response import respond
+
+DISPLACEMENT, REACTION = 0, 4
+UP = (0.0, 0.0, 1.0)
+
+
+def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray:
+    """Sensors under loads that follow each other in time, float[rows, sensors] in SI units.
+
+    The friction force of each bearing is bounded by mu times the vertical reaction plus the
+    permanent force; both follow from the response to unit forces at the bearings. The first row
+    is without friction: what is locked in before it is not known.
+    """
+    bearings = structure.bearings
+    unit = [
+        Load(np.zeros(0), forces={bearing.node: np.eye(6)[bearing.dof]}) for bearing in bearings
+    ]
+    count = len(structure.outputs["kind"])
+    outputs = _with_bearings(structure)
+    response = respond(structure, [*loads, *unit], outputs)
+    coefficients = np.column_stack([load.coefficient for load in loads])
+    free = coefficients @ response[: len(loads)]
+    influence = response[len(loads) :]
+    slide, normal = count, count + len(bearings)
+    permanent = np.array([bearing.permanent_force for bearing in bearings])
+    try:
+        force = _core.slide(
+            np.ascontiguousarray(free[:, slide:normal] - free[0, slide:normal]),
+            np.ascontiguousarray(influence[:, slide:normal].T),
+            np.ascontiguousarray(free[:, normal:] + permanent),
+            np.ascontiguousarray(influence[:, normal:].T),
+            np.array([bearing.mu for bearing in bearings]),
+        )
+    except (_core.NotConverged, _core.InvalidInput) as error:
+        raise InputError(
+            str(error), "bearings with friction", "check mu and the supports"
+        ) from None
+    # What a bearing does to the structure is a part of the reaction there.
+    own = influence[:, :count] + _own_reactions(structure)
+    return np.asarray(free[:, :count] + force @ own)
+
+
+def _own_reactions(structure: Structure) -> FloatArray:
+    """What reaction sensors read of a unit force at a bearing, float[bearings, sensors]."""
+    outputs = structure.outputs
+    reacts = outputs["kind"] == REACTION
+    return np.array(
+        [
+            np.where(reacts & (outputs["index"] == one.node), outputs["vector"][:, one.dof], 0.0)
+            for one in structure.bearings
+        ]
+    )
+
+
+def _with_bearings(structure: Structure) -> dict[str, NDArray[Any]]:
+    bearings = structure.bearings
+    nodes = np.array([bearing.node for bearing in bearings], dtype=np.int64)
+    along = np.eye(6)[[bearing.dof for bearing in bearings], :3]
+    none = np.full(len(bearings), -1, dtype=np.int64)
+    extra = {
+        "kind": np.repeat(np.array([DISPLACEMENT, REACTION], dtype=np.int64), len(bearings)),
+        "index": np.concatenate([nodes, nodes]),
+        "other": np.concatenate([none, none]),
+        "vector": np.vstack([along, np.tile(UP, (len(bearings), 1))]),
+        "total": np.zeros(2 * len(bearings), dtype=bool),
+    }
+    return {name: np.concatenate([structure.outputs[name], extra[name]]) for name in extra}

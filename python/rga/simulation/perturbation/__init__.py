@@ -1,0 +1,1 @@
+"""A simulation at given contexts, and what more effects make of it."""

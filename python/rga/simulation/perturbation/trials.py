@@ -1,0 +1,366 @@
+"""A simulation at given contexts, and what more effects make of it: many trials about one point."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rga.model.effect import Effect, Values
+from rga.model.parameter import FloatArray
+from rga.model.structure import IntArray, Load, Structure
+from rga.simulation.dispatch import APART, Request, coefficients, with_laws
+from rga.simulation.paths.response import patterns, respond
+from rga.simulation.paths.unilateral import respond_with_laws, terms_of
+from rga.simulation.perturbation.chebyshev import along_line
+from rga.simulation.perturbation.reanalysis import Difference, Loaded, Reanalysis
+
+if TYPE_CHECKING:
+    from rga.simulation.simulator import Response, Simulator
+
+
+@dataclass(frozen=True)
+class Centre:
+    """One of the structures of a simulation.
+
+    Attributes:
+        near: that structure and those near it.
+        own: loads of every effect on it, before any other effect changes them.
+        loads: all of them, changed.
+        loaded: the structure under `loads`.
+        coefficients: of `loads`, float[rows, patterns].
+    """
+
+    near: Reanalysis
+    own: dict[str, list[Load]]
+    loads: list[Load]
+    loaded: Loaded
+    coefficients: FloatArray
+
+
+class Vicinity:
+    """A simulation at given contexts, to which effects are added in turn.
+
+    What an effect leaves alone is not worked out again: parameters of the other effects, their
+    loads, and the structure where only some of its stiffnesses differ (`Reanalysis`).
+
+    Args:
+        simulator: of a model.
+        contexts: as for `Simulator.predict`.
+
+    Attributes:
+        response: of the simulation without more effects.
+        read: what its sensors show, float[rows, sensors].
+    """
+
+    def __init__(self, simulator: "Simulator", contexts: Mapping[str, ArrayLike]) -> None:
+        self.simulator = simulator
+        self.contexts = contexts
+        self.response = simulator.respond(contexts)
+        effects = simulator.model.effects.values()
+        self._true = dict(self.response.contexts)
+        for effect in effects:
+            effect.change_contexts(self._true, effect.values(self.response.contexts, self._rows))
+        self._settled = not any(_overrides(effect, "change_values") for effect in effects)
+        self._centres: list[Centre] = []
+        self._of_row = np.zeros(self._rows, np.int64)
+        self._find_centres()
+        self._shown = simulator.shown(self.response)
+        self.read = simulator.read(self.response)
+
+    @property
+    def _rows(self) -> int:
+        return len(self.response.contexts["time"])
+
+    def _find_centres(self) -> None:
+        values = self.response.values
+        request = self.simulator.request(values, self._rows)
+        if len(request.states) > APART:
+            return
+        structures = [request.change(state) for state in request.states]
+        if not all(structure.linear for structure in structures):
+            return
+        self._of_row = request.state_of_row
+        effects = self.simulator.model.effects
+        for structure in structures:
+            own = {
+                name: effect.loads(structure, values[name], values)
+                for name, effect in effects.items()
+            }
+            loads = _changed(effects, own, structure, values)
+            if not loads:
+                self._centres.clear()
+                return
+            near = Reanalysis(structure)
+            found = Centre(near, own, loads, near.under(loads), coefficients(loads))
+            self._centres.append(found)
+        parts = [one.coefficients @ one.loaded.outputs for one in self._centres]
+        self.response = replace(self.response, quantities=self._joined(parts, self._of_row))
+
+    def read_with(self, effect: Effect) -> FloatArray:
+        """What the sensors show with an effect on them alone, float[rows, sensors]."""
+        readings = replace(self._shown, values=self._shown.values.copy())
+        effect.change_readings(readings, effect.values(self.response.contexts, self._rows))
+        return self.simulator.zeroed(readings)
+
+    def trial(self, effects: Mapping[str, Effect]) -> tuple["Simulator", "Response"]:
+        """The simulation with more effects, and its response as `Simulator.respond` gives it.
+
+        Args:
+            effects: by names that are new to the model.
+
+        Raises:
+            InputError, UnstableStructureError: as `Simulator.respond`.
+        """
+        trial = self.simulator.extended(effects)
+        near = self._near(trial, effects)
+        return trial, trial.respond(self.contexts) if near is None else near
+
+    def nearly(self, effects: Mapping[str, Effect]) -> tuple[FloatArray, bool]:
+        """What the sensors show with more effects, at little cost.
+
+        Where a trial would solve structures anew, the effects are put on the simulation without
+        what makes it dear, each by itself and as if it always acted. What they change there is
+        added: all but the interplay of effects.
+
+        Args:
+            effects: as for `trial`, with the same errors.
+
+        Returns:
+            float[rows, sensors], and whether they are those of the trial.
+        """
+        if not effects:
+            return self.read, True
+        trial = self.simulator.extended(effects)
+        near = self._near(trial, effects)
+        if near is None and not self._calm._centres:
+            near = trial.respond(self.contexts)
+        if near is not None:
+            return trial.read(near), True
+        read = self.read.copy()
+        time = self.response.contexts["time"]
+        for name, effect in effects.items():
+            if effect.on_sensors:
+                read += self.read_with(effect) - self.read
+                continue
+            always = effect.model_copy(update={"onset": None, "profile": "step", "end": None})
+            tried, response = self._calm.trial({name: always})
+            read += effect.weight(time)[:, None] * (tried.read(response) - self._calm.read)
+        return read, False
+
+    @cached_property
+    def _calm(self) -> "Vicinity":
+        """The simulation without what gives every row a structure of its own, or corners."""
+        if self._centres:
+            return self
+        calm = self.simulator.calm(self.response.values)
+        return self if calm is self.simulator else Vicinity(calm, self.contexts)
+
+    def _near(self, trial: "Simulator", effects: Mapping[str, Effect]) -> "Response | None":
+        """The response of a trial out of what is known; None where it takes other solves."""
+        if not self._centres:
+            return None
+        if all(effect.on_sensors for effect in effects.values()):
+            return self.response
+        apart = self._settled and not any(map(_meddles, effects.values()))
+        if apart:
+            more = {name: one.values(self._true, self._rows) for name, one in effects.items()}
+            values = {**self.response.values, **more}
+        else:
+            values = trial.resolve(self.response.contexts)
+        request = trial.request(values, self._rows)
+        if len(request.states) > APART:
+            quantities = self._along_line(trial, request, values, apart)
+            if quantities is None:
+                return None
+            return replace(self.response, values=values, quantities=quantities)
+        parts = []
+        for state in request.states:
+            part = self._quantities(trial, request, state, values, apart)
+            if part is None:
+                return None
+            parts.append(part)
+        quantities = self._joined(parts, request.state_of_row)
+        return replace(self.response, values=values, quantities=quantities)
+
+    def stiffness_rates(self) -> dict[int, FloatArray]:
+        """Derivatives by the logarithm of EA of members, by their numbers.
+
+        Those of truss members, and of frame members with springs at their ends; about the
+        simulation without what is not linear, or varies from row to row.
+
+        Returns:
+            float[rows, sensors] of each member, in the sensors' units.
+        """
+        parts = []
+        calm = self._calm
+        for centre in calm._centres:
+            q = centre.coefficients
+            parts.append({m: q @ rate for m, rate in centre.near.rates(centre.loaded).items()})
+        members = set(parts[0]).intersection(*parts[1:]) if parts else set()
+        return {
+            member: calm._joined([part[member] for part in parts], calm._of_row)
+            for member in sorted(members)
+        }
+
+    def _joined(self, parts: list[FloatArray], of_row: IntArray) -> FloatArray:
+        """Rows taken from the part of their state, in the sensors' units."""
+        per_si = self._centres[0].near.structure.per_si
+        if len(parts) == 1:
+            return np.asarray(parts[0] * per_si)
+        return np.asarray(np.stack(parts)[of_row, np.arange(len(of_row))] * per_si)
+
+    def _quantities(
+        self,
+        trial: "Simulator",
+        request: Request,
+        state: FloatArray,
+        values: dict[str, Values],
+        apart: bool,
+    ) -> FloatArray | None:
+        """What the sensors are to read of a structure under all rows, in SI units.
+
+        None where the structure has bearings or large displacements.
+        """
+        structure = request.change(state)
+        if structure.bearings or structure.nonlinear:
+            return None
+        centre, where = self._nearest(structure)
+        known = _known(centre, trial.model.effects, structure, where is not None) if apart else {}
+        loads = _loads(trial, structure, values, known)
+        if structure.laws:
+            near = None if where is None else _with_laws(centre, structure, loads, where)
+            return with_laws(request, structure, loads) if near is None else near
+        if where is None:
+            few = _together(loads)
+            return coefficients(few) @ respond(structure, few, structure.outputs)
+        q, loaded = _under(centre, loads)
+        return q @ centre.near.changed(loaded, structure, where)
+
+    def _along_line(
+        self, trial: "Simulator", request: Request, values: dict[str, Values], apart: bool
+    ) -> FloatArray | None:
+        """The same of rows whose structures lie on a line, in the sensors' units."""
+
+        def solve(structure: Structure) -> tuple[FloatArray, FloatArray]:
+            centre, where = self._nearest(structure)
+            near = where is not None
+            known = _known(centre, trial.model.effects, structure, near) if apart else {}
+            loads = _loads(trial, structure, values, known)
+            if where is None:
+                return coefficients(loads), respond(structure, loads, structure.outputs)
+            q, loaded = _under(centre, loads)
+            return q, centre.near.changed(loaded, structure, where)
+
+        quantities = along_line(request, solve)
+        return None if quantities is None else quantities * self._centres[0].near.structure.per_si
+
+    def _nearest(self, structure: Structure) -> tuple[Centre, Difference | None]:
+        """The centre that a structure is near, or any; and where they differ."""
+        for centre in self._centres:
+            where = centre.near.differing(structure)
+            if where is not None:
+                return centre, where
+        return self._centres[0], None
+
+
+def _loads(
+    trial: "Simulator",
+    structure: Structure,
+    values: dict[str, Values],
+    known: Mapping[str, list[Load]],
+) -> list[Load]:
+    """Loads of all effects of a trial on a structure, some of them known."""
+    effects = trial.model.effects
+    own = {
+        name: known[name] if name in known else effect.loads(structure, values[name], values)
+        for name, effect in effects.items()
+    }
+    return _changed(effects, own, structure, values)
+
+
+def _with_laws(
+    centre: Centre, structure: Structure, loads: list[Load], where: Difference
+) -> FloatArray | None:
+    """A structure that differs from a centre by play or slack alone; None for any other."""
+    if len(where.terms) or len(where.frames):
+        return None
+    q, loaded = _under(centre, loads)
+    linear = centre.near.onto(loaded, *terms_of(structure))
+    return None if linear is None else respond_with_laws(structure, linear, q)
+
+
+def _known(
+    centre: Centre, effects: Mapping[str, Effect], structure: Structure, near: bool
+) -> dict[str, list[Load]]:
+    """Loads that are on a structure what they are on a centre, by effect."""
+    first = centre.near.structure
+    points = first.arrays["coordinates"]
+    if not np.array_equal(points, structure.arrays["coordinates"][: len(points)]):
+        return {}
+    warms = near and np.array_equal(first.alpha, structure.alpha)
+    return {
+        name: loads
+        for name, loads in centre.own.items()
+        if effects[name].loads_by_geometry and (warms or all(load.strain is None for load in loads))
+    }
+
+
+def _under(centre: Centre, loads: list[Load]) -> tuple[FloatArray, Loaded]:
+    """Coefficients of loads, and the centre under them; it knows most of them."""
+    place = {id(load): number for number, load in enumerate(centre.loads)}
+    new = [load for load in loads if id(load) not in place]
+    if not new and len(loads) == len(place):
+        return centre.coefficients, centre.loaded
+    place |= {id(load): len(centre.loads) + number for number, load in enumerate(new)}
+    parts = [centre.loaded, *([centre.near.under(new)] if new else [])]
+    order = [place[id(load)] for load in loads]
+    outputs, elongations, displacements = (
+        np.concatenate([getattr(part, name) for part in parts])[order]
+        for name in ("outputs", "elongations", "displacements")
+    )
+    pattern = patterns(centre.near.structure, loads)
+    return coefficients(loads), Loaded(outputs, elongations, displacements, pattern)
+
+
+def _changed(
+    effects: Mapping[str, Effect],
+    own: Mapping[str, list[Load]],
+    structure: Structure,
+    values: dict[str, Values],
+) -> list[Load]:
+    """Loads of all effects, as other effects change them."""
+    loads = dict(own)
+    for name, effect in effects.items():
+        effect.change_loads(loads, structure, values[name])
+    return [load for of_effect in loads.values() for load in of_effect]
+
+
+def _meddles(effect: Effect) -> bool:
+    """True where an effect may change contexts, or parameters of other effects."""
+    return _overrides(effect, "change_contexts") or _overrides(effect, "change_values")
+
+
+def _together(loads: list[Load]) -> list[Load]:
+    """The same loads, with nodal forces that have the same coefficients put into one."""
+    found: list[Load] = []
+    place: dict[bytes, int] = {}
+    for load in loads:
+        if load.strain is not None or load.prescribed or load.spread:
+            found.append(load)
+            continue
+        key = load.coefficient.tobytes()
+        if key not in place:
+            place[key] = len(found)
+            found.append(replace(load, forces=dict(load.forces)))
+            continue
+        forces = found[place[key]].forces
+        for node, force in load.forces.items():
+            forces[node] = forces[node] + force if node in forces else force
+    return found
+
+
+def _overrides(effect: Effect, method: str) -> bool:
+    return getattr(type(effect), method) is not getattr(Effect, method)

@@ -1,0 +1,1 @@
+"""Context capture: simulations, learning, inference, and the twin at the inferred context."""

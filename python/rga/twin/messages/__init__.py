@@ -1,0 +1,1 @@
+"""Queries, responses and packets: all that passes between the parts of the twin."""

@@ -1,0 +1,184 @@
+"""The past of a run, out of the repository: the twin's state, its rows, and what happened."""
+
+import json
+
+import numpy as np
+from pydantic import ValidationError
+
+from rga.errors import InputError
+from rga.findings.phrases import effect_words
+from rga.model import Model, read_model
+from rga.records import Record
+from rga.twin.calibration.channel_noise import noise_of
+from rga.twin.digital_twin import State, follow
+from rga.twin.history import Event, History, Version
+from rga.twin.messages.hardware import Station
+from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
+from rga.twin.repository import View
+from rga.twin.row_buffer import Ledger
+from rga.twin.run_state import Standing
+from rga.twin.settings import Settings
+
+
+def replay(view: View, channels: tuple[str, ...]) -> State:
+    """The state of the twin, from the log of messages alone.
+
+    Args:
+        view: a run of the repository, or the run as it stood.
+        channels: sensors of the station.
+
+    Raises:
+        InputError: what the repository keeps is not what the log tells of.
+    """
+    state = State()
+    last: R5 | None = None
+    for message in log_of(view):
+        if isinstance(message, R5):
+            last = message
+        elif isinstance(message, Response):
+            state = follow(state, message, channels)
+    if last is None:
+        return state
+    kept = view.gaps(last.first, last.first + last.rows, last.version).simulated
+    if sha256(kept) != last.sha256:
+        where = f"rows {last.first} to {last.first + last.rows - 1}"
+        raise InputError(
+            "the repository does not hold what the twin answered", where, "begin a new run"
+        )
+    return follow(state, last.model_copy(update={"simulated": kept}), channels)
+
+
+def log_of(view: View) -> list[Query | Response]:
+    """The log of messages, without their arrays.
+
+    Raises:
+        InputError: an entry of the log is no message.
+    """
+    try:
+        return [read_message(one.kind, one.row, one.body) for one in view.messages()]
+    except ValidationError as error:
+        raise InputError(
+            "an entry of the log is no message", "repository", "begin a new run"
+        ) from error
+
+
+def story_of(view: View) -> list[Query | Response | Event]:
+    """Messages and events in the order in which they passed (see `log_of`)."""
+    messages = iter(log_of(view))
+    return [one if isinstance(one, Event) else next(messages) for one in view.story()]
+
+
+def standing_of(view: View) -> Standing:
+    """Where a run stands."""
+    kept = view.kept("standing")
+    return Standing() if kept is None else Standing.model_validate_json(kept)
+
+
+def ledger_of(
+    view: View, channels: int, measured: int, contexts: int, at_the_time: bool = False
+) -> Ledger:
+    """The rows of a run, with what was inferred and simulated last, or at the time."""
+    ledger = Ledger.empty(channels, measured, contexts)
+    seen = view.measured()
+    rows = len(seen.rows)
+    if not rows:
+        return ledger
+    ledger.time, ledger.readings = seen.time, seen.readings
+    ledger.measured = seen.contexts.reshape(rows, measured)
+    for name in ("contexts", "spread"):
+        setattr(ledger, name, np.full((rows, contexts), np.nan))
+    ledger.simulated = np.full((rows, channels), np.nan)
+    inferred, gaps = view.inferred(at_the_time=at_the_time), view.gaps(at_the_time=at_the_time)
+    if len(inferred.rows):
+        ledger.contexts[inferred.rows] = inferred.contexts
+        ledger.spread[inferred.rows] = inferred.spread
+        ledger.simulated[gaps.rows] = gaps.simulated
+    return ledger
+
+
+def station_of(view: View) -> Station:
+    """What is mounted on the structure.
+
+    Raises:
+        InputError: the run was interrupted before its first step ended.
+    """
+    kept = view.kept("station")
+    if kept is None:
+        raise InputError("the run has not begun", "repository", "run it again")
+    return Station.from_json(kept)
+
+
+def given_model(view: View) -> Model:
+    """The model as it was given."""
+    return read_model(json.loads(view.versions()[0].model), "repository")
+
+
+def record_of(view: View) -> Record:
+    """The rows that the repository holds, as a record."""
+    station, seen = station_of(view), view.measured()
+    columns = seen.contexts.reshape(len(seen.rows), len(station.measured)).T
+    return Record(
+        time=seen.time,
+        start=station.start,
+        time_format=station.time_format,
+        sensors=station.channels,
+        readings=seen.readings.reshape(len(seen.rows), len(station.channels)),
+        contexts=dict(zip(station.measured, columns, strict=True)),
+        sha256=view.identity.record_sha256,
+    )
+
+
+def history_of(view: View) -> History:
+    """What a run left behind so far, or had left behind as of a time."""
+    standing, station, model = standing_of(view), station_of(view), given_model(view)
+    record = record_of(view)
+    ledger = ledger_of(
+        view,
+        len(station.channels),
+        len(station.measured),
+        len(model.context),
+        at_the_time=True,
+    )
+    state = replay(view, station.channels)
+    latent = [list(model.context).index(name) for name in state.latent]
+    stated = [model.sensors[name].noise for name in station.channels]
+    return History(
+        model=model,
+        record=record,
+        level=Settings.model_validate_json(view.identity.settings).level,
+        calibration_rows=standing.calibrated,
+        contexts=state.latent,
+        inferred=ledger.contexts[:, latent],
+        spread=ledger.spread[:, latent],
+        simulated=ledger.simulated,
+        gaps=ledger.gaps,
+        noise=noise_of(stated, ledger.readings[: standing.calibrated or len(ledger)]),
+        events=view.events(),
+        versions=_versions(view, record, state),
+        growth=_growth(view),
+    )
+
+
+def _versions(view: View, record: Record, state: State) -> tuple[Version, ...]:
+    """Every version, with the row from which on it was first in force."""
+    begun = {number: row for row, number in reversed(view.in_force())}
+    return tuple(
+        Version(
+            number=one.number,
+            row=begun[one.number],
+            time=record.time_label(float(record.time[begun[one.number]]) if len(record) else 0.0),
+            causes=tuple(effect_words(effect) for effect in json.loads(one.causes).values()),
+            gain=one.gain,
+            gain_ci90=one.gain_ci90,
+            in_force=one.number == state.version,
+        )
+        for one in view.versions()
+    )
+
+
+def _growth(view: View) -> tuple[tuple[int, int, int], ...]:
+    """(row, simulations stored, novel contexts among them) after every change."""
+    stored = view.simulated()
+    ends = np.flatnonzero(np.diff(stored.row, append=-1))
+    novel = np.cumsum(stored.origin == "novel")
+    return tuple((int(stored.row[end]), int(end) + 1, int(novel[end])) for end in ends)

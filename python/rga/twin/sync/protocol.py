@@ -1,0 +1,77 @@
+"""T1: is the twin in sync with the structure?"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from rga.model.parameter import FloatArray
+from rga.twin.settings import Settings
+
+SHOWN = 4
+
+
+@dataclass(frozen=True)
+class OutOfSync:
+    """The twin is out of sync.
+
+    Attributes:
+        row: at which it was found.
+        since: first row that it is about.
+        sensors: that show it.
+        words: what was found.
+    """
+
+    row: int
+    since: int
+    sensors: tuple[str, ...]
+    words: str
+
+
+class Synchrony(Protocol):
+    """Watches the residuals of a calibrated twin: measured minus simulated."""
+
+    def alarm(self, first: int, residuals: FloatArray) -> OutOfSync | None:
+        """The first alarm that the latest rows raise.
+
+        Args:
+            first: number of the first of them.
+            residuals: of all rows so far, float[rows, channels], NaN where missing.
+        """
+
+    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
+        """Learn what a newly calibrated twin leaves.
+
+        Args:
+            first: of the rows that say what is usual; None: still the same.
+            residuals: of all rows so far, float[rows, channels], NaN where missing.
+        """
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Reasons why alarms may come without a change."""
+
+    def to_bytes(self) -> bytes:
+        """The state."""
+
+    def restore(self, state: bytes) -> None:
+        """Go on where another stood."""
+
+
+def synchrony(channels: Sequence[str], settings: Settings) -> Synchrony:
+    """The detector that settings ask for.
+
+    Args:
+        channels: names of the sensors.
+        settings: of the run.
+    """
+    from rga.twin.sync.monitor import Monitored
+    from rga.twin.sync.window_rule import WindowRule
+
+    kind = Monitored if settings.detector == "monitor" else WindowRule
+    return kind(channels, settings)
+
+
+def listed(sensors: Sequence[str]) -> str:
+    """The first names, and how many more."""
+    more = f" and {len(sensors) - SHOWN} more" if len(sensors) > SHOWN else ""
+    return f"{', '.join(sensors[:SHOWN])}{more}"

@@ -1,0 +1,114 @@
+"""What the rows of a table have in common: the twin's model, and what is measured."""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from rga.inference.networks.design_samples import design
+from rga.inference.rows import Rows
+from rga.model import read_model
+from rga.simulation import Simulator
+from rga_bench.contexts.context_regime import Contexts
+from rga_bench.contexts.drift import Conditions, Measured, following, when
+from rga_bench.contexts.method import Problem
+from rga_bench.contexts.setting import DRIFTING, Task
+from rga_bench.synthetic.bridges.full_case_study import full_case_study
+from rga_bench.synthetic.physical_twin import PhysicalTwin
+
+#: load tests that are drawn; a method gets the first of them, or none
+LOAD_TESTS = 60
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What a method is calibrated on.
+
+    Attributes:
+        problem: with all load tests.
+        usual: what the measured rows are measured under.
+        test: rows to score under these conditions; half of them where there are drifts.
+    """
+
+    problem: Problem
+    usual: Conditions
+    test: Measured
+
+
+@dataclass(frozen=True)
+class Stream:
+    """A stream into which a drift comes, and rows to score.
+
+    Attributes:
+        rows: of the stream.
+        changes: first rows of the parts that differ from the part before.
+        drifted: rows to score under the drift, half of the test rows.
+    """
+
+    rows: Measured
+    changes: tuple[int, ...]
+    drifted: Measured
+
+
+def calibration_of(task: Task) -> Calibration:
+    """The same for all rows of a split."""
+    return _calibration(replace(task, row=""))
+
+
+def stream_of(task: Task, drift: str) -> Stream:
+    """The same for all rows of a split.
+
+    Raises:
+        InputError: no such drift.
+    """
+    return _stream(replace(task, row=""), drift)
+
+
+@lru_cache(maxsize=2)
+def _calibration(task: Task) -> Calibration:
+    sizes = task.sizes
+    model = read_model(full_case_study(), "full case study")
+    names, sensors = list(model.context), len(model.sensors)
+    ranges = np.array([variable.range for variable in model.context.values()])
+    manner = "ordinary" if task.manner == DRIFTING else task.manner
+    contexts = Contexts.drawn(manner, ranges, _generator(task, "contexts"))
+    twin = PhysicalTwin.draw(_number(task, "twin"), task.gap)
+    usual = Conditions.usual(twin, contexts, sensors)
+    box = dict(zip(names, map(tuple, contexts.source.tolist()), strict=True))
+    seed = _number(task, "source")
+    source = design(model, sizes.source, latent=names, seed=seed, box=box)
+    even = Conditions.usual(twin, replace(contexts, manner="same"), sensors)
+    load_tests = even.measured(LOAD_TESTS, _generator(task, "load tests"))
+    problem = Problem(
+        model=model,
+        simulator=Simulator(model),
+        noise=np.array([sensor.noise for sensor in model.sensors.values()], dtype=float),
+        source=Rows(source.contexts, source.readings),
+        real=usual.measured(sizes.unlabelled, _generator(task, "unlabelled")).readings,
+        load_tests=Rows(load_tests.contexts, load_tests.readings),
+        seed=_number(task, "method"),
+    )
+    test = sizes.test // 2 if task.manner == DRIFTING else sizes.test
+    return Calibration(problem, usual, usual.measured(test, _generator(task, "test")))
+
+
+@lru_cache(maxsize=8)
+def _stream(task: Task, drift: str) -> Stream:
+    sizes, known = task.sizes, _calibration(task)
+    noise = known.problem.noise
+    drifted = known.usual.drifted(drift, noise, _generator(task, f"{drift} drift"))
+    holds = when(drift, sizes.stream)
+    changes = np.flatnonzero(np.diff(holds)) + 1
+    return Stream(
+        following(known.usual, drifted, holds, _generator(task, f"{drift} stream")),
+        tuple(changes.tolist()),
+        drifted.measured(sizes.test // 2, _generator(task, f"{drift} drifted")),
+    )
+
+
+def _generator(task: Task, purpose: str) -> np.random.Generator:
+    return np.random.default_rng([task.seed, task.split, *purpose.encode()])
+
+
+def _number(task: Task, purpose: str) -> int:
+    return int(_generator(task, purpose).integers(2**31))

@@ -1,0 +1,63 @@
+"""Contexts by the mode of their posterior under a twin and a covariance of its readings."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rga.inference.map.array_simulator import TwinOnArrays
+from rga.inference.map.initial_guess import QuadraticGuess
+from rga.inference.map.posterior_mode import Mode, posterior_mode
+from rga.model.parameter import FloatArray
+from rga_bench.contexts.method import Calibrated, Estimate, Method, Problem
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of the posterior, with Laplace's spread.
+
+    Attributes:
+        problem: what was learned from.
+        twin: what simulates.
+        covariance: of what readings differ by from the twin, float[sensors, sensors].
+        guess: contexts to start from.
+        learn: what learned this from the problem; None where rows without contexts teach nothing.
+    """
+
+    problem: Problem
+    twin: TwinOnArrays
+    covariance: FloatArray
+    guess: QuadraticGuess
+    learn: Method | None = None
+
+    def mode(self, readings: FloatArray, start: FloatArray | None = None) -> Mode:
+        """Modes of measured rows, from the guess or from another start, float[n, contexts]."""
+        return posterior_mode(
+            self.twin.simulate,
+            self.twin.jacobian,
+            readings,
+            self.covariance,
+            self.twin.ranges,
+            self.guess(readings) if start is None else start,
+        )
+
+    def infer(self, readings: FloatArray) -> Estimate:
+        """Mode and spread of measured rows, float[n, sensors]; NaN where a reading is missing."""
+        mode = self.mode(readings)
+        return Estimate(mode.value, mode.spread)
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """What the twin tells, float[n, sensors]."""
+        return self.twin.simulate(contexts)
+
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
+        """Learned again from the measured rows and the recent ones; these alone are too few."""
+        if self.learn is None:
+            return self
+        return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
+
+
+def maximum_posterior(problem: Problem) -> Modes:
+    """MAP: the simulator is taken as true, and readings differ from it by their noise alone."""
+    twin = TwinOnArrays(problem.simulator)
+    guess = QuadraticGuess(problem.source, problem.noise, twin.ranges, problem.seed)
+    return Modes(problem, twin, np.diag(problem.noise**2), guess)

@@ -1,0 +1,36 @@
+"""The row that looks at no reading."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.inference.map.array_simulator import TwinOnArrays
+from rga.inference.map.posterior_mode import standard
+from rga.model.parameter import FloatArray
+from rga_bench.contexts.method import Calibrated, Estimate, Problem
+
+
+@dataclass(frozen=True)
+class Prior:
+    """The middle of every range, with the standard deviation of contexts spread evenly over it."""
+
+    twin: TwinOnArrays
+
+    def infer(self, readings: FloatArray) -> Estimate:
+        """The same for every row, whatever it shows."""
+        middle, scale = standard(self.twin.ranges)
+        shape = (len(readings), len(scale))
+        return Estimate(np.broadcast_to(middle, shape), np.broadcast_to(scale, shape))
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """What the model tells, float[n, sensors]."""
+        return self.twin.simulate(contexts)
+
+    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
+        """The same: there is nothing to learn."""
+        return self
+
+
+def prior_mean(problem: Problem) -> Calibrated:
+    """The mean of the prior: Error 1 by definition."""
+    return Prior(TwinOnArrays(problem.simulator))

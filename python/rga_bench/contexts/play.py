@@ -1,0 +1,79 @@
+"""A row of the table on a split: a method learns, lives through streams, and is scored."""
+
+import time
+from dataclasses import dataclass, field, replace
+
+from threadpoolctl import threadpool_limits
+
+from rga.inference.networks.determinism import one_thread
+from rga_bench.contexts.data import Calibration, calibration_of, stream_of
+from rga_bench.contexts.drift import Measured
+from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.floors import FLOORS, floor
+from rga_bench.contexts.levels import LEVELS
+from rga_bench.contexts.rows import METHODS
+from rga_bench.contexts.score import Score
+from rga_bench.contexts.setting import DRIFTING, Task
+from rga_bench.contexts.stream_results import Played, lived
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a task.
+
+    Attributes:
+        id, split, gap, manner, row: of the task.
+        score: of test rows at level A, before any drift.
+        played: every drift at every level; none where there are no drifts.
+        learning: time that the method took to learn [s].
+        inference: time that it took to infer a row [s].
+    """
+
+    id: str
+    split: int
+    gap: str
+    manner: str
+    row: str
+    score: Score
+    played: tuple[Played, ...] = ()
+    learning: float | None = field(default=None, compare=False)
+    inference: float | None = field(default=None, compare=False)
+
+
+def play(task: Task) -> Outcome:
+    """Play a task; the outcome depends on the task alone, but for the times.
+
+    Raises:
+        InputError: no such drift or manner.
+    """
+    with threadpool_limits(1), one_thread():
+        known = calibration_of(task)
+        drifts = task.drifts if task.manner == DRIFTING else ()
+        if task.row in FLOORS:
+            return _floors(task, known, drifts)
+        begun = time.perf_counter()
+        calibrated = METHODS[task.row].calibrated(known)
+        learned = time.perf_counter()
+        usual = Examination(known.test, known.problem.ranges, task.sizes.settle)
+        score = usual.score(calibrated)
+        inferred = time.perf_counter()
+        played = lived(task, known, calibrated, usual) if drifts else []
+        return replace(
+            _outcome(task, score, played),
+            learning=learned - begun,
+            inference=(inferred - learned) / len(known.test.readings),
+        )
+
+
+def _floors(task: Task, known: Calibration, drifts: tuple[str, ...]) -> Outcome:
+    def of(measured: Measured) -> Score:
+        return floor(task.row, known.problem, measured)
+
+    ordinary = of(known.test)
+    drifted = {drift: of(stream_of(task, drift).drifted) for drift in drifts}
+    played = [Played(drift, LEVELS[0], ordinary, one) for drift, one in drifted.items()]
+    return _outcome(task, ordinary, played)
+
+
+def _outcome(task: Task, score: Score, played: list[Played]) -> Outcome:
+    return Outcome(task.id, task.split, task.gap, task.manner, task.row, score, tuple(played))

@@ -1,0 +1,129 @@
+"""How much is played, and of what."""
+
+from dataclasses import dataclass
+from zlib import crc32
+
+from rga_bench.contexts.context_regime import MANNERS
+from rga_bench.contexts.drift import DRIFTS
+from rga_bench.synthetic.physical_twin import GAPS
+
+#: a task of this manner plays all drifts; its ordinary rows lack what drifts bring
+DRIFTING = "drifting"
+#: what level C stores
+REPOSITORIES = ("measured", "paper")
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How many rows there are, and by what rules streams are lived through.
+
+    Attributes:
+        source: simulated rows.
+        unlabelled: measured rows that a method is calibrated on.
+        stream: measured rows among which a drift comes.
+        test: measured rows that are scored; one half of them under the drift.
+        arl0: rows between false alarms that the monitor is set to.
+        settle: rows from an alarm on that are gathered for a recalibration, 30 at least; also a
+            block of test rows that one stored state is chosen for.
+        recall: rows from an alarm on by which stored states are tried.
+        harm: a recalibration is taken back where it makes the gap of a sensor, in the mean of its
+            logs, so many times as large.
+        repository: what level C stores: `measured` rows with the method as it was calibrated on
+            them, or, as in the `paper`, simulated rows around the contexts inferred.
+    """
+
+    source: int = 1000
+    unlabelled: int = 200
+    stream: int = 200
+    test: int = 300
+    arl0: float = 1000.0
+    settle: int = 30
+    recall: int = 10
+    harm: float = 1.1
+    repository: str = "measured"
+
+
+@dataclass(frozen=True)
+class Task:
+    """A row of the table on a split.
+
+    Attributes:
+        seed: of everything.
+        split: its number.
+        gap: in what the physical twin differs from the model.
+        manner: how contexts of measured rows lie in their ranges, or `DRIFTING`.
+        row: name of the method, or of a floor.
+        drifts: that are played where the manner is `DRIFTING`.
+        sizes: how much there is of everything.
+    """
+
+    seed: int
+    split: int
+    gap: str
+    manner: str
+    row: str
+    drifts: tuple[str, ...]
+    sizes: Sizes
+
+    @property
+    def id(self) -> str:
+        """Its name; what is played in another way has another name."""
+        way = crc32(repr((self.drifts, self.sizes)).encode())
+        return f"{self.seed}/{self.split}/{self.gap}/{self.manner}/{self.row}/{way:08x}"
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How much is played, and of what.
+
+    Attributes:
+        seed: of everything.
+        splits: of the full gap, at the same contexts and with drifts.
+        few: splits of every other gap and manner.
+        gaps: in what the physical twin differs from the model; the last one is the full gap.
+        manners: of contexts; the first one is that of all gaps.
+        drifts: that come into streams.
+        rows: names of methods and floors; all there are if left out.
+        sizes: how much there is of everything.
+    """
+
+    seed: int = 0
+    splits: int = 10
+    few: int = 1
+    gaps: tuple[str, ...] = GAPS
+    manners: tuple[str, ...] = MANNERS
+    drifts: tuple[str, ...] = DRIFTS
+    rows: tuple[str, ...] | None = None
+    sizes: Sizes = Sizes()
+
+    def tasks(self, rows: tuple[str, ...]) -> list[Task]:
+        """Every row on every split, those that share their data one after the other."""
+        full, first = self.gaps[-1], self.manners[0]
+        often = [(full, first), *([(full, DRIFTING)] if self.drifts else [])]
+        seldom = [(gap, first) for gap in self.gaps[:-1]]
+        seldom += [(full, manner) for manner in self.manners[1:]]
+        return [
+            Task(self.seed, split, gap, manner, row, self.drifts, self.sizes)
+            for split in range(self.splits)
+            for gap, manner in (often + seldom if split < self.few else often)
+            for row in rows
+        ]
+
+
+def shorter(seed: int, rows: tuple[str, ...]) -> Setting:
+    """What takes less than three minutes, and is too little to judge by.
+
+    Args:
+        seed: of everything.
+        rows: names of methods and floors that are played.
+    """
+    return Setting(
+        seed,
+        splits=1,
+        few=1,
+        gaps=("all",),
+        manners=("same",),
+        drifts=("none", "recurring"),
+        rows=rows,
+        sizes=Sizes(source=512, unlabelled=100, test=120),
+    )

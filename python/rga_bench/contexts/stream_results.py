@@ -1,0 +1,105 @@
+"""What becomes of a method in streams into which drifts come."""
+
+from dataclasses import dataclass
+
+from rga.model.parameter import FloatArray
+from rga_bench.contexts.data import Calibration, Stream, stream_of
+from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.levels import LEVELS, Learned, Life, State, delays, live, residuals
+from rga_bench.contexts.method import Calibrated
+from rga_bench.contexts.novel import with_novel
+from rga_bench.contexts.rows import METHODS
+from rga_bench.contexts.score import Score
+from rga_bench.contexts.setting import Task
+
+
+@dataclass(frozen=True)
+class Played:
+    """A method at a level, after it has lived through a stream.
+
+    Attributes:
+        drift: that came into the stream.
+        level: of integration.
+        ordinary, drifted: scores of test rows under usual conditions, and under the drift.
+        delays: rows from each change to its alarm, both counted; None where there was none.
+        watched: rows before any change up to the first alarm.
+        false_alarm: whether this alarm came before any change.
+        alarms, recalibrations, taken_back, recalled: number of each.
+    """
+
+    drift: str
+    level: str
+    ordinary: Score
+    drifted: Score
+    delays: tuple[int | None, ...] = ()
+    watched: int = 0
+    false_alarm: bool = False
+    alarms: int = 0
+    recalibrations: int = 0
+    taken_back: int = 0
+    recalled: int = 0
+
+
+def lived(
+    task: Task, known: Calibration, calibrated: Calibrated, usual: Examination
+) -> list[Played]:
+    """Every drift of a task at every level.
+
+    Args:
+        task: names the drifts, each of which comes into a stream of its own.
+        known: what the method was calibrated on.
+        calibrated: the method.
+        usual: test rows under usual conditions.
+
+    Raises:
+        InputError: no such drift.
+    """
+    sizes, played = task.sizes, []
+    ordinary = residuals(calibrated, known.problem.real)
+    for drift in task.drifts:
+        stream = stream_of(task, drift)
+        rows = stream.rows.readings
+        examination = Examination(stream.drifted, known.problem.ranges, sizes.settle)
+        first = State(calibrated, ordinary, residuals(calibrated, rows), ordinary)
+        scores = usual.score(calibrated), examination.score(calibrated)
+        played.append(Played(drift, LEVELS[0], *scores))
+        for level in LEVELS[1:]:
+            stores = level == LEVELS[-1] and sizes.repository == "measured"
+            learned = _fine_tuned(known.problem.real, rows, alone=stores)
+            if level == LEVELS[-1] and not stores:
+                learned = with_novel(METHODS[task.row], known, rows)
+            life = live(first, sizes, learned, stores=stores)
+            states = life.stored if stores else [life.state]
+            scores = usual.score_of_likeliest(states), examination.score_of_likeliest(states)
+            played.append(_played(drift, level, scores, stream, life))
+    return played
+
+
+def _played(
+    drift: str, level: str, score: tuple[Score, Score], stream: Stream, life: Life
+) -> Played:
+    rows = len(stream.rows.readings)
+    quiet = stream.changes[0] if stream.changes else rows
+    raised = life.alarms[0] if life.alarms else rows
+    return Played(
+        drift,
+        level,
+        *score,
+        delays=delays(life.alarms, stream.changes, rows),
+        watched=min(raised + 1, quiet),
+        false_alarm=raised < quiet,
+        alarms=len(life.alarms),
+        recalibrations=life.recalibrations,
+        taken_back=life.taken_back,
+        recalled=life.recalled,
+    )
+
+
+def _fine_tuned(real: FloatArray, rows: FloatArray, *, alone: bool) -> Learned:
+    """A state that has learned from rows of a stream (T1), for rows like these alone or for all."""
+
+    def learned(state: State, recent: slice) -> State:
+        after = state.calibrated.recalibrated(rows[recent], alone=alone)
+        return state if after is state.calibrated else State.of(after, real, rows)
+
+    return learned

@@ -1,0 +1,163 @@
+"""Tables of levels: the paper's, and what recalibration and stored states are worth."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
+from rga_bench.contexts.levels import LEVELS
+from rga_bench.contexts.rows import PAPERS
+from rga_bench.contexts.run import Result
+from rga_bench.contexts.score import Score
+from rga_bench.contexts.stream_results import Played
+from rga_bench.contexts.tables.aggregate import gap_told, lives, mean, mean_lives, paired, whole
+from rga_bench.measurement import digits
+from rga_bench.sheet import Sheet
+
+#: Error [-], RG [mm^2] and AD [rows] in the paper's table, by its columns and levels
+PUBLISHED = {
+    "residual loss": {"A": (0.466, 352), "B": (0.387, 301, 56.8), "C": (0.392, 298, 57.1)},
+    "without physics": {"A": (0.681, 512), "B": (0.674, 520, 70.2), "C": (0.672, 526, 69.8)},
+    "with physics": {"A": (0.405, 297), "B": (0.376, 259, 49.4), "C": (0.379, 261, 50.3)},
+}
+#: the paper's columns, the best first, which are in this order at every level
+ORDER = ("with physics", "residual loss", "without physics")
+NULL, RECURRING = "none", "recurring"
+
+
+def published() -> Sheet:
+    """What the paper tells of its own bridge."""
+    rows = [
+        [column, *(" / ".join(f"{one:g}" for one in of_level[level]) for level in LEVELS)]
+        for column, of_level in PUBLISHED.items()
+    ]
+    headings = ["the paper's column", *(f"{level}: Error / RG / AD" for level in LEVELS)]
+    return Sheet("The paper's own numbers, of its own bridge, not to be mixed", headings, rows)
+
+
+def order(result: Result) -> str:
+    """Whether methods are in the paper's order."""
+    drifts = _drifts(result)
+    missing = [PAPERS[one] for one in ORDER if PAPERS[one] not in result.rows]
+    if missing or not drifts:
+        return "The paper's order cannot be told: not all of its columns were played."
+    found = []
+    for level in LEVELS:
+        for name, of in (("Error", _error), ("RG", _rg)):
+            values = [
+                mean(mean_lives(lives(result.outcomes, PAPERS[one], drifts, level), whole(of)))
+                for one in ORDER
+            ]
+            known = [one.value for one in values if one is not None]
+            found.append((f"{name} at {level}", known == sorted(known)))
+    where = [name for name, there in found if there]
+    methods = ", then ".join(PAPERS[one] for one in ORDER)
+    if len(where) == len(found):
+        return f"The paper's order ({methods}) appears here in Error and RG at every level."
+    other = "nowhere" if not where else "only in " + ", ".join(where)
+    return f"The paper's order ({methods}) does not appear here as a whole: {other}."
+
+
+def papers(result: Result) -> list[Sheet]:
+    """The paper's table: pooled over drifts, and of each drift."""
+    drifts = _drifts(result)
+    if not drifts:
+        return []
+    sheets = [_levels(result, "The paper's table, all drifts together", drifts)]
+    return sheets + [_levels(result, f"Drift: {one}", [one]) for one in result.setting.drifts]
+
+
+def worth(result: Result) -> list[Sheet]:
+    """What recalibration changes, drift by drift, and that it forgets."""
+    parts = {
+        "once": [one for one in _drifts(result) if one != RECURRING],
+        "on recurrence": [one for one in _drifts(result) if one == RECURRING],
+        "on the null twin": [one for one in result.setting.drifts if one == NULL],
+    }
+    return [_worth(result, name, drifts) for name, drifts in parts.items() if drifts]
+
+
+def _levels(result: Result, title: str, drifts: Sequence[str]) -> Sheet:
+    headings = ["method"]
+    for level in LEVELS:
+        headings += [f"{level}: Error", "RG [mm²]", *([] if level == "A" else ["AD (seen)"])]
+    true = mean(mean_lives(lives(result.outcomes, TRUE_CONTEXT, drifts, LEVELS[0]), whole(_rg)))
+    rows = []
+    for row in _streamed(result):
+        cells = [row]
+        for level in LEVELS:
+            lived = lives(result.outcomes, row, drifts, level)
+            error, gap = (mean(mean_lives(lived, whole(of))) for of in (_error, _rg))
+            cells.append("" if error is None else error.told(".3f"))
+            cells.append(gap_told(row, gap, true))
+            if level != "A":
+                cells.append(_delay([one for several in lived.values() for one in several]))
+        everywhere = lives(result.outcomes, row, result.setting.drifts, LEVELS[1])
+        rows.append([*cells, _arl([one for several in everywhere.values() for one in several])])
+    return Sheet(title, [*headings, "ARL"], rows)
+
+
+def _worth(result: Result, name: str, drifts: Sequence[str]) -> Sheet:
+    headings = [
+        "method", "Error, drifted: A", "B - A", "C - B", "ordinary: B - A", "C - A",
+        "recalibrations: B", "C", "C - B", "taken back: B", "recalled: C",
+    ]  # fmt: skip
+
+    rows = []
+    for row in _streamed(result):
+        if row in FLOORS:
+            continue
+        a, b, c = (lives(result.outcomes, row, drifts, level) for level in LEVELS)
+        drifted = [mean_lives(one, lambda played: played.drifted.error) for one in (a, b, c)]
+        ordinary = [mean_lives(one, lambda played: played.ordinary.error) for one in (a, b, c)]
+        learned = [mean_lives(one, lambda played: played.recalibrations) for one in (b, c)]
+        differences = [
+            (mean(drifted[0]), ".3f"),
+            (paired(drifted[1], drifted[0]), "+.3f"),
+            (paired(drifted[2], drifted[1]), "+.3f"),
+            (paired(ordinary[1], ordinary[0]), "+.3f"),
+            (paired(ordinary[2], ordinary[0]), "+.3f"),
+            (mean(learned[0]), ".2f"),
+            (mean(learned[1]), ".2f"),
+            (paired(learned[1], learned[0]), "+.2f"),
+            (mean(mean_lives(b, lambda played: played.taken_back)), ".2f"),
+            (mean(mean_lives(c, lambda played: played.recalled)), ".2f"),
+        ]
+        cells = ["" if one is None else one.told(form) for one, form in differences]
+        rows.append([row, *cells])
+    title = f"What recalibration changes: drifts {name} ({', '.join(drifts)})"
+    return Sheet(title, headings, rows)
+
+
+def _streamed(result: Result) -> list[str]:
+    """Rows that lived through streams."""
+    return [row for row in result.rows if lives(result.outcomes, row, result.setting.drifts, "A")]
+
+
+def _delay(played: Sequence[Played]) -> str:
+    """Mean delay of the changes that were seen, and the share of them."""
+    told = [one for several in played for one in several.delays]
+    seen = [one for one in told if one is not None]
+    if not told:
+        return ""
+    return f"{digits(float(np.mean(seen))) if seen else '-'} ({len(seen) / len(told):.0%})"
+
+
+def _arl(played: Sequence[Played]) -> str:
+    """Rows watched over false alarms."""
+    watched, alarms = sum(one.watched for one in played), sum(one.false_alarm for one in played)
+    if not watched:
+        return ""
+    return digits(watched / alarms) if alarms else f"> {digits(watched)}"
+
+
+def _drifts(result: Result) -> list[str]:
+    return [one for one in result.setting.drifts if one != NULL]
+
+
+def _error(score: Score) -> float | None:
+    return score.error
+
+
+def _rg(score: Score) -> float | None:
+    return score.rg

@@ -1,0 +1,76 @@
+"""The tables, for a terminal and in Markdown."""
+
+from rich.console import Group
+
+from rga_bench.contexts.run import Result
+from rga_bench.contexts.tables.sheets_levels import order, papers, published, worth
+from rga_bench.contexts.tables.sheets_methods import by_context, by_place, cost
+from rga_bench.contexts.tables.targets import asked
+from rga_bench.sheet import Sheet
+
+NOTES = """\
+Means over splits, and half of their 90 % intervals by Student's distribution; differences are
+paired: both methods or levels meet the same bridge, rows and noise.
+
+Error: mean over contexts of the mean squared error over that of an even distribution over the
+range (range² / 12), so that the middle of the ranges has an Error of 1 on contexts spread evenly.
+RG: mean squared gap over rows and sensors. Tables of levels are on test rows of which one half is
+measured under usual conditions, the other under the drift.
+
+Level A calibrates once. B watches the gap with `SyncMonitor`, gathers rows after an alarm and
+recalibrates for all rows; a recalibration by which the first rows or the latest ones are less
+likely is taken back. C also stores every state, so that each one is for its own rows alone, takes
+one up without learning where it explains the rows behind an alarm, and infers each block of test
+rows by the state after which what it leaves of them is likeliest.
+
+AD: rows from a change to its alarm, both counted, over the changes that were seen, whose share
+stands beside it. ARL: rows watched under usual conditions over false alarms, at all drifts
+together. A delay means nothing without it.
+
+†: less than what the true contexts leave; the method hides in the contexts what the model gets
+wrong. Floors: the noise alone; the model at the true contexts; the model at the contexts that
+leave the least gap."""
+
+
+def about(result: Result) -> list[str]:
+    """Where it was measured, how much, and what was left out."""
+    place, setting, sizes = result.machine, result.setting, result.setting.sizes
+    named = [f"{name} {number}" for name, number in result.versions.items() if number]
+    few = min(setting.few, setting.splits)
+    lines = [
+        f"{place['processor']}, {place['cores']} cores, {place['system']}",
+        ", ".join(named),
+        f"seed {setting.seed}; splits of full gap and drifts {setting.splits}, of others {few}",
+        f"rows simulated {sizes.source}, unlabelled {sizes.unlabelled}, of a stream {sizes.stream}",
+        f"rows of a test {sizes.test}, between false alarms {sizes.arl0:g} asked",
+        f"repository: {sizes.repository}",
+    ]
+    for name, packages in result.absent.items():
+        lines.append(f"{name} is left out: {', '.join(packages)} not installed")
+    return lines
+
+
+def terminal(result: Result) -> Group:
+    """For rich."""
+    return Group(*(one.terminal() for one in sheets(result)), order(result), "", NOTES)
+
+
+def markdown(result: Result, command: str) -> str:
+    """A page with all tables and the figures."""
+    lines = ["# Levels of integration, with every rival beside them", "", f"`{command}`", ""]
+    lines += [*(f"- {line}" for line in about(result)), "", order(result), ""]
+    for sheet in sheets(result):
+        lines += sheet.markdown()
+    figures = ["![methods](methods.png)", ""]
+    if result.setting.drifts:
+        figures += ["![levels](levels.png)", ""]
+    return "\n".join([*lines, NOTES, "", *figures])
+
+
+def sheets(result: Result) -> list[Sheet]:
+    """All tables."""
+    levels = papers(result)
+    if levels:
+        levels.insert(1, published())
+    others = [by_context(result), asked(result), cost(result)]
+    return [*levels, *worth(result), *by_place(result), *(one for one in others if one.rows)]

@@ -1,0 +1,5 @@
+"""Channels as loggers break them: a library of faults, and what a diagnosis makes of each."""
+
+from rga_bench.faults.library import FAULTS, Fault, Scale
+
+__all__ = ["FAULTS", "Fault", "Scale"]

@@ -1,0 +1,1 @@
+"""The bridges a case may stand on, as model files."""

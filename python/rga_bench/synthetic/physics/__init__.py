@@ -1,0 +1,1 @@
+"""A physics of its own: plain NumPy, nothing of the simulator."""
