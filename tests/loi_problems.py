@@ -10,19 +10,19 @@ from rga.inference.networks.design_samples import design
 from rga.inference.rows import Rows
 from rga.model import read_model
 from rga.simulation import Simulator
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.synthetic.bridges.full_case_study import full_case_study
 
 
 @cache
-def easy(smooth: bool = False) -> tuple[Problem, Rows]:
+def easy(smooth: bool = False) -> tuple[LearningProblem, Rows]:
     """A problem without load tests, and rows to judge by; where asked, contexts drift slowly."""
     model = read_model(full_case_study(), "case study")
     simulator = Simulator(model)
     noise = np.array([float(sensor.noise or 0.0) for sensor in model.sensors.values()])
     drawn = design(model, 1000, latent=list(model.context), seed=1)
     nothing = Rows(np.zeros((0, len(model.context))), np.zeros((0, len(noise))))
-    problem = Problem(
+    problem = LearningProblem(
         model, simulator, noise, Rows(drawn.contexts, drawn.readings), np.zeros(0), nothing, 1
     )
     rng = np.random.default_rng(2)
@@ -30,7 +30,9 @@ def easy(smooth: bool = False) -> tuple[Problem, Rows]:
     return replace(problem, real=measured(problem, rng, 120, smooth).readings), judged
 
 
-def measured(problem: Problem, rng: np.random.Generator, rows: int, smooth: bool = False) -> Rows:
+def measured(
+    problem: LearningProblem, rng: np.random.Generator, rows: int, smooth: bool = False
+) -> Rows:
     """Rows of the model with noise."""
     free = rng.standard_normal((rows, len(problem.ranges)))
     if smooth:
@@ -54,7 +56,7 @@ def inferred(learned: Calibrated, judged: Rows) -> Estimate:
     return _INFERRED[key][2]
 
 
-def error(problem: Problem, learned: Calibrated, judged: Rows) -> float:
+def error(problem: LearningProblem, learned: Calibrated, judged: Rows) -> float:
     """Mean squared error of the contexts in variances of contexts spread evenly."""
     off = inferred(learned, judged).value - judged.contexts
     return float((off**2 / (np.ptp(problem.ranges, axis=1) ** 2 / 12.0)).mean())

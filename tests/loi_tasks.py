@@ -7,22 +7,24 @@ import numpy as np
 
 from rga.model.parameter import FloatArray
 from rga_bench.contexts.drift import DRIFTS
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
-from rga_bench.contexts.setting import DRIFTING, Sizes, Task
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
+from rga_bench.contexts.setting import DRIFTING, ContextsTask, Sizes
 
 SIZES = Sizes(source=64, unlabelled=60, stream=160, test=40)
 RANGES = np.array([[0.0, 1.0], [-30.0, 30.0], [3.0, 5.5], [10.0, 12.0]])
 
 
-def task(manner: str = DRIFTING, row: str = "nearest", split: int = 0, **changes: Any) -> Task:
-    return replace(Task(3, split, "all", manner, row, DRIFTS, SIZES), **changes)
+def task(
+    manner: str = DRIFTING, row: str = "nearest", split: int = 0, **changes: Any
+) -> ContextsTask:
+    return replace(ContextsTask(3, split, "all", manner, row, DRIFTS, SIZES), **changes)
 
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
     """The contexts of the simulated row that is most like the reading, less a level learned."""
 
-    problem: Problem
+    problem: LearningProblem
     level: FloatArray
     learned: list[int] = field(default_factory=list)
 
@@ -40,5 +42,5 @@ class Nearest:
         return replace(self, level=self.level + off.mean(axis=0), learned=[len(recent)])
 
 
-def nearest(problem: Problem) -> Calibrated:
+def nearest(problem: LearningProblem) -> Calibrated:
     return Nearest(problem, np.zeros(len(problem.noise)))

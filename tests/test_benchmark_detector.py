@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from rga.detection import GaussianWindow
 from rga_bench.detection import run, setting, table
 from rga_bench.detection.charts import Chart, Method, detecting
-from rga_bench.detection.detectors import MONITOR, WINDOW_RULE, Mewma, WindowRule, mewma
-from rga_bench.detection.faults import Drift, Fault, Spikes, Spread, Step, Stuck
-from rga_bench.detection.noise import WHITE, WORLDS, Noise, NoiseSource
+from rga_bench.detection.detectors import MONITOR, WINDOW_RULE, Mewma, WindowChart, mewma
+from rga_bench.detection.faults import Drift, Spikes, Spread, Step, StreamChange, Stuck
+from rga_bench.detection.noise import WHITE, WORLDS, NoiseSource, StationaryNoise
 from rga_bench.detection.optimum import (
     OPTIMUM,
     Optimum,
@@ -28,15 +28,15 @@ from rga_bench.detection.optimum import (
 )
 from rga_bench.detection.rates import Arl0, Delay, Share, arl0, delay, limit_for, share
 from rga_bench.detection.result import Alarms, Seen
-from rga_bench.detection.setting import Setting
-from rga_bench.detection.streams import Stream
+from rga_bench.detection.setting import DetectionSetting
+from rga_bench.detection.streams import ResidualStream
 from rga_bench.detection.targets import targets
-from rga_bench.detection.watch import Case, Course, World, watched
+from rga_bench.detection.watch import Course, StreamWorld, WatchedCase, watched
 
 Rows = NDArray[np.float64]
 SEED = np.random.SeedSequence(1)
 #: as little as can be measured
-LITTLE = Setting(
+LITTLE = DetectionSetting(
     arl0=500.0, null=20, streams=10, baselines=2, each=2, onset=110, sensors=6, sizes=(1.0,),
     counts=(1, 6), seconds=0.02,
 )  # fmt: skip
@@ -57,7 +57,7 @@ def coin(probability: float) -> Method:
 
 
 def courses(method: Method, streams: int, cap: int, **case: Any) -> list[Course]:
-    return watched(World(3, sensors=4), Case(streams, cap, **case), method)
+    return watched(StreamWorld(3, sensors=4), WatchedCase(streams, cap, **case), method)
 
 
 @pytest.mark.parametrize("probability", [0.3, 0.01])
@@ -86,7 +86,7 @@ def test_run_lengths_that_are_not_exponential_are_told() -> None:
 
 
 @pytest.mark.parametrize("fault", [Step(0.5), Step(50.0, 4), Drift(1.0, 2), Spread(9.0, 3)])
-def test_a_coin_is_as_late_whatever_happens(fault: Fault) -> None:
+def test_a_coin_is_as_late_whatever_happens(fault: StreamChange) -> None:
     told = delay(courses(coin(0.02), 300, 2000, onset=20, fault=fault), 0.5)
     assert told.low is not None
     assert told.high is not None
@@ -147,7 +147,7 @@ def test_the_limit_for_a_rate() -> None:
 
 
 @pytest.mark.parametrize("noise", WORLDS, ids=lambda noise: noise.name)
-def test_noise_has_the_moments_it_is_named_for(noise: Noise) -> None:
+def test_noise_has_the_moments_it_is_named_for(noise: StationaryNoise) -> None:
     rows = NoiseSource(noise, 8, SEED).take(40_000)
     assert np.allclose(rows.mean(axis=0), 0.0, atol=0.05)
     assert np.allclose(rows.var(axis=0), 1.0, atol=0.06)
@@ -161,7 +161,7 @@ def test_noise_has_the_moments_it_is_named_for(noise: Noise) -> None:
 
 
 def test_noise_begins_as_it_goes_on() -> None:
-    noise = Noise("slow", memory=0.9)
+    noise = StationaryNoise("slow", memory=0.9)
     first = [NoiseSource(noise, 500, np.random.SeedSequence(n)).take(2) for n in range(20)]
     assert np.var([rows[0] for rows in first]) == pytest.approx(1.0, abs=0.05)
     assert np.mean([rows[0] * rows[1] for rows in first]) == pytest.approx(0.9, abs=0.05)
@@ -174,12 +174,12 @@ FAULTS = [
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
 @pytest.mark.parametrize("noise", [WHITE, WORLDS[2], WORLDS[4]], ids=lambda noise: noise.name)
-def test_a_stream_is_the_same_in_any_blocks(fault: Fault, noise: Noise) -> None:
-    whole = Stream(noise, 7, SEED, fault, 50).take(300)
-    parts = Stream(noise, 7, SEED, fault, 50)
+def test_a_stream_is_the_same_in_any_blocks(fault: StreamChange, noise: StationaryNoise) -> None:
+    whole = ResidualStream(noise, 7, SEED, fault, 50).take(300)
+    parts = ResidualStream(noise, 7, SEED, fault, 50)
     cut = np.concatenate([parts.take(size) for size in (20, 30, 1, 9, 140, 100)])
     assert np.array_equal(whole, cut)
-    sound = Stream(noise, 7, SEED).take(300)
+    sound = ResidualStream(noise, 7, SEED).take(300)
     assert np.array_equal(whole[:50], sound[:50])
     changed = np.any(whole != sound, axis=0)
     assert changed.sum() == fault.count
@@ -187,9 +187,9 @@ def test_a_stream_is_the_same_in_any_blocks(fault: Fault, noise: Noise) -> None:
 
 
 def test_what_faults_do() -> None:
-    def change(fault: Fault) -> tuple[Rows, Rows]:
-        sound = Stream(WHITE, 5, SEED).take(5050)
-        faulty = Stream(WHITE, 5, SEED, fault, 50).take(5050)
+    def change(fault: StreamChange) -> tuple[Rows, Rows]:
+        sound = ResidualStream(WHITE, 5, SEED).take(5050)
+        faulty = ResidualStream(WHITE, 5, SEED, fault, 50).take(5050)
         own = np.any(faulty != sound, axis=0)
         return sound[:, own], faulty[:, own]
 
@@ -209,7 +209,7 @@ def test_what_faults_do() -> None:
     assert 0.01 < np.mean(jumps != 0.0) < 0.03
 
 
-def likelihood(fault: Fault, rows: Rows) -> Rows:
+def likelihood(fault: StreamChange, rows: Rows) -> Rows:
     """Ratio of a change from the first of the rows on, for each sensor."""
     ramp = np.arange(1, len(rows) + 1)[:, None] if isinstance(fault, Drift) else 1.0
     if isinstance(fault, Spread):
@@ -223,7 +223,7 @@ OPTIMA = [Step(1.0, 2), Step(1.0, 2, True), Step(0.7, 6), Drift(0.1, 2), Spread(
 
 
 @pytest.mark.parametrize("fault", OPTIMA, ids=lambda fault: f"{fault.name} in {fault.count}")
-def test_the_optimum_is_the_sum_of_mean_likelihood_ratios(fault: Fault) -> None:
+def test_the_optimum_is_the_sum_of_mean_likelihood_ratios(fault: StreamChange) -> None:
     rows = np.random.default_rng(4).standard_normal((12, 6))
     rows[5:, :2] += 1.0
     chart = Optimum(fault, 6, 1000.0)
@@ -243,14 +243,14 @@ def test_there_is_no_optimum_for_a_stuck_sensor() -> None:
 
 
 @pytest.mark.parametrize("fault", [Step(1.0, 2), Drift(0.1), Spread(2.0)])
-def test_the_optimum_keeps_its_rate_and_is_soon(fault: Fault) -> None:
+def test_the_optimum_keeps_its_rate_and_is_soon(fault: StreamChange) -> None:
     """The limit comes from streams with the change; those without it have the rate."""
-    world, rate = World(7, sensors=10), 200.0
+    world, rate = StreamWorld(7, sensors=10), 200.0
     method = optimal(fault, 10, rate)
-    changed = watched(world, Case(200, 5000, 50, fault), method)
+    changed = watched(world, WatchedCase(200, 5000, 50, fault), method)
     limit = optimal_limit(changed, rate)
     assert limit < math.log(rate)
-    sound = watched(world, Case(150, 5000, purpose="null"), replace(method, limit=limit))
+    sound = watched(world, WatchedCase(150, 5000, purpose="null"), replace(method, limit=limit))
     told, late = arl0(sound, limit), delay(changed, limit)
     assert told.low is not None
     assert told.high is not None
@@ -264,9 +264,9 @@ def test_a_thinned_optimum_keeps_its_rate() -> None:
     fault, rate = Step(0.2, 1), 200.0
     assert expected_delay(fault, 2, rate) > 200
     method = optimal(fault, 2, rate)
-    world = World(8, sensors=2)
-    limit = optimal_limit(watched(world, Case(200, 9000, 100, fault), method), rate)
-    sound = arl0(watched(world, Case(150, 9000), replace(method, limit=limit)), limit)
+    world = StreamWorld(8, sensors=2)
+    limit = optimal_limit(watched(world, WatchedCase(200, 9000, 100, fault), method), rate)
+    sound = arl0(watched(world, WatchedCase(150, 9000), replace(method, limit=limit)), limit)
     assert sound.low is not None
     assert sound.high is not None
     assert 0.9 * sound.low < rate < 1.1 * sound.high
@@ -275,7 +275,7 @@ def test_a_thinned_optimum_keeps_its_rate() -> None:
 def test_the_window_rule_decides_as_the_gaussian_window() -> None:
     rows = NoiseSource(WORLDS[3], 9, SEED).take(2000)
     rows[700:1200, 4] = rows[700, 4]  # stuck, and free again
-    chart = WindowRule(30, np.zeros(9))
+    chart = WindowChart(30, np.zeros(9))
     parts = [chart.values(part) for part in np.split(rows, [7, 20, 31, 700, 701, 1500])]
     expected = GaussianWindow(9, 30, 6.0).update_many(rows**2).any(axis=1)
     assert 10 < expected.sum() < 1500
@@ -300,7 +300,7 @@ def test_charts_are_fresh_for_every_stream() -> None:
 
     method = Method("mewma", make, 1e9)
     one, _ = courses(method, 2, 200)
-    alone = make(None, 0).values(World(3, sensors=4).stream(Case(2, 200), 0).take(200))
+    alone = make(None, 0).values(StreamWorld(3, sensors=4).stream(WatchedCase(2, 200), 0).take(200))
     assert one.values[-1] == alone.max()
     chart = make(None, 0)
     twin = deepcopy(chart)
@@ -317,10 +317,10 @@ def test_a_baseline_serves_its_streams_only() -> None:
         seen.append((float(baseline[0, 0]), seed))
         return Coin(0.5)
 
-    world = World(3, sensors=4, baseline=30, each=2)
-    watched(world, Case(6, 10), detecting("coin", make))
+    world = StreamWorld(3, sensors=4, baseline=30, each=2)
+    watched(world, WatchedCase(6, 10), detecting("coin", make))
     assert len(set(seen)) == len(seen) == 3
-    watched(world, Case(6, 10), detecting("coin", make), range(2, 4))
+    watched(world, WatchedCase(6, 10), detecting("coin", make), range(2, 4))
     assert seen[3:] == seen[1:2]
 
 

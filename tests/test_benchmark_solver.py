@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rga import _core
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver import cores, large, refactored, run, table
 from rga_bench.solver.anew import Anew
 from rga_bench.solver.box_bridge import box_bridge, samples
@@ -23,11 +23,11 @@ from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.peers.pynite import PyNite
 from rga_bench.solver.peers.superlu import SuperLU
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.run import Result
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.run import SolverResult
+from rga_bench.solver.setting import SolverSetting
 
 #: as little as can be measured
-LITTLE = Setting(rows=64, seconds=0.0, panels=(6,), data_set=100)
+LITTLE = SolverSetting(rows=64, seconds=0.0, panels=(6,), data_set=100)
 ROOFS = Roofs(1e10, 1e10, 1e10)
 
 
@@ -153,7 +153,7 @@ def test_memory_of_a_data_set_is_not_that_of_this_process() -> None:
     assert seconds > 0.0
 
 
-def result(figures: list[Figure]) -> Result:
+def result(figures: list[Measurement]) -> SolverResult:
     machine = {
         "processor": "Z80",
         "instructions": ["portable"],
@@ -161,17 +161,17 @@ def result(figures: list[Figure]) -> Result:
         "memory_GiB": 0.1,
         "system": "CP/M",
     }
-    return Result(machine, {"rga": "1", "CHOLMOD": None}, "1982-04-23", 7, ROOFS, figures)
+    return SolverResult(machine, {"rga": "1", "CHOLMOD": None}, "1982-04-23", 7, ROOFS, figures)
 
 
 def test_a_page_tells_ratios_and_whether_they_are_as_asked() -> None:
     page = table.markdown(
         result(
             [
-                Figure("bridge", "lanes", 180_000.0, "/s").beside("CHOLMOD", 10_000.0, 17.0),
-                Figure("bridge", "no lanes", 1_234_567.0, "/s").beside("CHOLMOD", 1e7, 9.0),
-                Figure("roof", "solve", 0.0123, "s").beside("CHOLMOD", 0.0246, 0.5),
-                Figure("roof", "residual", 1.5e-12),
+                Measurement("bridge", "lanes", 180_000.0, "/s").beside("CHOLMOD", 10_000.0, 17.0),
+                Measurement("bridge", "no lanes", 1_234_567.0, "/s").beside("CHOLMOD", 1e7, 9.0),
+                Measurement("roof", "solve", 0.0123, "s").beside("CHOLMOD", 0.0246, 0.5),
+                Measurement("roof", "residual", 1.5e-12),
             ]
         ),
         "rga benchmark solver --seed 7",

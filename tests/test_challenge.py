@@ -13,9 +13,9 @@ from rga.model import Model, read_model
 from rga.records import Record, load_record
 from rga_bench.diagnosis import run as running
 from rga_bench.diagnosis.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw, draws
-from rga_bench.diagnosis.figures import Figure, figures, rate
+from rga_bench.diagnosis.figures import ChallengeFigure, figures, rate
 from rga_bench.diagnosis.hidden import Truth
-from rga_bench.diagnosis.judge import Outcome
+from rga_bench.diagnosis.judge import DrawOutcome
 from rga_bench.diagnosis.plots import plot
 from rga_bench.diagnosis.tables import failures, tables
 from rga_bench.diagnosis.yardstick import Yardstick
@@ -23,7 +23,7 @@ from rga_bench.ledger import NAME, Ledger
 from rga_bench.synthetic import Case, Conditions, draw_case
 
 
-def outcome(name: str, **changes: Any) -> Outcome:
+def outcome(name: str, **changes: Any) -> DrawOutcome:
     """An outcome of an effect that was found, or of its null twin."""
     draw = Draw.parse(name)
     hidden = [
@@ -41,7 +41,7 @@ def outcome(name: str, **changes: Any) -> Outcome:
         }
         for kind in (() if draw.null else draw.kinds)
     ]
-    usual = Outcome(
+    usual = DrawOutcome(
         id=name,
         null=draw.circumstance.null,
         contexts=draw.circumstance.conditions.contexts,
@@ -63,7 +63,7 @@ def outcome(name: str, **changes: Any) -> Outcome:
     return replace(usual, **changes)
 
 
-def figure(outcomes: list[Outcome], beginning: str) -> Figure:
+def figure(outcomes: list[DrawOutcome], beginning: str) -> ChallengeFigure:
     (found,) = [one for one in figures(outcomes) if one.name.startswith(beginning)]
     return found
 
@@ -289,7 +289,7 @@ def judged(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the draws that were judged, without diagnosing them."""
     names: list[str] = []
 
-    def quick(draw: Draw) -> Outcome:
+    def quick(draw: Draw) -> DrawOutcome:
         if len(names) == 3:
             raise KeyboardInterrupt
         names.append(draw.id)
@@ -323,19 +323,19 @@ def test_a_run_ends_in_time(judged: list[str]) -> None:
 
 
 def test_outcomes_of_other_code_are_not_mixed_in(tmp_path: Path) -> None:
-    Ledger(tmp_path, Outcome).add(outcome("1-single-0"))
-    assert Ledger(tmp_path, Outcome).outcomes == {"1-single-0": outcome("1-single-0")}
+    Ledger(tmp_path, DrawOutcome).add(outcome("1-single-0"))
+    assert Ledger(tmp_path, DrawOutcome).outcomes == {"1-single-0": outcome("1-single-0")}
     path = tmp_path / NAME
     text = path.read_text()
     path.write_text(text.replace('"rga": "', '"rga": "9.'))
     with pytest.raises(InputError, match=r"of another version: rga 9\.0"):
-        Ledger(tmp_path, Outcome)
+        Ledger(tmp_path, DrawOutcome)
     for wrong in ("[]", "{}", "nonsense", '{"versions": 3}'):
         path.write_text(text + wrong + "\n")
         with pytest.raises(InputError, match="line 2"):
-            Ledger(tmp_path, Outcome)
+            Ledger(tmp_path, DrawOutcome)
     with pytest.raises(InputError, match="cannot be kept"):
-        Ledger(path, Outcome)
+        Ledger(path, DrawOutcome)
 
 
 def test_a_case_is_drawn_and_written(rga: Any, tmp_path: Path) -> None:

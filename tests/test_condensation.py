@@ -15,13 +15,13 @@ from rga.model.schema import EndSprings
 from rga.model.structure import Structure, build_structure
 from rga.simulation.paths.condensation import Condensation, DependentTerms
 from rga.simulation.paths.variation import variation
-from rga_bench.solver.box_bridge import Bridge, box_bridge
+from rga_bench.solver.box_bridge import BoxBridge, box_bridge
 from rga_bench.solver.space_truss import Arrays
 
 DISPLACEMENT, STRAIN, FORCE, REACTION = 0, 2, 3, 4
 
 
-def small_bridge(seed: int) -> Bridge:
+def small_bridge(seed: int) -> BoxBridge:
     """The box bridge with sensors of every kind, on members and springs that vary too."""
     bridge = box_bridge(seed)
     draw = np.random.default_rng([seed, 1])
@@ -46,7 +46,7 @@ def small_bridge(seed: int) -> Bridge:
     return bridge
 
 
-def dense(bridge: Bridge, q: Any, factors: Any) -> Any:
+def dense(bridge: BoxBridge, q: Any, factors: Any) -> Any:
     """One sample by a dense solve, written without the package: a truss with springs to ground."""
     structure, loads, outputs = bridge.structure, bridge.loads, bridge.outputs
     nodes, ends = structure["coordinates"], structure["ends"]
@@ -95,7 +95,7 @@ def dense(bridge: Bridge, q: Any, factors: Any) -> Any:
     return np.array(out)
 
 
-def whole(bridge: Bridge, factors: Any) -> Any:
+def whole(bridge: BoxBridge, factors: Any) -> Any:
     """Factors of all members and springs."""
     count = len(bridge.structure["ends"])
     everything = np.ones((len(factors), count + len(bridge.springs)))

@@ -14,7 +14,7 @@ from reference_solver import solve_case
 from rga import _core
 from rga.simulation.paths.condensation import Condensation, DependentTerms
 from rga.simulation.paths.rank_one_terms import stiffness_terms
-from rga.simulation.verification_input import Frame, Loads, output_arrays
+from rga.simulation.verification_input import FrameCase, Loads, output_arrays
 
 HERE = Path(__file__).parent
 NONE = np.zeros(0, np.int64)
@@ -43,7 +43,7 @@ def condensed(arrays: Any, members: Any, springs: Any, q: Any, factors: Any) -> 
 )
 def test_the_reference_solver_agrees(name: str, members: list[str]) -> None:
     case = json.loads((HERE / "verification" / f"{name}.json").read_text(encoding="utf-8"))
-    frame, factors = Frame.read(case), np.array([[0.4, 1.7, 0.8][: len(members)]])
+    frame, factors = FrameCase.read(case), np.array([[0.4, 1.7, 0.8][: len(members)]])
     softer = copy.deepcopy(case)
     for element in softer["elements"]:
         if str(element["id"]) in members:
@@ -155,7 +155,7 @@ def test_it_is_the_structure_anew(seed: int, place: int) -> None:
 def test_a_gauge_under_a_load_by_hand() -> None:
     """A beam on two supports: M = q x (L - x) / 2, whatever its stiffness; strain -M y / EI."""
     length, e, inertia, load = 6.0, 2e11, 4e-5, 3e4
-    frame = Frame.read(
+    frame = FrameCase.read(
         {
             "dim": 2,
             "nodes": {"a": [0, 0], "b": [length, 0]},

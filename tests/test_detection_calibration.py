@@ -10,7 +10,7 @@ from rga.detection.thresholds import (
     BLOCKS,
     SHARES,
     STREAMS,
-    Calibration,
+    TailModel,
     calibration,
     tails,
 )
@@ -50,7 +50,7 @@ def test_false_alarms_are_as_rare_as_asked_beyond_the_streams(arl0: float, peaks
 
 @pytest.mark.parametrize("arl0", [2_000.0, 10_000.0, 1e6])
 def test_thresholds_are_what_chance_reaches_in_so_many_rows(arl0: float) -> None:
-    simulated = Calibration(np.linspace(5.0, 12.0, len(SHARES)), np.linspace(0.9, 2.0, 24), 10_000)
+    simulated = TailModel(np.linspace(5.0, 12.0, len(SHARES)), np.linspace(0.9, 2.0, 24), 10_000)
     limits = simulated.thresholds(arl0)
     assert simulated.chance(limits, int(arl0)) == pytest.approx(-np.expm1(-1.0))
     assert simulated.chance(limits, int(arl0) // 100) == pytest.approx(0.01, rel=0.01)
@@ -81,7 +81,7 @@ def test_a_tail_that_is_heavier_further_out_is_seen() -> None:
 def test_a_statistic_that_is_as_large_as_it_can_get_raises_no_alarm() -> None:
     peaks = np.random.default_rng(5).exponential(size=(STREAMS * BLOCKS, len(SHARES)))
     peaks[::3, 4] = 46.0
-    simulated = Calibration(*tails(peaks), 10_000)
+    simulated = TailModel(*tails(peaks), 10_000)
     limits = simulated.thresholds(10_000.0)
     assert limits[4] > np.exp(46.0)
     assert (np.delete(limits, 4) < np.exp(20.0)).all()

@@ -14,10 +14,10 @@ from rga_bench.faults import FAULTS, Scale
 from rga_bench.faults.base import Base, foreign, load
 from rga_bench.faults.comparison import Comparison, comparisons
 from rga_bench.faults.inject import broken as broken_channels
-from rga_bench.faults.judge import ERROR, Outcome
+from rga_bench.faults.judge import ERROR, FaultOutcome
 from rga_bench.faults.run import measure
 from rga_bench.faults.table import markdown
-from rga_bench.faults.trial import LEFT_OUT, SOUND, WAYS, Trial, trials
+from rga_bench.faults.trial import LEFT_OUT, SOUND, WAYS, FaultTrial, trials
 
 ROWS, ONSET = 240, 90
 SENSOR = {"kind": "strain", "unit": "microstrain", "noise": 1.0}
@@ -119,17 +119,17 @@ def test_a_scale_knows_unit_noise_and_span() -> None:
     assert max(sizes) <= span
 
 
-def compared(now: Outcome, before: Outcome) -> Comparison:
+def compared(now: FaultOutcome, before: FaultOutcome) -> Comparison:
     (one,) = comparisons([before, now])
     return one
 
 
-def outcome(way: str = "whole", sensor: str = "S1", **changes: Any) -> Outcome:
+def outcome(way: str = "whole", sensor: str = "S1", **changes: Any) -> FaultOutcome:
     """An outcome in which a member is named, and in a broken record a channel beside it."""
     gone = [] if way == SOUND else [{"sensor": sensor, "fault": "noise", "row": 0}]
     member = {"kind": "member_stiffness", "member": "a-b", "rivals": []}
     fault = {"kind": "sensor_fault", "sensor": sensor, "rivals": []}
-    usual = Outcome(
+    usual = FaultOutcome(
         id=f"drawn-0 {way}",
         base="drawn-0",
         way=way,
@@ -203,7 +203,7 @@ def test_channels_are_broken_as_the_trial_says(name: str) -> None:
     base = Base(name, 60)
     sound = load(base, 1)
     for way, many in (("whole", 1), ("late", 1), ("pair", 2), ("several", 3)):
-        trial = Trial(base, 1, 5, way, "creep")
+        trial = FaultTrial(base, 1, 5, way, "creep")
         record, told = broken_channels(trial, sound.model, sound.record)
         again, _ = broken_channels(trial, sound.model, sound.record)
         assert np.array_equal(record.readings, again.readings, equal_nan=True)
@@ -217,17 +217,17 @@ def test_channels_are_broken_as_the_trial_says(name: str) -> None:
             assert changed[first:, column].any() == (first < len(record))
         if way == "late":
             assert 0.2 * 60 - 1 <= told[0]["row"] <= 0.7 * 60
-    same, nothing = broken_channels(Trial(base, 1, 0, SOUND), sound.model, sound.record)
+    same, nothing = broken_channels(FaultTrial(base, 1, 0, SOUND), sound.model, sound.record)
     assert same is sound.record
     assert nothing == []
-    fewer, gone = broken_channels(Trial(base, 1, 1, LEFT_OUT), sound.model, sound.record)
+    fewer, gone = broken_channels(FaultTrial(base, 1, 1, LEFT_OUT), sound.model, sound.record)
     assert set(fewer.sensors) == set(sound.record.sensors) - {one["sensor"] for one in gone}
 
 
 def test_a_dead_channel_is_told_and_in_a_sound_record_nothing() -> None:
     """A tiny run: the table of one broken record, and its null twin."""
     base = Base("drawn-0", 100)
-    result = measure([Trial(base, 1, 0, SOUND), Trial(base, 1, 1, "whole", "dead")])
+    result = measure([FaultTrial(base, 1, 0, SOUND), FaultTrial(base, 1, 1, "whole", "dead")])
     sound, dead = result.outcomes
     assert sound.causes == []
     assert sound.verdict == "nothing_wrong"

@@ -29,7 +29,7 @@ from rga_bench.diagnosis.tables import tables
 from rga_bench.field import INSIDE, KINDS, OUTSIDE, STRUCTURES, Options, draw_field, fits
 from rga_bench.field.as_built import as_built
 from rga_bench.field.solver import Bars, Solved, axes_of
-from rga_bench.field.world import World, amplitudes, influence
+from rga_bench.field.world import FieldWorld, amplitudes, influence
 from rga_bench.synthetic import Case
 
 E, A, INERTIA = 2.1e11, 0.01, 4.0e-5
@@ -47,7 +47,7 @@ def test_pinned_and_at_the_centroid_it_is_what_the_simulator_says(name: str) -> 
         model = read_model(structure.model, name)
         known = contexts(structure.model, 6)
         expected = Simulator(model).predict({**known, "time": np.arange(6.0)})
-        world = World.of(structure)
+        world = FieldWorld.of(structure)
         found = amplitudes(world, known) @ influence(world)
         scale = np.abs(expected).max(axis=0) + 1e-6 * np.abs(expected).max()
         assert np.abs((found - expected) / scale).max() < 1e-6
@@ -59,15 +59,15 @@ def test_pinned_and_at_the_centroid_it_is_what_the_simulator_says(name: str) -> 
 def test_hidden_effects_are_what_the_simulator_says(kind: str, tmp_path: Path) -> None:
     """On a structure that is as drawn, the change is that of the same effect in a model."""
     from rga_bench.diagnosis.hidden import Truth
-    from rga_bench.field.hidden import Setting
+    from rga_bench.field.hidden import FieldSetting
 
     name = "K truss" if kind == "support_spring" else "portal"
     structure = STRUCTURES[name](np.random.default_rng(2))
-    world = World.of(structure)
+    world = FieldWorld.of(structure)
     known = contexts(structure.model, 8)
     time = 3600.0 * np.arange(8)
     sound = amplitudes(world, known) @ influence(world)
-    span = KINDS[kind].draw(Setting(world, time, sound), np.random.default_rng(4))
+    span = KINDS[kind].draw(FieldSetting(world, time, sound), np.random.default_rng(4))
     assert span is not None
     value = span.at(0.7)
     other = world.copy()
@@ -187,7 +187,7 @@ def test_what_no_vocabulary_has_is_drawn(kind: str) -> None:
 
 def test_spreads_are_those_of_the_codes() -> None:
     structure = STRUCTURES["roof"](np.random.default_rng(1))
-    world = World.of(structure)
+    world = FieldWorld.of(structure)
     rng = np.random.default_rng(2)
     drawn = [as_built(structure, rng, True, 1.0) for _ in range(60)]
     factors = np.log([one.bars.ea / world.bars.ea for one in drawn])

@@ -24,8 +24,8 @@ from rga_bench.synthetic.noise import autoregressive, stream
 from rga_bench.synthetic.physics.frame import (
     Array,
     Frame,
+    FrameSpring,
     Geometry,
-    Spring,
     Stiffness,
     deformation_stiffness,
 )
@@ -153,11 +153,11 @@ class Truth:
         held = {6 * node + dof for node in range(len(names)) for dof in (1, 3, 5)}
         held |= {6 * names.index(node) + dof for node in "WE" for dof in (0, 2, 4)}
         top, beam, foot = (6 * names.index(node) for node in ("TW", "beam", "W"))
-        springs = [Spring(top + dof, beam + dof, 1e12) for dof in (0, 2)]
-        springs.append(Spring(top + 4, beam + 4, min(self.joint, 1e12)))
+        springs = [FrameSpring(top + dof, beam + dof, 1e12) for dof in (0, 2)]
+        springs.append(FrameSpring(top + 4, beam + 4, min(self.joint, 1e12)))
         if np.isfinite(self.base):
             held.remove(foot + 4)
-            springs.append(Spring(foot + 4, None, self.base))
+            springs.append(FrameSpring(foot + 4, None, self.base))
         frame = Frame.build(geometry, section, held, springs)
         force = np.zeros((len(frame.stiffness), 2))
         force[top, 0] = 1e3

@@ -9,14 +9,14 @@ from dataclasses import replace
 import pytest
 
 from rga_bench.diagnosis.design import Draw
-from rga_bench.diagnosis.judge import Outcome, judge
+from rga_bench.diagnosis.judge import DrawOutcome, judge
 from rga_bench.diagnosis.run import run
 
 NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
 
 
 @pytest.fixture(scope="module")
-def outcomes() -> dict[str, Outcome]:
+def outcomes() -> dict[str, DrawOutcome]:
     """A draw and its null twin for every name."""
     hidden = [Draw.parse(name) for name in NAMES]
     done = run([*hidden, *(replace(one, null=True) for one in hidden)], workers=2)
@@ -24,7 +24,7 @@ def outcomes() -> dict[str, Outcome]:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_is_hidden_is_found(outcomes: dict[str, Outcome], name: str) -> None:
+def test_what_is_hidden_is_found(outcomes: dict[str, DrawOutcome], name: str) -> None:
     one = outcomes[name]
     assert len(one.hidden) == len(one.draw.kinds)
     for hidden in one.hidden:
@@ -37,13 +37,13 @@ def test_what_is_hidden_is_found(outcomes: dict[str, Outcome], name: str) -> Non
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_its_null_twin_names_nothing(outcomes: dict[str, Outcome], name: str) -> None:
+def test_its_null_twin_names_nothing(outcomes: dict[str, DrawOutcome], name: str) -> None:
     one = outcomes[f"{name}-null"]
     assert not one.hidden
     assert not one.named
     assert one.model_sha256 == outcomes[name].model_sha256
 
 
-def test_no_outcome_depends_on_the_workers(outcomes: dict[str, Outcome]) -> None:
+def test_no_outcome_depends_on_the_workers(outcomes: dict[str, DrawOutcome]) -> None:
     alone, pooled = judge(Draw.parse("1-single-40")), outcomes["1-single-40"]
     assert replace(alone, seconds=0.0) == replace(pooled, seconds=0.0)

@@ -17,7 +17,7 @@ from rga_bench.synthetic import Case, draw_case
 from rga_bench.synthetic.bridges.catalogue import BRIDGES
 from rga_bench.synthetic.contexts import courses
 from rga_bench.synthetic.hidden.catalogue import HIDDEN
-from rga_bench.synthetic.hidden.effect import Setting
+from rga_bench.synthetic.hidden.effect import EffectSetting
 from rga_bench.synthetic.noise import stream
 from rga_bench.synthetic.physics.response import respond
 from rga_bench.synthetic.physics.world import World
@@ -30,7 +30,7 @@ KINDS = ("joint_slip", "support_gap")
 def test_forces_and_elongations_lead_to_the_same_readings(name: str, kind: str) -> None:
     bridge = BRIDGES[name](stream(3, "bridge"))
     time, contexts = courses(bridge, stream(3, "contexts"), 40)
-    setting = Setting(bridge, float(time[-1]), {})
+    setting = EffectSetting(bridge, float(time[-1]), {})
     for seed in (0, 1):
         span = HIDDEN[kind].draw(setting, np.random.default_rng(seed))
         if kind == "support_gap":

@@ -10,9 +10,9 @@ from rga.errors import InputError
 from rga.model.parameter import FloatArray
 from rga_bench.contexts.context_regime import BEYOND, PART, Contexts
 from rga_bench.contexts.data import LOAD_TESTS, calibration_of, stream_of
-from rga_bench.contexts.drift import DRIFTS, ONE_IN, Measured, when
+from rga_bench.contexts.drift import DRIFTS, ONE_IN, MeasuredRows, when
 from rga_bench.contexts.floors import BEST_CONTEXT, FLOORS, NOISE, TRUE_CONTEXT, floor
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.rows import Row
 from rga_bench.contexts.score import score
 from rga_bench.contexts.tables.aggregate import paired
@@ -103,9 +103,9 @@ def test_rows_of_a_split_meet_the_same_data_and_splits_do_not() -> None:
 
 
 def test_load_tests_go_to_whom_they_are_meant_for() -> None:
-    got: list[Problem] = []
+    got: list[LearningProblem] = []
 
-    def method(problem: Problem) -> Calibrated:
+    def method(problem: LearningProblem) -> Calibrated:
         got.append(problem)
         return nearest(problem)
 
@@ -116,7 +116,7 @@ def test_load_tests_go_to_whom_they_are_meant_for() -> None:
     assert len(known.problem.load_tests) == LOAD_TESTS
     twins: list[object] = []
 
-    def oracle(problem: Problem, twin: object) -> Calibrated:
+    def oracle(problem: LearningProblem, twin: object) -> Calibrated:
         twins.append(twin)
         return nearest(problem)
 
@@ -128,7 +128,7 @@ def test_load_tests_go_to_whom_they_are_meant_for() -> None:
 
 
 def test_scores_by_hand() -> None:
-    measured = Measured(np.array([[1.0, 0.0], [3.0, 2.0]]), np.ones((2, 3)), np.zeros((2, 3)))
+    measured = MeasuredRows(np.array([[1.0, 0.0], [3.0, 2.0]]), np.ones((2, 3)), np.zeros((2, 3)))
     estimate = Estimate(np.array([[2.0, 0.0], [3.0, 0.0]]), np.full((2, 2), 0.7))
     found = score(measured, estimate, np.full((2, 3), 3.0), np.array([[0.0, 6.0], [0.0, 12.0]]))
     # MSE 0.5 and 2 over 3 and 12.

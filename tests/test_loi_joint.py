@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rga.inference.rows import Rows
-from rga_bench.contexts.data import Calibration, calibration_of
+from rga_bench.contexts.data import CalibrationData, calibration_of
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.methods.joint import joint_posterior
@@ -16,27 +16,27 @@ from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.methods.networks import NETWORKS, learn
 from rga_bench.contexts.methods.polished import polished_network
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.setting import Sizes, Task
+from rga_bench.contexts.setting import ContextsTask, Sizes
 
 LITTLE = Sizes(source=256, unlabelled=30, test=40)
 
 
-def known(gap: str) -> Calibration:
-    found = calibration_of(Task(3, 0, gap, "same", "", (), LITTLE))
+def known(gap: str) -> CalibrationData:
+    found = calibration_of(ContextsTask(3, 0, gap, "same", "", (), LITTLE))
     none = Rows(found.problem.load_tests.contexts[:0], found.problem.load_tests.readings[:0])
     return replace(found, problem=replace(found.problem, load_tests=none))
 
 
-def scored(calibrated: Calibrated, data: Calibration) -> Score:
+def scored(calibrated: Calibrated, data: CalibrationData) -> Score:
     return Examination(data.test, data.problem.ranges, 30).score(calibrated)
 
 
 @pytest.fixture(scope="module")
-def full() -> Calibration:
+def full() -> CalibrationData:
     return known("all")
 
 
-def test_the_joint_posterior_comes_near_the_floor(full: Calibration) -> None:
+def test_the_joint_posterior_comes_near_the_floor(full: CalibrationData) -> None:
     floor = scored(knows_the_frame(full.problem, full.usual.twin), full)
     blind = scored(maximum_posterior(full.problem), full)
     joint = joint_posterior(full.problem)
@@ -64,11 +64,11 @@ def test_the_polished_network_leaves_hardly_more_than_the_noise() -> None:
     assert (found.error or 1.0) < 0.3
 
 
-def test_nothing_but_load_tests_is_labelled(full: Calibration) -> None:
+def test_nothing_but_load_tests_is_labelled(full: CalibrationData) -> None:
     """The problem holds no context of a measured row; load tests are taken where they are given."""
     fields = set(full.problem.__dataclass_fields__)
     assert fields == {"model", "simulator", "noise", "source", "real", "load_tests", "seed"}
-    tests = calibration_of(Task(3, 0, "all", "same", "", (), LITTLE)).problem.load_tests
+    tests = calibration_of(ContextsTask(3, 0, "all", "same", "", (), LITTLE)).problem.load_tests
     with_tests = replace(full.problem, load_tests=Rows(tests.contexts[:10], tests.readings[:10]))
     few = {"steps": 40, "fine_steps": 10, "reduced_steps": 20, "width": 16}
     short = partial(learn, NETWORKS["source_only"].model_copy(update=few))

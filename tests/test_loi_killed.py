@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from rga_bench.contexts.play import Outcome
+from rga_bench.contexts.play import TaskOutcome
 from rga_bench.contexts.run import measure
-from rga_bench.contexts.setting import Setting, Sizes
+from rga_bench.contexts.setting import ContextsSetting, Sizes
 from rga_bench.ledger import NAME
 
-SETTING = Setting(
+SETTING = ContextsSetting(
     seed=11,
     splits=2,
     gaps=("all",),
@@ -29,7 +29,7 @@ TASKS = 2 * 2 * 4
 KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 
 
-def outcomes(folder: Path, workers: int) -> list[Outcome]:
+def outcomes(folder: Path, workers: int) -> list[TaskOutcome]:
     """Of all tasks, without the times."""
     found = measure(SETTING, folder=folder, workers=workers).outcomes
     return [replace(one, learning=None, inference=None) for one in found]

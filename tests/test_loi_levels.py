@@ -10,15 +10,15 @@ import pytest
 
 from loi_tasks import SIZES, Nearest, nearest, task
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.data import Stream, calibration_of, stream_of
+from rga_bench.contexts.data import DriftStream, calibration_of, stream_of
 from rga_bench.contexts.examination import Examination
-from rga_bench.contexts.levels import Learned, State, live, most_likely
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.levels import CalibratedMethod, Learned, live, most_likely
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.novel import with_novel
 from rga_bench.contexts.rows import Row
-from rga_bench.contexts.setting import Sizes, Task
-from rga_bench.contexts.stream_results import Played, lived
+from rga_bench.contexts.setting import ContextsTask, Sizes
+from rga_bench.contexts.stream_results import StreamResult, lived
 
 
 def lives(
@@ -38,13 +38,13 @@ def lives(
     first: Any = object()
     begun: list[slice] = []
 
-    def learn(state: State, recent: slice) -> State:
+    def learn(state: CalibratedMethod, recent: slice) -> CalibratedMethod:
         begun.append(recent)
         after: Any = object()
         left = learned(state.stream)
-        return State(after, ordinary, left, ordinary)
+        return CalibratedMethod(after, ordinary, left, ordinary)
 
-    state = State(first, ordinary, stream, ordinary)
+    state = CalibratedMethod(first, ordinary, stream, ordinary)
     checked: Learned = learn
     return live(state, Sizes(), checked, stores=stores), begun
 
@@ -90,7 +90,7 @@ def test_a_recalibration_that_forgets_is_taken_back() -> None:
     generator = np.random.default_rng(1)
     left = generator.standard_normal((50, 16))
     nobody: Any = None
-    before = State(nobody, left, left, left)
+    before = CalibratedMethod(nobody, left, left, left)
 
     def harms(alone: bool = False, **changed: FloatArray) -> bool:
         return replace(before, **changed).harms(before, slice(20, 50), Sizes(), alone=alone)
@@ -110,7 +110,7 @@ def test_states_of_the_same_gap_are_told_apart_by_their_sensors() -> None:
     nobody: Any = None
     shape = np.where(np.arange(16) < 4, 2.0, 0.5)
     one, other = (
-        State(nobody, left, left, left)
+        CalibratedMethod(nobody, left, left, left)
         for left in (generator.standard_normal((40, 16)) * way for way in (shape, shape[::-1]))
     )
     for number, way in enumerate((shape, shape[::-1])):
@@ -200,7 +200,7 @@ def modes() -> Remembering:
     return Remembering(maximum_posterior(calibration_of(RIGHT).problem))
 
 
-def levels() -> list[Played]:
+def levels() -> list[StreamResult]:
     """What is lived through at every level, where offsets are learned."""
     known = calibration_of(RIGHT)
     method = Levelled(modes(), np.zeros(84))
@@ -209,11 +209,11 @@ def levels() -> list[Played]:
 
 
 @pytest.fixture(scope="module")
-def right() -> list[Played]:
+def right() -> list[StreamResult]:
     return levels()
 
 
-def test_recalibration_helps_and_c_keeps_what_was_before(right: list[Played]) -> None:
+def test_recalibration_helps_and_c_keeps_what_was_before(right: list[StreamResult]) -> None:
     a, b, c = right
     assert b.delays == c.delays
     assert b.delays[0] is not None
@@ -225,17 +225,19 @@ def test_recalibration_helps_and_c_keeps_what_was_before(right: list[Played]) ->
     assert c.ordinary == a.ordinary
 
 
-def test_no_level_looks_at_labels(right: list[Played], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_level_looks_at_labels(
+    right: list[StreamResult], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Other true contexts change Errors, and nothing that was decided."""
 
-    def unlabelled(found: list[Played]) -> list[tuple[object, ...]]:
+    def unlabelled(found: list[StreamResult]) -> list[tuple[object, ...]]:
         return [
             (one.delays, one.alarms, one.recalibrations, one.taken_back, one.recalled,
              one.ordinary.rg, one.drifted.rg)
             for one in found
         ]  # fmt: skip
 
-    def mislabelled(given: Task, drift: str) -> Stream:
+    def mislabelled(given: ContextsTask, drift: str) -> DriftStream:
         stream = stream_of(given, drift)
         wrong = [
             replace(one, contexts=np.random.default_rng(1).permutation(one.contexts, axis=0))
@@ -255,7 +257,7 @@ def test_no_level_looks_at_labels(right: list[Played], monkeypatch: pytest.Monke
 def test_the_papers_repository_learns_from_simulations_around_what_is_novel() -> None:
     known, sources = calibration_of(task()), []
 
-    def method(problem: Problem) -> Calibrated:
+    def method(problem: LearningProblem) -> Calibrated:
         sources.append(problem.source)
         return nearest(problem)
 
@@ -271,7 +273,7 @@ def test_the_papers_repository_learns_from_simulations_around_what_is_novel() ->
     for inner, added in ((Beyond(known.problem, level), 8), (nearest(known.problem), 0)):
         sources.clear()
         learned = with_novel(Row(method), known, stream)
-        state = State.of(inner, known.problem.real, stream)
+        state = CalibratedMethod.of(inner, known.problem.real, stream)
         assert learned(state, slice(80, 90)).calibrated is not inner
         # Rows at one place are novel once.
         assert [len(one) for one in sources] == ([SIZES.source + added] if added else [])
@@ -287,8 +289,8 @@ def test_each_block_is_inferred_by_the_state_after_which_it_is_likeliest() -> No
     readings[20:] += 5.0
     shifted = replace(known.test, readings=readings)
     one, other = nearest(known.problem), Nearest(known.problem, np.full(84, 5.0))
-    first = State.of(one, known.problem.real, known.problem.real)
-    second = State.of(other, known.problem.real + 5.0, known.problem.real)
+    first = CalibratedMethod.of(one, known.problem.real, known.problem.real)
+    second = CalibratedMethod.of(other, known.problem.real + 5.0, known.problem.real)
     examination = Examination(shifted, known.problem.ranges, 20)
     both, alone = examination.score_of_likeliest([first, second]), examination.score(one)
     clean = Examination(known.test, known.problem.ranges, 20).score(one)

@@ -12,7 +12,7 @@ from rga.inference.networks.design_samples import design
 from rga.inference.networks.selection import WORSE, choose
 from rga.model import read_model
 from rga.simulation import Simulator
-from rga_bench.contexts.method import Problem, Rows
+from rga_bench.contexts.method import LearningProblem, Rows
 from rga_bench.contexts.methods import networks
 from rga_bench.contexts.methods.networks import NETWORKS, LearnedNetwork, learn
 from rga_bench.synthetic.bridges.full_case_study import full_case_study
@@ -37,10 +37,10 @@ def drawn(seed: int, rows: int, twin: PhysicalTwin) -> Rows:
     return Rows(contexts, twin.read(contexts) + twin.noise(rng, rows))
 
 
-def problem(twin: PhysicalTwin, *, load_tests: Rows | None = None) -> Problem:
+def problem(twin: PhysicalTwin, *, load_tests: Rows | None = None) -> LearningProblem:
     source = design(MODEL, 500, latent=tuple(MODEL.context), seed=5)
     none = Rows(np.empty((0, len(RANGES))), np.empty((0, len(NOISE))))
-    return Problem(
+    return LearningProblem(
         model=MODEL, simulator=SIMULATOR, noise=NOISE,
         source=Rows(source.contexts, source.readings),
         real=drawn(6, 60, twin).readings, load_tests=load_tests or none, seed=3,
@@ -157,7 +157,7 @@ def test_a_checkpoint_runs_no_code(like: PhysicalTwin) -> None:
             ContextNetwork.from_bytes(bad)
 
 
-def samples(given: Problem) -> tuple[Samples, Samples]:
+def samples(given: LearningProblem) -> tuple[Samples, Samples]:
     return (
         Samples(given.source.readings, np.empty((500, 0)), given.source.contexts),
         Samples(given.real, np.empty((60, 0))),

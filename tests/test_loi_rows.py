@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from rga.inference.rows import Rows
-from rga_bench.contexts.data import Calibration, calibration_of
+from rga_bench.contexts.data import CalibrationData, calibration_of
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.methods import networks
 from rga_bench.contexts.methods.networks import NETWORKS
 from rga_bench.contexts.methods.polished import polished_network
 from rga_bench.contexts.rows import METHODS
-from rga_bench.contexts.setting import Sizes, Task
+from rga_bench.contexts.setting import ContextsTask, Sizes
 from test_loi_model_based import UNLABELLED
 from test_loi_peers import NEEDS
 
@@ -32,9 +32,9 @@ def test_no_row_is_without_a_test() -> None:
 
 
 @pytest.fixture(scope="module")
-def easy() -> Calibration:
+def easy() -> CalibrationData:
     sizes = Sizes(source=128, unlabelled=10, test=30)
-    return calibration_of(Task(5, 0, "noise only", "same", "", (), sizes))
+    return calibration_of(ContextsTask(5, 0, "noise only", "same", "", (), sizes))
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("few_steps")
 @pytest.mark.parametrize("name", HERE)
-def test_a_row_learns_and_looks_at_no_label_but_its_own(name: str, easy: Calibration) -> None:
+def test_a_row_learns_and_looks_at_no_label_but_its_own(name: str, easy: CalibrationData) -> None:
     row, tests = METHODS[name], easy.problem.load_tests
     calibrated = row.calibrated(easy)
     found = Examination(easy.test, easy.problem.ranges, 30).score(calibrated)

@@ -11,19 +11,19 @@ from loi_tasks import SIZES, nearest, task
 from rga.errors import InputError
 from rga_bench.contexts import setting
 from rga_bench.contexts.context_regime import MANNERS
-from rga_bench.contexts.play import Outcome, play
+from rga_bench.contexts.play import TaskOutcome, play
 from rga_bench.contexts.rows import ORACLE, PAPERS, Row
-from rga_bench.contexts.run import Result, measure
+from rga_bench.contexts.run import ContextsResult, measure
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.setting import DRIFTING, Setting, Task
-from rga_bench.contexts.stream_results import Played
+from rga_bench.contexts.setting import DRIFTING, ContextsSetting, ContextsTask
+from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.sheets_levels import order
 from rga_bench.contexts.tables.table import about, markdown
 from rga_bench.contexts.tables.targets import asked
 from rga_bench.ledger import NAME
 from rga_bench.machine import machine, versions
 
-LITTLE = Setting(
+LITTLE = ContextsSetting(
     seed=3,
     splits=2,
     few=1,
@@ -69,7 +69,7 @@ def test_a_method_beside_others_is_told_of(few_methods: dict[str, Row]) -> None:
     assert "†" not in page.partition("## RG")[2].partition("##")[0].replace("†:", "")
 
 
-def made(errors: dict[str, tuple[float, float, float]]) -> Result:
+def made(errors: dict[str, tuple[float, float, float]]) -> ContextsResult:
     """A result of two splits, from the Errors of each method at the levels."""
     outcomes = []
     for split in (0, 1):
@@ -77,16 +77,18 @@ def made(errors: dict[str, tuple[float, float, float]]) -> Result:
             found = [Score(rg=100.0 * one, error=one + 0.01 * split) for one in by_level]
             learned = {"A": 0, "B": 4, "C": 1}
             played = tuple(
-                Played(drift, level, found[0], one, recalibrations=learned[level])
+                StreamResult(drift, level, found[0], one, recalibrations=learned[level])
                 for drift in ("sensor", "recurring")
                 for level, one in zip(learned, found, strict=True)
             )
             for manner in ("same", DRIFTING):
                 lived_through = played if manner == DRIFTING else ()
                 name = f"{split}{row}{manner}"
-                outcomes.append(Outcome(name, split, "all", manner, row, found[0], lived_through))
-    some = Setting(gaps=("all",), drifts=("none", "sensor", "recurring"))
-    return Result(machine(), versions(), some, tuple(errors), {}, outcomes)
+                outcomes.append(
+                    TaskOutcome(name, split, "all", manner, row, found[0], lived_through)
+                )
+    some = ContextsSetting(gaps=("all",), drifts=("none", "sensor", "recurring"))
+    return ContextsResult(machine(), versions(), some, tuple(errors), {}, outcomes)
 
 
 def test_the_papers_order_is_told_where_it_is_and_where_it_is_not() -> None:
@@ -135,8 +137,10 @@ def test_wrong_rows_and_drifts_are_refused(few_methods: dict[str, Row], tmp_path
 
 
 def test_tasks_have_names_of_their_own() -> None:
-    tasks = Setting().tasks(("a", "b"))
-    assert len({one.id for one in tasks}) == len(tasks) == 2 * (10 * 2 + Setting.few * (5 + 3))
+    tasks = ContextsSetting().tasks(("a", "b"))
+    assert (
+        len({one.id for one in tasks}) == len(tasks) == 2 * (10 * 2 + ContextsSetting.few * (5 + 3))
+    )
     paper = replace(tasks[0], sizes=replace(tasks[0].sizes, repository="paper"))
     assert paper.id != tasks[0].id
     assert {one.manner for one in tasks} == {*MANNERS, DRIFTING}
@@ -166,7 +170,7 @@ def test_the_command(
     assert "give one of measured, paper" in wrong.err
 
 
-def play_nothing(task: Task) -> None:
+def play_nothing(task: ContextsTask) -> None:
     raise AssertionError(f"{task.id} is in the ledger")
 
 

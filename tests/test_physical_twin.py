@@ -8,7 +8,7 @@ from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 from rga_bench.synthetic.bridges.full_case_study import WEAKENED, full_case_study
 from rga_bench.synthetic.physical_twin import GAPS, PhysicalTwin
-from rga_bench.synthetic.physics.frame import Frame, Spring
+from rga_bench.synthetic.physics.frame import Frame, FrameSpring
 from rga_bench.synthetic.physics.world import World
 
 
@@ -51,7 +51,7 @@ def test_condensed_rows_are_those_of_the_whole_frame(contexts: FloatArray) -> No
     worn = np.where(world.members_of(group=WEAKENED), 1.0 - row[0, 6], 1.0)
     world.scale_stiffness(worn)
     springs = [
-        Spring(world.support_dof(f"east {side}", "ux"), None, 10.0 ** (row[0, 5] + 3.0))
+        FrameSpring(world.support_dof(f"east {side}", "ux"), None, 10.0 ** (row[0, 5] + 3.0))
         for side in ("north", "south")
     ]
     frame = Frame.build(world.geometry, world.section, world.held, springs)

@@ -20,9 +20,9 @@ from rga.twin.runner import taken_up
 from rga.twin.settings import Pace
 from rga.twin.sync.policy import Policy
 from rga_bench.policies import run, setting
-from rga_bench.policies.play import Played
+from rga_bench.policies.play import PolicyResult
 from rga_bench.policies.play import play as play_task
-from rga_bench.policies.setting import STREAMS, Setting
+from rga_bench.policies.setting import STREAMS, PolicySetting
 
 Stream = Callable[..., Path]
 POLICIES = ("event", "time", "hybrid", "adaptive")
@@ -194,7 +194,7 @@ def test_interrupted_after_every_step_it_ends_the_same(
 TRAINING = TrainingSettings(
     steps=40, fine_steps=10, reduced_steps=40, width=24, features=8, reduced_width=24
 )
-LITTLE = Setting(
+LITTLE = PolicySetting(
     streams=1,
     rows=72,
     clocks=(6,),
@@ -227,7 +227,7 @@ def test_the_comparison(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         assert 0 <= one["out_of_sync"] <= 1
     # The same seed gives the same, whatever was played before.
     for task in replace(LITTLE, seed=3).tasks()[-2:]:
-        assert play_task(task) == Played(**found[task.stream, task.policy])
+        assert play_task(task) == PolicyResult(**found[task.stream, task.policy])
 
 
 def test_a_comparison_that_cannot_be_written_is_not_begun(
@@ -242,8 +242,8 @@ def test_a_comparison_that_cannot_be_written_is_not_begun(
 
 
 def test_means_are_those_of_a_policy_on_a_sort_of_stream() -> None:
-    def played(stream: str, seed: int, gap: float) -> Played:
-        return Played(stream, seed, "event", 1, 0, 0, 120, 0, gap, 0.5, 0.1, 3.0)
+    def played(stream: str, seed: int, gap: float) -> PolicyResult:
+        return PolicyResult(stream, seed, "event", 1, 0, 0, 120, 0, gap, 0.5, 0.1, 3.0)
 
     found = run.means([played("a", 0, 1.0), played("b", 0, 9.0), played("a", 1, 2.0)])
     assert list(found) == [("a", "event"), ("b", "event")]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rga.findings import schema as contract
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Cause, Explanation, Findings, GroupGap, Unexplained
 from rga.model import Model, read_model
 from rga.records import Record
@@ -118,7 +118,7 @@ def found(
         "record_sha256": "b" * 64,
     }
     findings = Findings(**(content | changes))
-    findings._account = Account(
+    findings._account = DiagnosisArrays(
         model, model, record, held_out, out, before, after, 0.02 * size, noise
     )
     return findings

@@ -22,7 +22,7 @@ from sqlalchemy import create_engine, text
 
 from rga.errors import InputError
 from rga.twin.history import Event
-from rga.twin.repository import Findings, Identity, Repository, Run, migrations, tables
+from rga.twin.repository import Identity, Repository, Run, StoredFindings, migrations, tables
 from rga.twin.repository.database import database
 
 SERVER = os.environ.get("RGA_TEST_POSTGRES", "")
@@ -198,7 +198,7 @@ def test_words_come_back(run: Run) -> None:
     assert later.time == "2024-05-01T00:01:00"
     assert later.written_at >= query.written_at >= run.begun_at
     assert [message.sequence for message in run.messages(kind="Q2")] == [1, 3]
-    assert run.findings() == (Findings(8, '{"verdict": "named"}'),)
+    assert run.findings() == (StoredFindings(8, '{"verdict": "named"}'),)
     assert run.events() == (event, Event("calibration", 9, 0.1, "done"))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rga.findings import schema as contract
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Cause, Findings, Unexplained
 from rga.model import Model, read_model
 from rga.records import Record
@@ -102,7 +102,7 @@ def closing(history: History, **changes: Any) -> Findings:
         "record_sha256": "b" * 64,
     }
     findings = Findings(**(content | changes))
-    findings._account = Account(
+    findings._account = DiagnosisArrays(
         history.model,
         history.model,
         record,

@@ -12,7 +12,7 @@ from rga import Findings, diagnose
 from rga_bench.faults import FAULTS
 from rga_bench.faults.base import Base, Sound, load
 from rga_bench.faults.inject import broken
-from rga_bench.faults.trial import Trial
+from rga_bench.faults.trial import FaultTrial
 from safe_words import check
 
 ROWS = 80
@@ -40,7 +40,7 @@ def bases() -> st.SearchStrategy[Base]:
 )
 def test_what_must_hold_holds_of_any_record(base: Base, number: int, way: str, fault: str) -> None:
     sound = load(base, 11)
-    record, _ = broken(Trial(base, 11, number, way, fault), sound.model, sound.record)
+    record, _ = broken(FaultTrial(base, 11, number, way, fault), sound.model, sound.record)
     check(diagnose(sound.model, record))
 
 

@@ -9,7 +9,7 @@ from rga_bench.synthetic import BRIDGES, draw_case
 from rga_bench.synthetic.gauges import observe
 from rga_bench.synthetic.hidden.score import d_prime
 from rga_bench.synthetic.noise import autoregressive, stream
-from rga_bench.synthetic.physics.frame import Frame, Geometry, Solution, Spring, Stiffness
+from rga_bench.synthetic.physics.frame import Frame, FrameSpring, Geometry, Solution, Stiffness
 from rga_bench.synthetic.physics.friction import slide
 from rga_bench.synthetic.physics.response import respond
 from rga_bench.synthetic.physics.world import Friction, World
@@ -47,7 +47,7 @@ def test_bar_stretches_under_force_and_heat() -> None:
 
 def test_held_bar_is_compressed_by_heat() -> None:
     geometry = Geometry.of(np.array([[0.0, 0, 0], [3.0, 0, 0]]), np.array([[0, 1]]))
-    frame = Frame.build(geometry, stiffness(1, 0.0), {0, 1, 2, 7, 8}, [Spring(6, None, 1e8)])
+    frame = Frame.build(geometry, stiffness(1, 0.0), {0, 1, 2, 7, 8}, [FrameSpring(6, None, 1e8)])
     answer = frame.solve(np.zeros((12, 1)), np.array([[2e-4]]))
     k = E * A / 3.0
     assert answer.u[6, 0] == pytest.approx(k * 3.0 * 2e-4 / (k + 1e8))

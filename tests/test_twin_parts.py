@@ -11,11 +11,11 @@ from rga.model import read_model
 from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.expectation import against_expected, scatter_share
-from rga.twin.digital_twin import DigitalTwin, State, follow
+from rga.twin.digital_twin import DigitalTwin, TwinState, follow
 from rga.twin.messages.hardware import HardwareInterface, Station
 from rga.twin.messages.queries import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
 from rga.twin.novelty import novel, spacing
-from rga.twin.row_buffer import Ledger
+from rga.twin.row_buffer import RowBuffer
 from rga.twin.settings import Settings
 from rga.twin.sync.window_rule import WindowRule
 
@@ -72,7 +72,7 @@ def test_the_twin_says_what_it_can_represent(small_bridge: dict[str, Any]) -> No
     assert answer.adequate
     assert (answer.version, answer.latent) == (1, ("west load", "east load"))
     # An answer alone changes nothing.
-    assert twin.state == State()
+    assert twin.state == TwinState()
     twin.accept(answer)
     assert twin.state.version == 1
 
@@ -183,7 +183,7 @@ def test_follow_ignores_a_refusal() -> None:
     refusal = R1(
         row=0, version=2, effects={}, adequate=False, missing=("x",), latent=(), blind=()
     )  # fmt: skip
-    assert follow(State(), refusal, ()) == State()
+    assert follow(TwinState(), refusal, ()) == TwinState()
 
 
 def test_only_credible_and_distinct_contexts_are_novel() -> None:
@@ -235,7 +235,7 @@ def test_noise_is_estimated_where_it_is_not_stated() -> None:
 
 
 def test_missing_contexts_are_carried_on_and_told() -> None:
-    ledger = Ledger.empty(1, 2, 2)
+    ledger = RowBuffer.empty(1, 2, 2)
     ledger.measured = np.array([[np.nan, 1.0], [5.0, np.nan], [np.nan, 3.0]])
     told, complete = ledger.told(np.array([9.0, 9.0]))
     np.testing.assert_array_equal(told, [[9, 1], [5, 1], [5, 3]])

@@ -14,7 +14,7 @@ from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.prepare import prepare
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.linearised import pose
-from rga.diagnosis.search.screening import Judged
+from rga.diagnosis.search.screening import RankedSignatures
 from rga.diagnosis.search.signatures import Block, signature
 from rga.model import read_effect, read_model
 from rga.records import Record, RecordMapping
@@ -280,7 +280,7 @@ def test_the_size_of_a_late_beginning(
     z = tuple(prior.trials[0] for prior in one.priors.values())
     always = signature(data, data.about(base), 0, one, z)
     assert always is not None
-    judged = Judged.of(Block.of([always]), problem.covariance)
+    judged = RankedSignatures.of(Block.of([always]), problem.covariance)
     weighted = problem.covariance.inverse_times(problem.residual(problem.simulated))
     along = np.stack([judged.block.along(weighted), judged.block.zero_along(weighted)])
     for row in (30, 60, 90):

@@ -161,15 +161,15 @@ def solver(
 
     from rga.cli.measured import measured
     from rga_bench.solver import table
-    from rga_bench.solver.run import Result, measure
-    from rga_bench.solver.setting import Setting, shorter
+    from rga_bench.solver.run import SolverResult, measure
+    from rga_bench.solver.setting import SolverSetting, shorter
 
-    def draw(result: Result, folder: Path) -> None:
+    def draw(result: SolverResult, folder: Path) -> None:
         from rga_bench.solver.plot import plot
 
         plot(result, folder / "solver.png")
 
-    setting = shorter(seed) if quick else Setting(seed=seed)
+    setting = shorter(seed) if quick else SolverSetting(seed=seed)
     measured(
         "solver",
         _command("solver", quick, seed),
@@ -196,20 +196,20 @@ def policies(
     from rga.cli.measured import measured
     from rga_bench.machine import machine, versions
     from rga_bench.policies import table
-    from rga_bench.policies.play import Played
+    from rga_bench.policies.play import PolicyResult
     from rga_bench.policies.run import compare
-    from rga_bench.policies.setting import Setting, shorter
+    from rga_bench.policies.setting import PolicySetting, shorter
 
-    def draw(played: Sequence[Played], folder: Path) -> None:
+    def draw(played: Sequence[PolicyResult], folder: Path) -> None:
         from rga_bench.policies.plot import plot
 
         plot(played, folder / "policies.png")
 
-    def content(played: Sequence[Played]) -> dict[str, Any]:
+    def content(played: Sequence[PolicyResult]) -> dict[str, Any]:
         told = {"machine": machine(), "versions": versions(), "seed": seed}
         return {**told, "played": [asdict(one) for one in played]}
 
-    setting = shorter(seed) if quick else Setting(seed=seed)
+    setting = shorter(seed) if quick else PolicySetting(seed=seed)
     measured(
         "policies",
         _command("policies", quick, seed),
@@ -235,20 +235,20 @@ def detector(
 
     from rga.cli.measured import measured
     from rga_bench.detection import table
-    from rga_bench.detection.result import Result
+    from rga_bench.detection.result import DetectionResult
     from rga_bench.detection.run import measure
-    from rga_bench.detection.setting import Setting, shorter
+    from rga_bench.detection.setting import DetectionSetting, shorter
 
-    def draw(result: Result, folder: Path) -> None:
+    def draw(result: DetectionResult, folder: Path) -> None:
         from rga_bench.detection.plot import plot
 
         plot(result, folder)
 
-    def content(result: Result) -> dict[str, Any]:
+    def content(result: DetectionResult) -> dict[str, Any]:
         verdicts = [{**asdict(one), "verdict": one.verdict} for one in result.judged]
         return {**asdict(result), "judged": verdicts}
 
-    setting = shorter(seed) if quick else Setting(seed=seed)
+    setting = shorter(seed) if quick else DetectionSetting(seed=seed)
     measured(
         "detector",
         _command("detector", quick, seed),
@@ -281,9 +281,9 @@ def faults(
     from rga.cli.output import write_json
     from rga_bench.faults import base, table, trial
     from rga_bench.faults.comparison import comparisons
-    from rga_bench.faults.run import Result, measure
+    from rga_bench.faults.run import FaultsResult, measure
 
-    def content(result: Result) -> dict[str, Any]:
+    def content(result: FaultsResult) -> dict[str, Any]:
         compared = [asdict(one) for one in comparisons(result.outcomes)]
         return {**asdict(result), "comparisons": compared}
 
@@ -324,24 +324,26 @@ def loi(
     from rga.cli.measured import measured
     from rga_bench.contexts.floors import FLOORS
     from rga_bench.contexts.rows import QUICK
-    from rga_bench.contexts.run import Result, measure
-    from rga_bench.contexts.setting import REPOSITORIES, Setting, shorter
+    from rga_bench.contexts.run import ContextsResult, measure
+    from rga_bench.contexts.setting import REPOSITORIES, ContextsSetting, shorter
     from rga_bench.contexts.tables import table
 
     if repository not in REPOSITORIES:
         remedy = f"give one of {', '.join(REPOSITORIES)}"
         raise InputError(f"there is no repository {repository!r}", "--repository", remedy)
 
-    def draw(result: Result, folder: Path) -> None:
+    def draw(result: ContextsResult, folder: Path) -> None:
         from rga_bench.contexts.tables.plot import plot
 
         plot(result, folder)
 
-    setting = shorter(seed, (*FLOORS, *QUICK)) if quick else Setting(seed=seed, splits=splits)
+    setting = (
+        shorter(seed, (*FLOORS, *QUICK)) if quick else ContextsSetting(seed=seed, splits=splits)
+    )
     sizes = replace(setting.sizes, repository=repository)
     setting = replace(setting, sizes=sizes)
     option = "" if repository == "measured" else f" --repository {repository}"
-    option += "" if quick or splits == Setting.splits else f" --splits {splits}"
+    option += "" if quick or splits == ContextsSetting.splits else f" --splits {splits}"
     measured(
         "loi",
         _command("loi", quick, seed) + option,

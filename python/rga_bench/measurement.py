@@ -6,7 +6,7 @@ HEADINGS = ("what", "measured", "beside", "there", "times as good", "at least")
 
 
 @dataclass(frozen=True)
-class Figure:
+class Measurement:
     """What was measured, and beside what.
 
     Attributes:
@@ -29,7 +29,7 @@ class Figure:
     ratio: float | None = None
     least: float | None = None
 
-    def beside(self, peer: str, value: float | None, least: float | None = None) -> "Figure":
+    def beside(self, peer: str, value: float | None, least: float | None = None) -> "Measurement":
         """The same with a peer; no value where that is not installed."""
         ratio = None
         if value is not None:

@@ -5,7 +5,7 @@ import numpy as np
 from rga.detection.baseline.baseline_model import Reference, after_prediction
 from rga.detection.baseline.decorrelation import repeating
 from rga.detection.baseline.stationarity import changed
-from rga.detection.thresholds import MEMORIES, WITHIN, Calibration, memory_of
+from rga.detection.thresholds import MEMORIES, WITHIN, TailModel, memory_of
 from rga.model.parameter import FloatArray
 
 #: a baseline that chance makes so changeable less often is doubted
@@ -15,7 +15,7 @@ SAME = 0.6
 
 
 def doubts(
-    reference: Reference, baseline: FloatArray, simulated: Calibration, columns: list[int]
+    reference: Reference, baseline: FloatArray, simulated: TailModel, columns: list[int]
 ) -> tuple[str, ...]:
     """What speaks against the promise about false alarms, in words.
 

@@ -14,7 +14,7 @@ from rga.detection.baseline.baseline_model import Reference, unwatched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
-from rga.detection.thresholds import Calibration, calibration, memory_of, simulated_memory
+from rga.detection.thresholds import TailModel, calibration, memory_of, simulated_memory
 from rga.errors import InputError
 from rga.model.parameter import FloatArray
 
@@ -218,7 +218,7 @@ class SyncMonitor:
             rows = np.ascontiguousarray(rows[:, self._watched])
         return self._statistics.update_many(rows)
 
-    def _begin(self, reference: Reference, simulated: Calibration, arl0: float, seed: int) -> None:
+    def _begin(self, reference: Reference, simulated: TailModel, arl0: float, seed: int) -> None:
         self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
         self._arl0, self._seed = float(arl0), int(seed)
         self._sizes, self._signature = reference.sizes, reference.signature

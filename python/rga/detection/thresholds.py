@@ -34,7 +34,7 @@ SHARES = np.array([statistic.share for statistic in STATISTICS])
 
 
 @dataclass(frozen=True)
-class Calibration:
+class TailModel:
     """How large statistics become by chance: false alarms get rarer with a power of the threshold.
 
     Where the log of each threshold is location + scale * (height - log(share)), false alarms of all
@@ -63,7 +63,7 @@ class Calibration:
 @lru_cache(maxsize=64)
 def calibration(
     sensors: int, baseline_rows: int | None, memory: float, arl0: float, seed: int
-) -> Calibration:
+) -> TailModel:
     """Simulate streams without a change.
 
     Every statistic has a tail of its own, which gives it a scale of heights: logs of how rare a
@@ -92,7 +92,7 @@ def calibration(
     largest = heights(peaks, location, scale).reshape(STREAMS, BLOCKS).max(axis=1)
     # Maximum likelihood: the largest of a stream has a Gumbel distribution of scale 1.
     common = -np.log(np.exp(-largest).mean())
-    return Calibration(location + scale * common, scale, block * BLOCKS)
+    return TailModel(location + scale * common, scale, block * BLOCKS)
 
 
 def logs(peaks: FloatArray) -> FloatArray:
@@ -139,7 +139,7 @@ def simulated_peaks(
     Returns:
         float[BLOCKS, statistics]
     """
-    draw = Noise(sensors, memory, generator)
+    draw = CalibrationNoise(sensors, memory, generator)
     if baseline_rows is None:
         reference = Reference.known(sensors)
     else:
@@ -152,7 +152,7 @@ def simulated_peaks(
     return peaks
 
 
-class Noise:
+class CalibrationNoise:
     """A stream of normal noise in which each reading goes with the one before.
 
     Args:

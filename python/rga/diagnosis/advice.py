@@ -9,8 +9,8 @@ from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
 from rga.experiments.candidates import added_sensors, settings, stands
 from rga.experiments.defaults import usual_truck
-from rga.experiments.explanation import Explanation
-from rga.experiments.measurement_model import Site
+from rga.experiments.explanation import CandidateModel
+from rga.experiments.measurement_model import MeasurementModel
 from rga.experiments.separation import (
     LIKELY,
     Pair,
@@ -43,9 +43,11 @@ class Advice:
         levels: of the scatter, as `Problem.levels`.
     """
 
-    def __init__(self, model: Model, data: Data, together: Explanation, levels: FloatArray) -> None:
+    def __init__(
+        self, model: Model, data: Data, together: CandidateModel, levels: FloatArray
+    ) -> None:
         self._together = together
-        self._site: Site | None = None
+        self._site: MeasurementModel | None = None
         with suppress(InputError):  # a structure that cannot bear the tests: no advice
             self._prepare(model, data, levels)
 
@@ -59,11 +61,13 @@ class Advice:
         if lane and self._truck:
             tests += stands(lane, self._truck, STANDS)
         added = [one for one in added_sensors(model) if not one.context or one.context in needed]
-        site = Site(model, data.sensors, added, tests, operation, lane, self._truck, levels)
+        site = MeasurementModel(
+            model, data.sensors, added, tests, operation, lane, self._truck, levels
+        )
         self._errors = site.errors(self._together.effects)
         self._site = site
 
-    def against(self, rival: Explanation) -> str:
+    def against(self, rival: CandidateModel) -> str:
         """What to measure against an explanation, in words; empty where it cannot be simulated."""
         site = self._site
         if site is None:
@@ -90,13 +94,13 @@ class Advice:
             f"{options[best][0]} ({_figures(separation[best])})"
         )
 
-    def _by_sensors(self, site: Site, pair: Pair) -> FloatArray:
+    def _by_sensors(self, site: MeasurementModel, pair: Pair) -> FloatArray:
         """d_perp with each added sensor alone, in operation."""
         columns = range(site.standing, len(site.sensors))
         more = whitened(self._errors, [pair], range(site.operating), columns)
         return np.sqrt(with_one_more(nothing(self._errors, pair), more, 0))
 
-    def _by_tests(self, site: Site, pair: Pair) -> FloatArray:
+    def _by_tests(self, site: MeasurementModel, pair: Pair) -> FloatArray:
         """d_perp with each load test alone, read by the sensors that work."""
         rows = range(site.operating, site.operating + len(site.tests))
         if not rows or not site.standing:

@@ -11,14 +11,14 @@ from rga.diagnosis.advice import Advice
 from rga.diagnosis.checks.explanations import Tried
 from rga.diagnosis.data.held_out import Gain
 from rga.diagnosis.optional import spared
-from rga.diagnosis.preparation.single_channel import Fault
+from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.change_point import beginnings
 from rga.diagnosis.search.laplace import Fit, extended
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.screening import Prospect
 from rga.diagnosis.search.stepwise import NAMED, RIVAL, Alternative, Found
 from rga.experiments.explanation import explanation
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, place_words
 from rga.findings.schema import (
     Cause,
@@ -126,13 +126,13 @@ def _effects(one: Fit, record: Record) -> list[Effect]:
     return [_effect(one, number, record) for number in range(len(one.hypotheses))]
 
 
-def fault_effect(fault: Fault, record: Record) -> SensorFault:
+def fault_effect(fault: BrokenChannel, record: Record) -> SensorFault:
     """A rejected channel as it stands in the extended model."""
     onset = None if fault.row is None else record.time_label(float(record.time[fault.row]))
     return SensorFault(sensor=fault.sensor, mode=fault.mode, onset=onset)
 
 
-def fault_cause(fault: Fault, effect: SensorFault) -> Cause:
+def fault_cause(fault: BrokenChannel, effect: SensorFault) -> Cause:
     """A rejected channel as a cause: each of its odd readings has odds of one in a thousand."""
     odds = max(fault.readings, 1) * FAULT_NATS
     return Cause(
@@ -146,7 +146,7 @@ def fault_cause(fault: Fault, effect: SensorFault) -> Cause:
     )
 
 
-def gap(account: Account, gained: Gain) -> Gap:
+def gap(account: DiagnosisArrays, gained: Gain) -> Gap:
     """The gap on the fitted rows and by sensor, and the gain by the held-out rows."""
     measured = account.record.readings
     before = ((measured - account.before) / account.noise) ** 2
@@ -172,7 +172,7 @@ def gap(account: Account, gained: Gain) -> Gap:
     )
 
 
-def groups(account: Account, grouped: Mapping[str, Sequence[str]]) -> list[GroupGap]:
+def groups(account: DiagnosisArrays, grouped: Mapping[str, Sequence[str]]) -> list[GroupGap]:
     """Measured over simulated of each group of sensors, in percent off."""
     order = {name: k for k, name in enumerate(account.record.sensors)}
     return [
@@ -262,7 +262,7 @@ def versions() -> dict[str, str]:
     return {**{name: version(name) for name in packages}, "python": platform.python_version()}
 
 
-def _percent_off(account: Account, simulated: FloatArray, columns: Sequence[int]) -> float:
+def _percent_off(account: DiagnosisArrays, simulated: FloatArray, columns: Sequence[int]) -> float:
     measured, own = account.record.readings[:, columns], simulated[:, columns]
     seen = np.isfinite(measured) & np.isfinite(own)
     weight = np.broadcast_to(account.sigma[list(columns)] ** -2, measured.shape)[seen]

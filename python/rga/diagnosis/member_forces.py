@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.errors import InputError
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.model.effect import Effect, Values
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model, Sensor
@@ -50,7 +50,7 @@ class Forces:
     measured: FloatArray
 
 
-def member_forces(account: Account) -> Forces | None:
+def member_forces(account: DiagnosisArrays) -> Forces | None:
     """Forces with and without the causes; None where no cause can change any.
 
     A gauge tells the force of its member by way of the extended model: the measured strain over
@@ -130,7 +130,7 @@ def _compliance(model: Model) -> FloatArray:
     return np.array(found)
 
 
-def _measured_over_simulated(account: Account) -> FloatArray:
+def _measured_over_simulated(account: DiagnosisArrays) -> FloatArray:
     """Amplitude that gauges measured over that of the extended model, their mean by member.
 
     The noise is taken out of the measured amplitude; NaN where there is no gauge, or its reading

@@ -19,7 +19,7 @@ from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.optional import spared
-from rga.diagnosis.preparation.prepare import Prepared, prepare
+from rga.diagnosis.preparation.prepare import PreparedRecord, prepare
 from rga.diagnosis.residuals import patterns
 from rga.diagnosis.residuals.curvature import curves, free_channels
 from rga.diagnosis.residuals.lack_of_fit import misfits
@@ -37,7 +37,7 @@ from rga.diagnosis.search.stepwise import (
     without_needless,
 )
 from rga.diagnosis.verdict import doubts_of, verdict
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Findings
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
@@ -78,7 +78,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     base = Simulator(model.without_zeros())
     measured = set(record.contexts)
 
-    def searched(prepared: Prepared) -> tuple[Problem, Screening, Found]:
+    def searched(prepared: PreparedRecord) -> tuple[Problem, Screening, Found]:
         data = prepared.data.rows(~held_out)
         candidates = hypotheses(base.model, data.sensors, measured)
         start = settled(base, data)
@@ -181,12 +181,12 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
 def _account(
     model: Model,
     extended: Model,
-    prepared: Prepared,
+    prepared: PreparedRecord,
     whole: WholeRecord,
     believed: Data,
     ends: tuple[FloatArray, FloatArray],
     found: Found,
-) -> Account:
+) -> DiagnosisArrays:
     """What was measured and simulated at both ends of the search: before and after.
 
     The gap is in units of the noise as it was before shared patterns were taken out of it.
@@ -202,7 +202,7 @@ def _account(
 
     readings = placed(np.where(full.observed, full.readings, np.nan))
     before, after = map(placed, ends)
-    return Account(
+    return DiagnosisArrays(
         model=model,
         extended=extended,
         record=replace(record, readings=np.where(rejected, record.readings, readings)),

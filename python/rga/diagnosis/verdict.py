@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.diagnosis.data.held_out import Gain
-from rga.diagnosis.preparation.single_channel import Fault
+from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.residuals.lack_of_fit import IMPLAUSIBLE, NEAR_ONE, PLAUSIBLE, Misfit
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.stepwise import RIVAL, Found
@@ -29,7 +29,7 @@ def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
 
 def doubts_of(
     channels: Sequence[str],
-    faults: Sequence[Fault],
+    faults: Sequence[BrokenChannel],
     found: Found,
     dropped: Sequence[Hypothesis],
     off: Sequence[Misfit],

@@ -19,7 +19,7 @@ DOUBT = 2.0
 
 
 @dataclass(frozen=True)
-class Unknown:
+class UncertainParameter:
     """A parameter that is known to within an interval.
 
     Attributes:
@@ -36,7 +36,7 @@ class Unknown:
 
 
 @dataclass(frozen=True)
-class Explanation:
+class CandidateModel:
     """What a model may lack.
 
     Attributes:
@@ -47,7 +47,7 @@ class Explanation:
 
     words: str
     effects: Mapping[str, Effect]
-    unknowns: tuple[Unknown, ...]
+    unknowns: tuple[UncertainParameter, ...]
 
     @property
     def doubt(self) -> FloatArray:
@@ -66,7 +66,7 @@ class Explanation:
         return effects
 
 
-def explanation(words: str, model: Model, effects: Sequence[Effect]) -> Explanation:
+def explanation(words: str, model: Model, effects: Sequence[Effect]) -> CandidateModel:
     """An explanation by effects as a diagnosis found them.
 
     Onsets are left out: what is planned comes after them.
@@ -89,10 +89,12 @@ def explanation(words: str, model: Model, effects: Sequence[Effect]) -> Explanat
             if isinstance(stated, Estimated):
                 prior = priors.get(parameter, Normal(0.0, 1.0))
                 unknowns.append(_unknown(name, effect, parameter, stated, prior))
-    return Explanation(words, named, tuple(unknowns))
+    return CandidateModel(words, named, tuple(unknowns))
 
 
-def _unknown(name: str, effect: Effect, parameter: str, stated: Estimated, prior: Prior) -> Unknown:
+def _unknown(
+    name: str, effect: Effect, parameter: str, stated: Estimated, prior: Prior
+) -> UncertainParameter:
     try:
         with np.errstate(invalid="ignore", divide="ignore"):
             low, centre, high = (prior.z(v) for v in (stated.ci90[0], stated.value, stated.ci90[1]))
@@ -105,4 +107,4 @@ def _unknown(name: str, effect: Effect, parameter: str, stated: Estimated, prior
             f"findings, {effect.kind}",
             "give findings as the diagnosis wrote them",
         )
-    return Unknown(name, parameter, prior, centre, spread)
+    return UncertainParameter(name, parameter, prior, centre, spread)

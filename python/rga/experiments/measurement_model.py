@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.experiments.candidates import Added, LoadTest, context_noise, rest, sensor_noise
-from rga.experiments.explanation import Explanation
+from rga.experiments.explanation import CandidateModel
 from rga.experiments.truck import FACTOR, POSITION, Lane, Truck
 from rga.model.effect import Effect, Values
 from rga.model.effects.stiffness import MemberStiffness
@@ -47,7 +47,7 @@ class Errors:
     shared: FloatArray
 
 
-class Site:
+class MeasurementModel:
     """A structure with sensors that stand, sensors that could be added, and tests.
 
     Args:
@@ -148,7 +148,7 @@ class Site:
         """
         return self._read(*self._vicinity.trial(effects))
 
-    def derivatives(self, one: Explanation, about: FloatArray | Sequence[float]) -> FloatArray:
+    def derivatives(self, one: CandidateModel, about: FloatArray | Sequence[float]) -> FloatArray:
         """By the unknowns in standard deviations, float[unknowns, measurements, sensors]."""
         centre = np.asarray(about, dtype=float)
         ahead, behind = (

@@ -14,8 +14,8 @@ from math import erf, sqrt
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-from rga.experiments.explanation import Explanation
-from rga.experiments.measurement_model import Errors, Site
+from rga.experiments.explanation import CandidateModel
+from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.model.parameter import FloatArray
 
 #: chance of a clear success from which on two explanations count as told apart
@@ -33,8 +33,8 @@ class Pair:
             float[unknowns, measurements, sensors].
     """
 
-    cause: Explanation
-    rival: Explanation
+    cause: CandidateModel
+    rival: CandidateModel
     predicted: FloatArray
     unknown: FloatArray
 
@@ -50,7 +50,7 @@ class Pair:
         return np.asarray(self.predicted[0] - self.predicted[1])
 
 
-def paired(site: Site, cause: Explanation, rival: Explanation) -> Pair:
+def paired(site: MeasurementModel, cause: CandidateModel, rival: CandidateModel) -> Pair:
     """What two explanations say of everything that could be measured on a site.
 
     Raises:

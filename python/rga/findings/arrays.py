@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Account:
+class DiagnosisArrays:
     """What was measured and what was simulated.
 
     Attributes:

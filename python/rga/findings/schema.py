@@ -9,24 +9,24 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 
 from rga.errors import ReportError, in_short
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 
 Interval = tuple[float, float]
 Verdict = Literal["nothing_wrong", "named", "ambiguous", "partial", "unknown", "unidentifiable"]
 
 
-class Part(BaseModel):
+class FindingsPart(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class SensorGap(Part):
+class SensorGap(FindingsPart):
     """Gap of one sensor: mean squared residual over noise variance [-]."""
 
     before: float
     after: float
 
 
-class HeldOut(Part):
+class HeldOut(FindingsPart):
     """Gap by the readings of blocks of rows that no step of the diagnosis saw.
 
     Attributes:
@@ -42,7 +42,7 @@ class HeldOut(Part):
     gain_ci90: Interval
 
 
-class Gap(Part):
+class Gap(FindingsPart):
     """The reality gap before and after the extension."""
 
     before: float
@@ -53,7 +53,7 @@ class Gap(Part):
     by_sensor: dict[str, SensorGap]
 
 
-class Cause(Part):
+class Cause(FindingsPart):
     """A cause: the effect that the model lacked.
 
     Attributes:
@@ -81,7 +81,7 @@ class Cause(Part):
     why: str = ""
 
 
-class Unidentifiable(Part):
+class Unidentifiable(FindingsPart):
     """A kind and place whose largest physical value stays below d' = 3."""
 
     kind: str
@@ -89,14 +89,14 @@ class Unidentifiable(Part):
     d_prime_at_largest: float
 
 
-class Unexplained(Part):
+class Unexplained(FindingsPart):
     """Structure that is left after the extension."""
 
     share: float
     looks_like: str
 
 
-class Explanation(Part):
+class Explanation(FindingsPart):
     """An explanation that was tried, alone or with others.
 
     Attributes:
@@ -116,7 +116,7 @@ class Explanation(Part):
     remark: str = ""
 
 
-class GroupGap(Part):
+class GroupGap(FindingsPart):
     """Measured over simulated by group of sensors, as percent off."""
 
     group: str
@@ -125,7 +125,7 @@ class GroupGap(Part):
     after_percent: float
 
 
-class Findings(Part):
+class Findings(FindingsPart):
     """What a diagnosis found: the verdict, the causes, the gain, and what stays unexplained.
 
     Attributes:
@@ -148,10 +148,10 @@ class Findings(Part):
     record_sha256: str
     versions: dict[str, str] = Field(default_factory=dict)
 
-    _account: Account | None = PrivateAttr(default=None)
+    _account: DiagnosisArrays | None = PrivateAttr(default=None)
 
     @property
-    def account(self) -> Account:
+    def account(self) -> DiagnosisArrays:
         """The arrays behind the findings, for the report."""
         if self._account is None:
             raise ValueError("these findings were read from a file: the arrays are not kept there")

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from rga.errors import InputError
-from rga.experiments.explanation import Explanation
-from rga.experiments.measurement_model import Site
+from rga.experiments.explanation import CandidateModel
+from rga.experiments.measurement_model import MeasurementModel
 from rga.experiments.separation import covariance
 from rga.model.parameter import FloatArray
 
@@ -43,7 +43,9 @@ class Judge:
         factor: of their covariance, lower, float[n, n].
     """
 
-    def __init__(self, site: Site, one: Explanation, present: FloatArray, factor: FloatArray):
+    def __init__(
+        self, site: MeasurementModel, one: CandidateModel, present: FloatArray, factor: FloatArray
+    ):
         self._site, self._one, self._present, self._factor = site, one, present > 0, factor
         self._precision = one.doubt**-2.0
         self._start = np.zeros(len(one.unknowns))
@@ -94,7 +96,12 @@ class Judge:
 
 
 def checked(
-    site: Site, cause: Explanation, rival: Explanation, present: FloatArray, odds: float, seed: int
+    site: MeasurementModel,
+    cause: CandidateModel,
+    rival: CandidateModel,
+    present: FloatArray,
+    odds: float,
+    seed: int,
 ) -> Checked:
     """Draw measurements with either explanation true, and fit both.
 

@@ -13,8 +13,8 @@ from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
 from rga.experiments.candidates import LoadTest, added_sensors, settings, stands
 from rga.experiments.defaults import strain_share, usual_operation, usual_truck
-from rga.experiments.explanation import Explanation
-from rga.experiments.measurement_model import Errors, Site
+from rga.experiments.explanation import CandidateModel
+from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import LIKELY, Pair, paired, success
 from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
 from rga.findings.io import findings_sha256
@@ -24,7 +24,7 @@ from rga.model.parameter import FloatArray
 from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test
-from rga.planning.result import Advised, Plan, PlannedTruck, Separation, Simulated
+from rga.planning.result import Advised, Plan, PlannedTruck, Separation, SimulatedTrials
 from rga.planning.rivals import rival_pairs, working_sensors
 from rga.planning.selection import Choice, Chooser
 from rga.simulation import Simulator
@@ -48,7 +48,7 @@ class Scope:
         best: d_perp of each pair with everything measured, float[pairs].
     """
 
-    site: Site
+    site: MeasurementModel
     errors: Errors
     pairs: list[Pair]
     best: FloatArray
@@ -162,7 +162,7 @@ def _planned(
                 expected=success(distance, RIVAL),
                 d_perp_at_best=best,
                 separated=found.clearly >= LIKELY,
-                simulated=Simulated(draws=found.draws, won=found.won, clearly=found.clearly),
+                simulated=SimulatedTrials(draws=found.draws, won=found.won, clearly=found.clearly),
             )
         )
     site, pairs = scope.site, scope.pairs
@@ -184,7 +184,7 @@ def _planned(
 def _scope(
     model: Model,
     findings: Findings,
-    rivalries: Sequence[tuple[Explanation, Explanation]],
+    rivalries: Sequence[tuple[CandidateModel, CandidateModel]],
     lane: Lane | None,
     truck: Truck | None,
     warnings: list[str],
@@ -201,7 +201,9 @@ def _scope(
         tests += stands(lane, truck)
     working = working_sensors(model, findings)
     added = [one for one in added_sensors(model) if not one.context or one.context in needed]
-    site = Site(model, working, added, tests, usual_operation(model), lane, truck, LEVELS)
+    site = MeasurementModel(
+        model, working, added, tests, usual_operation(model), lane, truck, LEVELS
+    )
     pairs, failed = [], []
     for cause, rival in rivalries:
         try:
@@ -218,7 +220,11 @@ def _scope(
 
 
 def _beside(
-    chooser: Chooser, site: Site, choice: Choice, sensors: Sequence[int], tests: Sequence[int]
+    chooser: Chooser,
+    site: MeasurementModel,
+    choice: Choice,
+    sensors: Sequence[int],
+    tests: Sequence[int],
 ) -> list[Advised]:
     """What the findings advise, beside what was chosen."""
 
@@ -254,7 +260,7 @@ def _separable(scope: Scope) -> list[int]:
 
 
 def _checked(
-    site: Site,
+    site: MeasurementModel,
     model: Model,
     choice: Choice,
     pair: Pair,
@@ -266,14 +272,16 @@ def _checked(
     added = [site.added[one - site.standing] for one in sorted(choice.sensors)]
     tests: list[LoadTest] = [site.tests[one] for one in choice.tests]
     working = site.sensors[: site.standing]
-    small = Site(model, working, added, tests, usual_operation(model), lane, truck, LEVELS)
+    small = MeasurementModel(
+        model, working, added, tests, usual_operation(model), lane, truck, LEVELS
+    )
     present = np.zeros((small.operating + len(tests), len(small.sensors)))
     present[: small.operating, small.standing :] = 1.0
     present[small.operating :] = 1.0
     return checked(small, pair.cause, pair.rival, present, RIVAL, seed)
 
 
-def _sentence(separations: Sequence[Separation], site: Site, choice: Choice) -> str:
+def _sentence(separations: Sequence[Separation], site: MeasurementModel, choice: Choice) -> str:
     told = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
     told += [f"test: {site.tests[one].words}" for one in choice.tests]
     words = "; ".join(told)

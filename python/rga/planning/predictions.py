@@ -6,7 +6,7 @@ import numpy as np
 
 from rga.experiments.candidates import LoadTest
 from rga.experiments.explanation import HALF_WIDTH
-from rga.experiments.measurement_model import Errors, Site
+from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Pair
 from rga.model.parameter import FloatArray
 from rga.planning.result import PlannedSensor, PlannedTest, Says, Telling
@@ -17,7 +17,7 @@ TOLD = 3
 
 
 def planned_sensor(
-    site: Site, errors: Errors, pairs: Sequence[Pair], choice: Choice, column: int
+    site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], choice: Choice, column: int
 ) -> PlannedSensor:
     """A chosen sensor, with the change of its readings in operation that tells most."""
     one = site.added[column - site.standing]
@@ -45,7 +45,7 @@ def planned_sensor(
 
 
 def planned_test(
-    site: Site, errors: Errors, pairs: Sequence[Pair], choice: Choice, number: int
+    site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], choice: Choice, number: int
 ) -> PlannedTest:
     """A chosen test, with the readings of it that tell most."""
     test: LoadTest = site.tests[number]
@@ -65,7 +65,7 @@ def planned_test(
 
 
 def _of_test(
-    site: Site, errors: Errors, pairs: Sequence[Pair], number: int, column: int
+    site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], number: int, column: int
 ) -> Telling:
     weights = np.zeros(len(errors.noise))
     weights[site.operating + number] = 1.0
@@ -73,7 +73,7 @@ def _of_test(
 
 
 def _telling(
-    site: Site,
+    site: MeasurementModel,
     errors: Errors,
     pairs: Sequence[Pair],
     weights: FloatArray,

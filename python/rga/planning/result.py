@@ -8,11 +8,11 @@ from pydantic import BaseModel, ConfigDict, Field
 Interval = tuple[float, float]
 
 
-class Part(BaseModel):
+class PlanPart(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class Says(Part):
+class Says(PlanPart):
     """What an explanation predicts of a measurement.
 
     Attributes:
@@ -26,7 +26,7 @@ class Says(Part):
     ci90: Interval
 
 
-class Telling(Part):
+class Telling(PlanPart):
     """A change of one reading in which explanations differ.
 
     Attributes:
@@ -40,7 +40,7 @@ class Telling(Part):
     says: list[Says]
 
 
-class PlannedSensor(Part):
+class PlannedSensor(PlanPart):
     """A sensor to add, or a second instrument for a context.
 
     Attributes:
@@ -61,7 +61,7 @@ class PlannedSensor(Part):
     tells: list[Telling]
 
 
-class PlannedTest(Part):
+class PlannedTest(PlanPart):
     """A load test: a state whose readings are compared with those of another.
 
     Attributes:
@@ -80,7 +80,7 @@ class PlannedTest(Part):
     tells: list[Telling]
 
 
-class PlannedTruck(Part):
+class PlannedTruck(PlanPart):
     """The truck of the tests: axle loads [kN], spacings [m], and the paths that share it."""
 
     loads: list[float]
@@ -88,7 +88,7 @@ class PlannedTruck(Part):
     paths: list[list[str]]
 
 
-class Simulated(Part):
+class SimulatedTrials(PlanPart):
     """Drawn readings, half of them with each explanation true, and both explanations fitted.
 
     Attributes:
@@ -101,7 +101,7 @@ class Simulated(Part):
     clearly: float
 
 
-class Separation(Part):
+class Separation(PlanPart):
     """Two explanations, and how far the planned measurements separate them.
 
     Attributes:
@@ -119,10 +119,10 @@ class Separation(Part):
     expected: float
     d_perp_at_best: float
     separated: bool
-    simulated: Simulated
+    simulated: SimulatedTrials
 
 
-class Advised(Part):
+class Advised(PlanPart):
     """A sensor or load test that the findings advise.
 
     Attributes:
@@ -136,7 +136,7 @@ class Advised(Part):
     d_perp: float
 
 
-class Plan(Part):
+class Plan(PlanPart):
     """What to measure next, so that rival explanations are told apart.
 
     Attributes:

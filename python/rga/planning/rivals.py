@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from rga.errors import InputError
-from rga.experiments.explanation import Explanation, explanation
+from rga.experiments.explanation import CandidateModel, explanation
 from rga.findings.phrases import effect_words
 from rga.findings.schema import Cause, Findings
 from rga.model import Effect, Model, read_effect
@@ -17,7 +17,7 @@ NEAREST = 4
 FAULT = "sensor_fault"
 
 
-def rival_pairs(model: Model, findings: Findings) -> list[tuple[Explanation, Explanation]]:
+def rival_pairs(model: Model, findings: Findings) -> list[tuple[CandidateModel, CandidateModel]]:
     """Each cause and its nearest rivals two by two, the other causes beside all of them.
 
     Causes without rivals are put beside the nearest explanations that were tried, and beside no
@@ -59,7 +59,7 @@ def _advised_against(cause: Cause, rival: Mapping[str, Any]) -> bool:
     return cause.separated_by.startswith(f"against {effect_words(rival)}:")
 
 
-def _explained(model: Model, effects: Sequence[Mapping[str, Any]]) -> Explanation:
+def _explained(model: Model, effects: Sequence[Mapping[str, Any]]) -> CandidateModel:
     known = [_effect(model, effect) for effect in effects]
     words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
     return explanation(words, model, known)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.experiments.measurement_model import Errors, Site
+from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Known, Pair, known, nothing, whitened, with_one_more
 from rga.model.parameter import FloatArray
 
@@ -43,7 +43,7 @@ class Chooser:
         pairs: that are to be separated.
     """
 
-    def __init__(self, site: Site, errors: Errors, pairs: Sequence[Pair]) -> None:
+    def __init__(self, site: MeasurementModel, errors: Errors, pairs: Sequence[Pair]) -> None:
         self._site, self._errors, self._pairs = site, errors, pairs
 
     def separation(self, sensors: Sequence[int], tests: Sequence[int]) -> FloatArray:

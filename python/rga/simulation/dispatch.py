@@ -37,7 +37,7 @@ WORDS: dict[Path, str] = {
 
 
 @dataclass(frozen=True)
-class Prepared:
+class CondensedPaths:
     """What was condensed once.
 
     Attributes:
@@ -85,7 +85,7 @@ class Request:
     change: Callable[[FloatArray], Structure]
     loads: Callable[[Structure, IntArray], list[Load]]
     fixed_patterns: bool
-    prepared: list[Prepared]
+    prepared: list[CondensedPaths]
 
     @property
     def of_rows(self) -> FloatArray:
@@ -105,7 +105,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Plan:
+class ResponsePlan:
     """How the rows of a request are answered.
 
     Attributes:
@@ -128,7 +128,7 @@ class Plan:
         return f"{self.path}: {WORDS[self.path]} ({counts})"
 
 
-def answer(request: Request) -> tuple[Plan, FloatArray]:
+def answer(request: Request) -> tuple[ResponsePlan, FloatArray]:
     """Plan of a request, and the sensors of its rows, float[rows, sensors] in SI units.
 
     Raises:
@@ -140,8 +140,8 @@ def answer(request: Request) -> tuple[Plan, FloatArray]:
     loads = request.loads(structure, rows)
     sensors = len(structure.per_si)
 
-    def plan(path: Path, terms: int = 0) -> Plan:
-        return Plan(path, len(rows), len(request.states), len(loads), terms, sensors)
+    def plan(path: Path, terms: int = 0) -> ResponsePlan:
+        return ResponsePlan(path, len(rows), len(request.states), len(loads), terms, sensors)
 
     if not loads or not sensors:
         return plan("C1"), np.zeros((len(rows), sensors))
@@ -176,7 +176,7 @@ def variation_under(request: Request, states: FloatArray) -> Variation | None:
 
 
 def linear_paths(
-    prepared: list[Prepared], varied: Variation, loads: list[Load]
+    prepared: list[CondensedPaths], varied: Variation, loads: list[Load]
 ) -> Iterator[tuple[Path, Condensation | Factorisation]]:
     """Ways to the response when nothing but these stiffnesses and loads vary, cheapest first."""
     structure, members, springs = varied.start, varied.members, varied.springs
@@ -256,7 +256,7 @@ def _combined(responses: FloatArray, loads: list[Load]) -> FloatArray:
 
 
 def condensed(
-    prepared: list[Prepared],
+    prepared: list[CondensedPaths],
     structure: Structure,
     loads: list[Load],
     members: IntArray = NOTHING,
@@ -278,7 +278,7 @@ def condensed(
         found = Condensation(structure.arrays, of_loads, structure.outputs, members, springs, axial)
     except (_core.UnstableStructure, _core.InvalidInput) as error:
         raise refused(structure, error) from None
-    prepared.append(Prepared(structure, [load.pattern for load in loads], content, found))
+    prepared.append(CondensedPaths(structure, [load.pattern for load in loads], content, found))
     del prepared[:-KEPT]
     return found
 

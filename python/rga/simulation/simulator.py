@@ -15,7 +15,7 @@ from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import IntArray, Load, Structure, build_structure
 from rga.simulation.derivatives.forward import jacobian, pull_back
-from rga.simulation.dispatch import Plan, Prepared, Request, answer
+from rga.simulation.dispatch import CondensedPaths, Request, ResponsePlan, answer
 
 if TYPE_CHECKING:
     from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
@@ -35,7 +35,7 @@ class Response:
     contexts: Values
     values: dict[str, Values]
     quantities: FloatArray
-    plan: Plan
+    plan: ResponsePlan
 
 
 class Simulator:
@@ -44,7 +44,7 @@ class Simulator:
     The response is linear in the loads, so one solve for every load pattern serves all rows that
     share a structure: y = Q R with the coefficients Q[rows, patterns] and the responses
     R[patterns, sensors]. Where a few stiffnesses differ they are condensed; other rows whose
-    structural parameters differ are solved apart (`Plan`).
+    structural parameters differ are solved apart (`ResponsePlan`).
 
     Args:
         model: the structure with its effects and sensors.
@@ -53,7 +53,7 @@ class Simulator:
     def __init__(self, model: Model, _structure: Structure | None = None) -> None:
         self.model = model
         self._structure = build_structure(model) if _structure is None else _structure
-        self._prepared: list[Prepared] = []
+        self._prepared: list[CondensedPaths] = []
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects; what is condensed serves both."""
@@ -125,7 +125,7 @@ class Simulator:
         plan, quantities = answer(self.request(values, len(table["time"])))
         return Response(table, values, quantities * self._structure.per_si, plan)
 
-    def plan(self, contexts: Mapping[str, ArrayLike]) -> Plan:
+    def plan(self, contexts: Mapping[str, ArrayLike]) -> ResponsePlan:
         """The path that `predict` takes for these contexts: the cheapest exact one."""
         return self.respond(contexts).plan
 

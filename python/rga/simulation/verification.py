@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rga import _core
-from rga.simulation.verification_input import Frame, Json, Loads, output_arrays, point
+from rga.simulation.verification_input import FrameCase, Json, Loads, output_arrays, point
 
 # A reference value below this part of what the loads could cause is a zero, spelled out by the
 # rounding of a 40-digit solve (-6e-36 N, say). Double precision can only be held to a zero.
@@ -72,7 +72,7 @@ def verify_case(path: str | Path) -> VerificationResult:
             base = json.loads((path.parent / f"{case['base']}.json").read_text(encoding="utf-8"))
             checks = _check_samples(case, base)
         else:
-            frame = Frame.read(case)
+            frame = FrameCase.read(case)
             checks = [
                 check
                 for load_case in case["load_cases"]
@@ -101,7 +101,7 @@ def _judge(name: str, checks: Sequence[Check]) -> VerificationResult:
     return VerificationResult(name, passed, worst, len(checks), words)
 
 
-def _check_load_case(case: Json, frame: Frame, load_case: Json) -> list[Check]:
+def _check_load_case(case: Json, frame: FrameCase, load_case: Json) -> list[Check]:
     expected = load_case["expected"]
     loads = Loads(frame, patterns=1)
     loads.add(load_case, case.get("inclined_supports") or [])
@@ -146,7 +146,7 @@ def _check_samples(case: Json, base: Json) -> list[Check]:
     checks: list[Check] = []
     for group in case["samples"]:
         for index, expected in enumerate(group["sensors"]):
-            frame = Frame.read(base)
+            frame = FrameCase.read(base)
             loads = _sample_loads(case, frame, group, index)
             values = _core.respond(frame.arrays, loads.arrays(), output_arrays(frame, entries))[0]
             tolerance = case["rtol_of_max"] * max(abs(value) for value in expected)
@@ -157,7 +157,7 @@ def _check_samples(case: Json, base: Json) -> list[Check]:
     return checks
 
 
-def _sample_loads(case: Json, frame: Frame, group: Json, index: int) -> Loads:
+def _sample_loads(case: Json, frame: FrameCase, group: Json, index: int) -> Loads:
     """The loads of a sample; its stiffnesses go into the frame."""
     loads = Loads(frame, patterns=1)
     for size, pattern in zip(group["q"][index], case["load_patterns"], strict=True):

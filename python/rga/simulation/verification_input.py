@@ -18,7 +18,7 @@ OUT_OF_PLANE = [2, 3, 4]
 
 
 @dataclass(frozen=True)
-class Frame:
+class FrameCase:
     """The structure of a case, with the names that its loads and outputs use."""
 
     arrays: Arrays
@@ -26,7 +26,7 @@ class Frame:
     members: dict[str, int]
 
     @classmethod
-    def read(cls, case: Json) -> "Frame":
+    def read(cls, case: Json) -> "FrameCase":
         plane = case["dim"] == 2
         elements = case["elements"]
         nodes = {str(name): index for index, name in enumerate(case["nodes"])}
@@ -72,7 +72,7 @@ class Frame:
 class Loads:
     """Load arrays of the core under construction."""
 
-    def __init__(self, frame: Frame, patterns: int) -> None:
+    def __init__(self, frame: FrameCase, patterns: int) -> None:
         nodes, members = len(frame.nodes), len(frame.members)
         self.frame = frame
         self.forces = np.zeros((patterns, nodes, 6))
@@ -249,7 +249,7 @@ def _ties(ties: Sequence[Json], nodes: Mapping[str, int]) -> Arrays:
     return {"tie_node": columns[:, :2].copy(), "tie_dof": columns[:, 2].copy()}
 
 
-def output_arrays(frame: Frame, entries: Sequence[Json]) -> Arrays:
+def output_arrays(frame: FrameCase, entries: Sequence[Json]) -> Arrays:
     rows = [_output(frame, entry) for entry in entries]
     return {
         "kind": np.array([row[0] for row in rows], dtype=np.int64),
@@ -260,7 +260,7 @@ def output_arrays(frame: Frame, entries: Sequence[Json]) -> Arrays:
     }
 
 
-def _output(frame: Frame, entry: Json) -> tuple[int, int, int, Sequence[float]]:
+def _output(frame: FrameCase, entry: Json) -> tuple[int, int, int, Sequence[float]]:
     match entry["kind"]:
         case "displacement" | "reaction" as kind:
             turning, axis = divmod(DOFS.index(entry["dof"]), 3)

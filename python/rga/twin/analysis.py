@@ -13,7 +13,7 @@ import numpy as np
 from rga.diagnosis import Findings
 from rga.model.parameter import FloatArray
 from rga.twin.archive import Archive
-from rga.twin.calibration.capture import Calibration
+from rga.twin.calibration.capture import ContextCapture
 from rga.twin.history import Event, Kind
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q1, R1
@@ -47,7 +47,7 @@ class RealityGapAnalysis:
         exchange: QueryResponse,
         archive: Archive,
         station: Station,
-        calibration: Calibration,
+        calibration: ContextCapture,
         settings: Settings,
         pace: Pace,
         label: Callable[[int], str | float],

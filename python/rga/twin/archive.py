@@ -12,8 +12,8 @@ from rga.model.parameter import FloatArray
 from rga.twin.history import Event
 from rga.twin.messages.hardware import Packet
 from rga.twin.messages.queries import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256
-from rga.twin.repository import Run, Step
-from rga.twin.row_buffer import Ledger
+from rga.twin.repository import Run, Transaction
+from rga.twin.row_buffer import RowBuffer
 from rga.twin.simulation_model import SimulationModel
 from rga.twin.versions import extended, written
 
@@ -36,7 +36,7 @@ class Archive:
         self.run = run
         self._given = given
         self._simulation = simulation
-        self._step: Step | None = None
+        self._step: Transaction | None = None
         self._proposal: Q1 | None = None
         self.events: list[Event] = []
 
@@ -51,7 +51,7 @@ class Archive:
                 self._step = None
 
     @property
-    def _open(self) -> Step:
+    def _open(self) -> Transaction:
         if self._step is None:
             raise RuntimeError("messages pass within a step")
         return self._step
@@ -105,7 +105,7 @@ class Archive:
             sha256=sha256(simulated.contexts, simulated.readings, real, contexts),
         )
 
-    def keep_rows(self, first: int, end: int, version: int, ledger: Ledger) -> None:
+    def keep_rows(self, first: int, end: int, version: int, ledger: RowBuffer) -> None:
         """Keep what was inferred and simulated for rows."""
         rows = slice(first, end)
         self._open.inferred(first, ledger.contexts[rows], ledger.spread[rows], version)

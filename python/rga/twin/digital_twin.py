@@ -19,7 +19,7 @@ TRIAL_CONTEXTS = 64
 
 
 @dataclass(frozen=True)
-class State:
+class TwinState:
     """What the twin holds; it follows from the responses alone.
 
     Attributes:
@@ -38,7 +38,7 @@ class State:
     simulated: Mapping[str, float] = field(default_factory=dict)
 
 
-def follow(state: State, response: Response, channels: tuple[str, ...]) -> State:
+def follow(state: TwinState, response: Response, channels: tuple[str, ...]) -> TwinState:
     """The state after a response. Nothing else changes the twin."""
     if isinstance(response, R1) and response.adequate:
         versions = {**state.versions, response.version: response.effects}
@@ -62,7 +62,7 @@ class DigitalTwin:
     def __init__(self, model: Model, station: Station) -> None:
         self.given = model
         self.station = station
-        self.state = State()
+        self.state = TwinState()
         self._simulations: dict[int, SimulationModel] = {}
 
     def accept(self, response: Response) -> None:

@@ -10,17 +10,17 @@ from rga.findings.phrases import effect_words
 from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
-from rga.twin.digital_twin import State, follow
+from rga.twin.digital_twin import TwinState, follow
 from rga.twin.history import Event, History, Version
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
-from rga.twin.repository import View
-from rga.twin.row_buffer import Ledger
+from rga.twin.repository import RunView
+from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
 from rga.twin.settings import Settings
 
 
-def replay(view: View, channels: tuple[str, ...]) -> State:
+def replay(view: RunView, channels: tuple[str, ...]) -> TwinState:
     """The state of the twin, from the log of messages alone.
 
     Args:
@@ -30,7 +30,7 @@ def replay(view: View, channels: tuple[str, ...]) -> State:
     Raises:
         InputError: what the repository keeps is not what the log tells of.
     """
-    state = State()
+    state = TwinState()
     last: R5 | None = None
     for message in log_of(view):
         if isinstance(message, R5):
@@ -48,7 +48,7 @@ def replay(view: View, channels: tuple[str, ...]) -> State:
     return follow(state, last.model_copy(update={"simulated": kept}), channels)
 
 
-def log_of(view: View) -> list[Query | Response]:
+def log_of(view: RunView) -> list[Query | Response]:
     """The log of messages, without their arrays.
 
     Raises:
@@ -62,23 +62,23 @@ def log_of(view: View) -> list[Query | Response]:
         ) from error
 
 
-def story_of(view: View) -> list[Query | Response | Event]:
+def story_of(view: RunView) -> list[Query | Response | Event]:
     """Messages and events in the order in which they passed (see `log_of`)."""
     messages = iter(log_of(view))
     return [one if isinstance(one, Event) else next(messages) for one in view.story()]
 
 
-def standing_of(view: View) -> Standing:
+def standing_of(view: RunView) -> Standing:
     """Where a run stands."""
     kept = view.kept("standing")
     return Standing() if kept is None else Standing.model_validate_json(kept)
 
 
 def ledger_of(
-    view: View, channels: int, measured: int, contexts: int, at_the_time: bool = False
-) -> Ledger:
+    view: RunView, channels: int, measured: int, contexts: int, at_the_time: bool = False
+) -> RowBuffer:
     """The rows of a run, with what was inferred and simulated last, or at the time."""
-    ledger = Ledger.empty(channels, measured, contexts)
+    ledger = RowBuffer.empty(channels, measured, contexts)
     seen = view.measured()
     rows = len(seen.rows)
     if not rows:
@@ -96,7 +96,7 @@ def ledger_of(
     return ledger
 
 
-def station_of(view: View) -> Station:
+def station_of(view: RunView) -> Station:
     """What is mounted on the structure.
 
     Raises:
@@ -108,12 +108,12 @@ def station_of(view: View) -> Station:
     return Station.from_json(kept)
 
 
-def given_model(view: View) -> Model:
+def given_model(view: RunView) -> Model:
     """The model as it was given."""
     return read_model(json.loads(view.versions()[0].model), "repository")
 
 
-def record_of(view: View) -> Record:
+def record_of(view: RunView) -> Record:
     """The rows that the repository holds, as a record."""
     station, seen = station_of(view), view.measured()
     columns = seen.contexts.reshape(len(seen.rows), len(station.measured)).T
@@ -128,7 +128,7 @@ def record_of(view: View) -> Record:
     )
 
 
-def history_of(view: View) -> History:
+def history_of(view: RunView) -> History:
     """What a run left behind so far, or had left behind as of a time."""
     standing, station, model = standing_of(view), station_of(view), given_model(view)
     record = record_of(view)
@@ -159,7 +159,7 @@ def history_of(view: View) -> History:
     )
 
 
-def _versions(view: View, record: Record, state: State) -> tuple[Version, ...]:
+def _versions(view: RunView, record: Record, state: TwinState) -> tuple[Version, ...]:
     """Every version, with the row from which on it was first in force."""
     begun = {number: row for row, number in reversed(view.in_force())}
     return tuple(
@@ -176,7 +176,7 @@ def _versions(view: View, record: Record, state: State) -> tuple[Version, ...]:
     )
 
 
-def _growth(view: View) -> tuple[tuple[int, int, int], ...]:
+def _growth(view: RunView) -> tuple[tuple[int, int, int], ...]:
     """(row, simulations stored, novel contexts among them) after every change."""
     stored = view.simulated()
     ends = np.flatnonzero(np.diff(stored.row, append=-1))

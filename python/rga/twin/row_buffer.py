@@ -10,7 +10,7 @@ from rga.twin.messages.hardware import Packet
 
 
 @dataclass
-class Ledger:
+class RowBuffer:
     """Rows so far; NaN where nothing was measured, inferred or simulated.
 
     Attributes:
@@ -29,7 +29,7 @@ class Ledger:
     simulated: FloatArray
 
     @classmethod
-    def empty(cls, channels: int, measured: int, contexts: int) -> "Ledger":
+    def empty(cls, channels: int, measured: int, contexts: int) -> "RowBuffer":
         """A ledger without rows."""
         widths = (channels, measured, contexts, contexts, channels)
         return cls(np.zeros(0), *(np.zeros((0, width)) for width in widths))
@@ -47,9 +47,9 @@ class Ledger:
             table = getattr(self, name)
             setattr(self, name, np.concatenate([table, np.full((rows, table.shape[1]), np.nan)]))
 
-    def copy(self) -> "Ledger":
+    def copy(self) -> "RowBuffer":
         """An independent copy."""
-        return Ledger(*(getattr(self, field.name).copy() for field in fields(self)))
+        return RowBuffer(*(getattr(self, field.name).copy() for field in fields(self)))
 
     @property
     def residuals(self) -> FloatArray:

@@ -12,7 +12,7 @@ from rga.model import Model
 from rga.records import Record
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
-from rga.twin.calibration.capture import Calibration
+from rga.twin.calibration.capture import ContextCapture
 from rga.twin.calibration.data_driven import DataDrivenModel
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.history import Event, History
@@ -88,7 +88,7 @@ class Running:
         self._twin = DigitalTwin(model, station)
         self._archive = Archive(kept, model, self._twin.simulation)
         exchange = QueryResponse(self._twin, self._archive)
-        self.calibration = Calibration(
+        self.calibration = ContextCapture(
             exchange, self._archive, station, model, settings, seed, self._progress
         )
         self.analysis = RealityGapAnalysis(

@@ -11,12 +11,12 @@ from rga.errors import InputError
 from rga.model import Effect, Model
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.archive import Archive
-from rga.twin.digital_twin import DigitalTwin, State
+from rga.twin.digital_twin import DigitalTwin, TwinState
 from rga.twin.history import Event, History
 from rga.twin.messages.log_text import retold
 from rga.twin.messages.queries import Q1
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.repository import Repository, View
+from rga.twin.repository import Repository, RunView
 from rga.twin.restore import (
     given_model,
     history_of,
@@ -39,10 +39,10 @@ class Twin:
         place: of the repository.
     """
 
-    def __init__(self, view: View, place: str | Path) -> None:
+    def __init__(self, view: RunView, place: str | Path) -> None:
         self._view, self._place = view, place
         self._station, self.given = station_of(view), given_model(view)
-        self.state: State = replay(view, self._station.channels)
+        self.state: TwinState = replay(view, self._station.channels)
 
     @classmethod
     @contextmanager
@@ -137,7 +137,7 @@ class Twin:
         return float(np.linalg.norm(steps, axis=1).min())
 
 
-def _latest(repository: Repository, place: str | Path) -> View:
+def _latest(repository: Repository, place: str | Path) -> RunView:
     runs = repository.runs()
     if not runs:
         raise InputError("nothing has run here", str(place), "begin with rga run")

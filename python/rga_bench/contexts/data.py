@@ -10,9 +10,9 @@ from rga.inference.rows import Rows
 from rga.model import read_model
 from rga.simulation import Simulator
 from rga_bench.contexts.context_regime import Contexts
-from rga_bench.contexts.drift import Conditions, Measured, following, when
-from rga_bench.contexts.method import Problem
-from rga_bench.contexts.setting import DRIFTING, Task
+from rga_bench.contexts.drift import MeasuredRows, MeasurementConditions, following, when
+from rga_bench.contexts.method import LearningProblem
+from rga_bench.contexts.setting import DRIFTING, ContextsTask
 from rga_bench.synthetic.bridges.full_case_study import full_case_study
 from rga_bench.synthetic.physical_twin import PhysicalTwin
 
@@ -21,7 +21,7 @@ LOAD_TESTS = 60
 
 
 @dataclass(frozen=True)
-class Calibration:
+class CalibrationData:
     """What a method is calibrated on.
 
     Attributes:
@@ -30,13 +30,13 @@ class Calibration:
         test: rows to score under these conditions; half of them where there are drifts.
     """
 
-    problem: Problem
-    usual: Conditions
-    test: Measured
+    problem: LearningProblem
+    usual: MeasurementConditions
+    test: MeasuredRows
 
 
 @dataclass(frozen=True)
-class Stream:
+class DriftStream:
     """A stream into which a drift comes, and rows to score.
 
     Attributes:
@@ -45,17 +45,17 @@ class Stream:
         drifted: rows to score under the drift, half of the test rows.
     """
 
-    rows: Measured
+    rows: MeasuredRows
     changes: tuple[int, ...]
-    drifted: Measured
+    drifted: MeasuredRows
 
 
-def calibration_of(task: Task) -> Calibration:
+def calibration_of(task: ContextsTask) -> CalibrationData:
     """The same for all rows of a split."""
     return _calibration(replace(task, row=""))
 
 
-def stream_of(task: Task, drift: str) -> Stream:
+def stream_of(task: ContextsTask, drift: str) -> DriftStream:
     """The same for all rows of a split.
 
     Raises:
@@ -65,7 +65,7 @@ def stream_of(task: Task, drift: str) -> Stream:
 
 
 @lru_cache(maxsize=2)
-def _calibration(task: Task) -> Calibration:
+def _calibration(task: ContextsTask) -> CalibrationData:
     sizes = task.sizes
     model = read_model(full_case_study(), "full case study")
     names, sensors = list(model.context), len(model.sensors)
@@ -73,13 +73,13 @@ def _calibration(task: Task) -> Calibration:
     manner = "ordinary" if task.manner == DRIFTING else task.manner
     contexts = Contexts.drawn(manner, ranges, _generator(task, "contexts"))
     twin = PhysicalTwin.draw(_number(task, "twin"), task.gap)
-    usual = Conditions.usual(twin, contexts, sensors)
+    usual = MeasurementConditions.usual(twin, contexts, sensors)
     box = dict(zip(names, map(tuple, contexts.source.tolist()), strict=True))
     seed = _number(task, "source")
     source = design(model, sizes.source, latent=names, seed=seed, box=box)
-    even = Conditions.usual(twin, replace(contexts, manner="same"), sensors)
+    even = MeasurementConditions.usual(twin, replace(contexts, manner="same"), sensors)
     load_tests = even.measured(LOAD_TESTS, _generator(task, "load tests"))
-    problem = Problem(
+    problem = LearningProblem(
         model=model,
         simulator=Simulator(model),
         noise=np.array([sensor.noise for sensor in model.sensors.values()], dtype=float),
@@ -89,26 +89,26 @@ def _calibration(task: Task) -> Calibration:
         seed=_number(task, "method"),
     )
     test = sizes.test // 2 if task.manner == DRIFTING else sizes.test
-    return Calibration(problem, usual, usual.measured(test, _generator(task, "test")))
+    return CalibrationData(problem, usual, usual.measured(test, _generator(task, "test")))
 
 
 @lru_cache(maxsize=8)
-def _stream(task: Task, drift: str) -> Stream:
+def _stream(task: ContextsTask, drift: str) -> DriftStream:
     sizes, known = task.sizes, _calibration(task)
     noise = known.problem.noise
     drifted = known.usual.drifted(drift, noise, _generator(task, f"{drift} drift"))
     holds = when(drift, sizes.stream)
     changes = np.flatnonzero(np.diff(holds)) + 1
-    return Stream(
+    return DriftStream(
         following(known.usual, drifted, holds, _generator(task, f"{drift} stream")),
         tuple(changes.tolist()),
         drifted.measured(sizes.test // 2, _generator(task, f"{drift} drifted")),
     )
 
 
-def _generator(task: Task, purpose: str) -> np.random.Generator:
+def _generator(task: ContextsTask, purpose: str) -> np.random.Generator:
     return np.random.default_rng([task.seed, task.split, *purpose.encode()])
 
 
-def _number(task: Task, purpose: str) -> int:
+def _number(task: ContextsTask, purpose: str) -> int:
     return int(_generator(task, purpose).integers(2**31))

@@ -21,7 +21,7 @@ OFFSETS, GAIN = (5.0, 15.0), 0.1
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredRows:
     """Measured rows with what nobody knows of them.
 
     Attributes:
@@ -36,7 +36,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Conditions:
+class MeasurementConditions:
     """What rows are measured under.
 
     Attributes:
@@ -52,17 +52,17 @@ class Conditions:
     offset: FloatArray
 
     @classmethod
-    def usual(cls, twin: PhysicalTwin, contexts: Contexts, sensors: int) -> "Conditions":
+    def usual(cls, twin: PhysicalTwin, contexts: Contexts, sensors: int) -> "MeasurementConditions":
         """With sound sensors."""
         return cls(twin, contexts, np.ones(sensors), np.zeros(sensors))
 
-    def measured(self, rows: int, generator: np.random.Generator) -> Measured:
+    def measured(self, rows: int, generator: np.random.Generator) -> MeasuredRows:
         """Consecutive rows."""
         return following(self, self, np.zeros(rows, dtype=bool), generator)
 
     def drifted(
         self, drift: str, noise: FloatArray, generator: np.random.Generator
-    ) -> "Conditions":
+    ) -> "MeasurementConditions":
         """What a drift makes of them.
 
         `sensor` gives some sensors an offset and another gain; `operational` moves contexts to
@@ -109,8 +109,11 @@ def when(drift: str, rows: int) -> NDArray[np.bool_]:
 
 
 def following(
-    usual: Conditions, drifted: Conditions, when: NDArray[np.bool_], generator: np.random.Generator
-) -> Measured:
+    usual: MeasurementConditions,
+    drifted: MeasurementConditions,
+    when: NDArray[np.bool_],
+    generator: np.random.Generator,
+) -> MeasuredRows:
     """Consecutive rows, some of them under other conditions."""
     rows = len(when)
     before, behind = (one.contexts.draw(rows, generator) for one in (usual, drifted))
@@ -121,4 +124,4 @@ def following(
         if chosen.any():
             shown = conditions.gain * conditions.twin.read(contexts[chosen]) + conditions.offset
             readings[chosen] += shown
-    return Measured(contexts, readings, noise)
+    return MeasuredRows(contexts, readings, noise)

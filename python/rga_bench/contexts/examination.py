@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.drift import Measured
-from rga_bench.contexts.levels import State, most_likely
+from rga_bench.contexts.drift import MeasuredRows
+from rga_bench.contexts.levels import CalibratedMethod, most_likely
 from rga_bench.contexts.method import Calibrated, Estimate
 from rga_bench.contexts.score import Score, score
 
@@ -20,7 +20,7 @@ class Examination:
         block: rows for which one state is chosen among several.
     """
 
-    def __init__(self, measured: Measured, ranges: FloatArray, block: int) -> None:
+    def __init__(self, measured: MeasuredRows, ranges: FloatArray, block: int) -> None:
         self._measured, self._ranges = measured, ranges
         self._block = block
         # Methods are kept, so that no other one gets the id of one.
@@ -31,7 +31,7 @@ class Examination:
         estimate, simulated = self._inferred(method)
         return score(self._measured, estimate, simulated, self._ranges)
 
-    def score_of_likeliest(self, states: Sequence[State]) -> Score:
+    def score_of_likeliest(self, states: Sequence[CalibratedMethod]) -> Score:
         """Of the state, for each block of rows, after which what it leaves of them is likeliest."""
         known = [self._inferred(one.calibrated) for one in states]
         left = [self._measured.readings - simulated for _, simulated in known]

@@ -6,8 +6,8 @@ from scipy.spatial import KDTree
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.drift import Measured
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.drift import MeasuredRows
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.score import Score, gap
 
 #: rows of a table that are no methods; they tell an RG and infer nothing
@@ -16,7 +16,7 @@ NOISE, TRUE_CONTEXT, BEST_CONTEXT = FLOORS = ("noise", "true context", "best con
 SHARP = 0.1
 
 
-def floor(name: str, problem: Problem, measured: Measured) -> Score:
+def floor(name: str, problem: LearningProblem, measured: MeasuredRows) -> Score:
     """A floor of the RG of measured rows.
 
     Args:
@@ -33,7 +33,7 @@ def floor(name: str, problem: Problem, measured: Measured) -> Score:
     return Score(gap(measured.readings - problem.simulate(contexts)))
 
 
-def best_contexts(problem: Problem, measured: Measured) -> FloatArray:
+def best_contexts(problem: LearningProblem, measured: MeasuredRows) -> FloatArray:
     """Contexts whose simulation is nearest to the readings.
 
     The better of two modes of each row: from its true contexts on, and from those of the simulated

@@ -26,7 +26,7 @@ UNLIKELY = 0.01
 
 
 @dataclass(frozen=True)
-class State:
+class CalibratedMethod:
     """A calibrated method, and what it leaves of measured rows: measured minus simulated.
 
     Attributes:
@@ -42,7 +42,7 @@ class State:
     usual: FloatArray
 
     @classmethod
-    def of(cls, calibrated: Calibrated, real: FloatArray, rows: FloatArray) -> "State":
+    def of(cls, calibrated: Calibrated, real: FloatArray, rows: FloatArray) -> "CalibratedMethod":
         """At the end of a calibration.
 
         Args:
@@ -53,7 +53,7 @@ class State:
         ordinary = residuals(calibrated, real)
         return cls(calibrated, ordinary, residuals(calibrated, rows), ordinary)
 
-    def settled(self, latest: slice) -> "State":
+    def settled(self, latest: slice) -> "CalibratedMethod":
         """The same, to which the latest rows are usual."""
         return replace(self, usual=self.stream[latest])
 
@@ -88,7 +88,9 @@ class State:
         found = ttest_ind(log_gaps(rows), self.usual_gaps(), equal_var=False)
         return bool(found.pvalue >= UNLIKELY)
 
-    def harms(self, before: "State", recent: slice, sizes: Sizes, *, alone: bool) -> bool:
+    def harms(
+        self, before: "CalibratedMethod", recent: slice, sizes: Sizes, *, alone: bool
+    ) -> bool:
         """Whether the latest rows, or the ordinary ones, are less likely than by another.
 
         Deviations of sensors count by their logs, as in the likelihood of normal ones that are not
@@ -110,7 +112,7 @@ class State:
 
 
 #: a state after it has learned from rows of the stream
-Learned = Callable[[State, slice], State]
+Learned = Callable[[CalibratedMethod, slice], CalibratedMethod]
 
 
 @dataclass
@@ -126,15 +128,15 @@ class Life:
         recalled: alarms at which a stored state was taken up.
     """
 
-    state: State
-    stored: list[State]
+    state: CalibratedMethod
+    stored: list[CalibratedMethod]
     alarms: list[int] = field(default_factory=list)
     recalibrations: int = 0
     taken_back: int = 0
     recalled: int = 0
 
 
-def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
+def live(first: CalibratedMethod, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
     """Let a twin live through the stream.
 
     Args:
@@ -168,7 +170,7 @@ def live(first: State, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
     return life
 
 
-def most_likely(states: Sequence[State], rows: Sequence[FloatArray]) -> int:
+def most_likely(states: Sequence[CalibratedMethod], rows: Sequence[FloatArray]) -> int:
     """Number of the state after which the residuals of rows are likeliest.
 
     Args:

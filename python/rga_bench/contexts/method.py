@@ -13,7 +13,7 @@ from rga.simulation import Simulator
 
 
 @dataclass(frozen=True)
-class Problem:
+class LearningProblem:
     """What a method learns from. The contexts of the measured rows are not in it.
 
     Attributes:
@@ -77,4 +77,4 @@ class Calibrated(Protocol):
 
 
 #: learns
-Method = Callable[[Problem], Calibrated]
+Method = Callable[[LearningProblem], Calibrated]

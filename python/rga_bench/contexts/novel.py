@@ -9,8 +9,8 @@ from rga.model.parameter import FloatArray
 from rga.twin.novelty import novel, spacing
 from rga.twin.settings import Settings
 from rga_bench.contexts.context_regime import BEYOND
-from rga_bench.contexts.data import Calibration
-from rga_bench.contexts.levels import Learned, State
+from rga_bench.contexts.data import CalibrationData
+from rga_bench.contexts.levels import CalibratedMethod, Learned
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.rows import Row
 
@@ -18,7 +18,7 @@ from rga_bench.contexts.rows import Row
 AROUND, SCATTER = 8, 0.05
 
 
-def with_novel(row: Row, known: Calibration, rows: FloatArray) -> Learned:
+def with_novel(row: Row, known: CalibrationData, rows: FloatArray) -> Learned:
     """A state that has learned from rows of a stream, and from simulations like them.
 
     Where contexts are credible and novel by the paper's checks, the method learns anew from all
@@ -31,7 +31,7 @@ def with_novel(row: Row, known: Calibration, rows: FloatArray) -> Learned:
     """
     source = known.problem.source
 
-    def learned(state: State, recent: slice) -> State:
+    def learned(state: CalibratedMethod, recent: slice) -> CalibratedMethod:
         nonlocal source
         problem = replace(known.problem, source=source)
         low, high = problem.ranges.T
@@ -57,7 +57,11 @@ def with_novel(row: Row, known: Calibration, rows: FloatArray) -> Learned:
             )
             calibrated = row.calibrated(replace(known, problem=replace(problem, source=source)))
         after = calibrated.recalibrated(rows[recent])
-        return state if after is state.calibrated else State.of(after, known.problem.real, rows)
+        return (
+            state
+            if after is state.calibrated
+            else CalibratedMethod.of(after, known.problem.real, rows)
+        )
 
     return learned
 

@@ -6,19 +6,19 @@ from dataclasses import dataclass, field, replace
 from threadpoolctl import threadpool_limits
 
 from rga.inference.networks.determinism import one_thread
-from rga_bench.contexts.data import Calibration, calibration_of, stream_of
-from rga_bench.contexts.drift import Measured
+from rga_bench.contexts.data import CalibrationData, calibration_of, stream_of
+from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.floors import FLOORS, floor
 from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import METHODS
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.setting import DRIFTING, Task
-from rga_bench.contexts.stream_results import Played, lived
+from rga_bench.contexts.setting import DRIFTING, ContextsTask
+from rga_bench.contexts.stream_results import StreamResult, lived
 
 
 @dataclass(frozen=True)
-class Outcome:
+class TaskOutcome:
     """What became of a task.
 
     Attributes:
@@ -35,12 +35,12 @@ class Outcome:
     manner: str
     row: str
     score: Score
-    played: tuple[Played, ...] = ()
+    played: tuple[StreamResult, ...] = ()
     learning: float | None = field(default=None, compare=False)
     inference: float | None = field(default=None, compare=False)
 
 
-def play(task: Task) -> Outcome:
+def play(task: ContextsTask) -> TaskOutcome:
     """Play a task; the outcome depends on the task alone, but for the times.
 
     Raises:
@@ -65,15 +65,15 @@ def play(task: Task) -> Outcome:
         )
 
 
-def _floors(task: Task, known: Calibration, drifts: tuple[str, ...]) -> Outcome:
-    def of(measured: Measured) -> Score:
+def _floors(task: ContextsTask, known: CalibrationData, drifts: tuple[str, ...]) -> TaskOutcome:
+    def of(measured: MeasuredRows) -> Score:
         return floor(task.row, known.problem, measured)
 
     ordinary = of(known.test)
     drifted = {drift: of(stream_of(task, drift).drifted) for drift in drifts}
-    played = [Played(drift, LEVELS[0], ordinary, one) for drift, one in drifted.items()]
+    played = [StreamResult(drift, LEVELS[0], ordinary, one) for drift, one in drifted.items()]
     return _outcome(task, ordinary, played)
 
 
-def _outcome(task: Task, score: Score, played: list[Played]) -> Outcome:
-    return Outcome(task.id, task.split, task.gap, task.manner, task.row, score, tuple(played))
+def _outcome(task: ContextsTask, score: Score, played: list[StreamResult]) -> TaskOutcome:
+    return TaskOutcome(task.id, task.split, task.gap, task.manner, task.row, score, tuple(played))

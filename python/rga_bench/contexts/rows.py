@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 from rga.inference.rows import Rows
 from rga_bench.contexts.context_regime import MANNERS
-from rga_bench.contexts.data import Calibration
+from rga_bench.contexts.data import CalibrationData
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.methods import networks
 from rga_bench.contexts.methods.discrepancy import smooth_discrepancy
@@ -22,7 +22,7 @@ from rga_bench.contexts.methods.polished import polished_network
 from rga_bench.contexts.methods.prior import prior_mean
 from rga_bench.contexts.methods.unscented_kalman import unscented_kalman
 from rga_bench.contexts.methods.updated_model import updated_model
-from rga_bench.contexts.setting import Task
+from rga_bench.contexts.setting import ContextsTask
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Row:
     manners: tuple[str, ...] | None = None
     needs: tuple[str, ...] = ()
 
-    def calibrated(self, known: Calibration) -> Calibrated:
+    def calibrated(self, known: CalibrationData) -> Calibrated:
         """The method after it has learned."""
         tests = known.problem.load_tests
         labelled = Rows(tests.contexts[: self.load_tests], tests.readings[: self.load_tests])
@@ -105,7 +105,7 @@ PAPERS = {
 }
 
 
-def plays(task: Task) -> bool:
+def plays(task: ContextsTask) -> bool:
     """Whether the row of a task is played under its manner of contexts."""
     row = METHODS.get(task.row)
     return row is None or row.manners is None or task.manner in row.manners

@@ -7,15 +7,15 @@ from typing import Any
 
 from rga.errors import InputError
 from rga_bench.contexts.floors import FLOORS
-from rga_bench.contexts.play import Outcome, play
+from rga_bench.contexts.play import TaskOutcome, play
 from rga_bench.contexts.rows import METHODS, plays
-from rga_bench.contexts.setting import Setting
+from rga_bench.contexts.setting import ContextsSetting
 from rga_bench.ledger import outcomes_of
 from rga_bench.machine import machine, versions
 
 
 @dataclass(frozen=True)
-class Result:
+class ContextsResult:
     """What was found.
 
     Attributes:
@@ -29,20 +29,20 @@ class Result:
 
     machine: dict[str, Any]
     versions: dict[str, str | None]
-    setting: Setting
+    setting: ContextsSetting
     rows: tuple[str, ...]
     absent: dict[str, list[str]]
-    outcomes: list[Outcome]
+    outcomes: list[TaskOutcome]
 
 
 def measure(
-    setting: Setting,
+    setting: ContextsSetting,
     *,
     folder: Path | None = None,
     workers: int = 1,
     dask: str | None = None,
     progress: Callable[[float], None] = lambda done: None,
-) -> Result:
+) -> ContextsResult:
     """Play every task once; no outcome depends on the number of workers, but for times.
 
     Args:
@@ -68,10 +68,10 @@ def measure(
     outcomes = outcomes_of(
         play,
         [task for task in setting.tasks(rows) if plays(task)],
-        Outcome,
+        TaskOutcome,
         folder=folder,
         workers=workers,
         dask=dask,
         progress=progress,
     )
-    return Result(machine(), versions(), setting, rows, absent, outcomes)
+    return ContextsResult(machine(), versions(), setting, rows, absent, outcomes)

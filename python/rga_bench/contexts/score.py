@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.drift import Measured
+from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.method import Estimate
 
 #: half of a 90 % interval [standard deviations]
@@ -31,7 +31,7 @@ class Score:
 
 
 def score(
-    measured: Measured, estimate: Estimate, simulated: FloatArray, ranges: FloatArray
+    measured: MeasuredRows, estimate: Estimate, simulated: FloatArray, ranges: FloatArray
 ) -> Score:
     """Hold what was inferred against the truth.
 

@@ -44,7 +44,7 @@ class Sizes:
 
 
 @dataclass(frozen=True)
-class Task:
+class ContextsTask:
     """A row of the table on a split.
 
     Attributes:
@@ -73,7 +73,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Setting:
+class ContextsSetting:
     """How much is played, and of what.
 
     Attributes:
@@ -96,28 +96,28 @@ class Setting:
     rows: tuple[str, ...] | None = None
     sizes: Sizes = Sizes()
 
-    def tasks(self, rows: tuple[str, ...]) -> list[Task]:
+    def tasks(self, rows: tuple[str, ...]) -> list[ContextsTask]:
         """Every row on every split, those that share their data one after the other."""
         full, first = self.gaps[-1], self.manners[0]
         often = [(full, first), *([(full, DRIFTING)] if self.drifts else [])]
         seldom = [(gap, first) for gap in self.gaps[:-1]]
         seldom += [(full, manner) for manner in self.manners[1:]]
         return [
-            Task(self.seed, split, gap, manner, row, self.drifts, self.sizes)
+            ContextsTask(self.seed, split, gap, manner, row, self.drifts, self.sizes)
             for split in range(self.splits)
             for gap, manner in (often + seldom if split < self.few else often)
             for row in rows
         ]
 
 
-def shorter(seed: int, rows: tuple[str, ...]) -> Setting:
+def shorter(seed: int, rows: tuple[str, ...]) -> ContextsSetting:
     """What takes less than three minutes, and is too little to judge by.
 
     Args:
         seed: of everything.
         rows: names of methods and floors that are played.
     """
-    return Setting(
+    return ContextsSetting(
         seed,
         splits=1,
         few=1,

@@ -3,18 +3,26 @@
 from dataclasses import dataclass
 
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.data import Calibration, Stream, stream_of
+from rga_bench.contexts.data import CalibrationData, DriftStream, stream_of
 from rga_bench.contexts.examination import Examination
-from rga_bench.contexts.levels import LEVELS, Learned, Life, State, delays, live, residuals
+from rga_bench.contexts.levels import (
+    LEVELS,
+    CalibratedMethod,
+    Learned,
+    Life,
+    delays,
+    live,
+    residuals,
+)
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.novel import with_novel
 from rga_bench.contexts.rows import METHODS
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.setting import Task
+from rga_bench.contexts.setting import ContextsTask
 
 
 @dataclass(frozen=True)
-class Played:
+class StreamResult:
     """A method at a level, after it has lived through a stream.
 
     Attributes:
@@ -41,8 +49,8 @@ class Played:
 
 
 def lived(
-    task: Task, known: Calibration, calibrated: Calibrated, usual: Examination
-) -> list[Played]:
+    task: ContextsTask, known: CalibrationData, calibrated: Calibrated, usual: Examination
+) -> list[StreamResult]:
     """Every drift of a task at every level.
 
     Args:
@@ -60,9 +68,9 @@ def lived(
         stream = stream_of(task, drift)
         rows = stream.rows.readings
         examination = Examination(stream.drifted, known.problem.ranges, sizes.settle)
-        first = State(calibrated, ordinary, residuals(calibrated, rows), ordinary)
+        first = CalibratedMethod(calibrated, ordinary, residuals(calibrated, rows), ordinary)
         scores = usual.score(calibrated), examination.score(calibrated)
-        played.append(Played(drift, LEVELS[0], *scores))
+        played.append(StreamResult(drift, LEVELS[0], *scores))
         for level in LEVELS[1:]:
             stores = level == LEVELS[-1] and sizes.repository == "measured"
             learned = _fine_tuned(known.problem.real, rows, alone=stores)
@@ -76,12 +84,12 @@ def lived(
 
 
 def _played(
-    drift: str, level: str, score: tuple[Score, Score], stream: Stream, life: Life
-) -> Played:
+    drift: str, level: str, score: tuple[Score, Score], stream: DriftStream, life: Life
+) -> StreamResult:
     rows = len(stream.rows.readings)
     quiet = stream.changes[0] if stream.changes else rows
     raised = life.alarms[0] if life.alarms else rows
-    return Played(
+    return StreamResult(
         drift,
         level,
         *score,
@@ -98,8 +106,8 @@ def _played(
 def _fine_tuned(real: FloatArray, rows: FloatArray, *, alone: bool) -> Learned:
     """A state that has learned from rows of a stream (T1), for rows like these alone or for all."""
 
-    def learned(state: State, recent: slice) -> State:
+    def learned(state: CalibratedMethod, recent: slice) -> CalibratedMethod:
         after = state.calibrated.recalibrated(rows[recent], alone=alone)
-        return state if after is state.calibrated else State.of(after, real, rows)
+        return state if after is state.calibrated else CalibratedMethod.of(after, real, rows)
 
     return learned

@@ -41,8 +41,8 @@ def monitor(sensors: int, arl0: float, baseline: FloatArray | None, seed: int) -
 def window_rule(sensors: int, baseline: FloatArray | None, seed: int) -> Chart:
     """Of that many sensors; a baseline gives the mean and fills the window."""
     if baseline is None:
-        return WindowRule(WINDOW, np.zeros(sensors))
-    chart = WindowRule(WINDOW, baseline.mean(axis=0))
+        return WindowChart(WINDOW, np.zeros(sensors))
+    chart = WindowChart(WINDOW, baseline.mean(axis=0))
     chart.values(baseline)
     return chart
 
@@ -55,7 +55,7 @@ def mewma(sensors: int, baseline: FloatArray | None, seed: int) -> Chart:
     return Mewma(WEIGHT, baseline.mean(axis=0), np.linalg.inv(factor))
 
 
-class WindowRule:
+class WindowChart:
     """The paper's rule as a chart: alarms where it exceeds z.
 
     The value is the largest, over sensors, of (squared gap - mean) / standard deviation of the

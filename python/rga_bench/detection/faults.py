@@ -12,7 +12,7 @@ SPIKES = 0.02
 
 
 @dataclass(frozen=True)
-class Fault(ABC):
+class StreamChange(ABC):
     """A change of `count` sensors.
 
     Attributes:
@@ -48,7 +48,7 @@ class Fault(ABC):
     def _words(self) -> str: ...
 
 
-class Step(Fault):
+class Step(StreamChange):
     """The mean jumps by the size."""
 
     def change(
@@ -61,7 +61,7 @@ class Step(Fault):
         return f"step of {self.size:g} sd"
 
 
-class Drift(Fault):
+class Drift(StreamChange):
     """The mean moves by the size with every row."""
 
     def change(
@@ -74,7 +74,7 @@ class Drift(Fault):
         return f"drift of {self.size:g} sd a row"
 
 
-class Spread(Fault):
+class Spread(StreamChange):
     """The noise is multiplied by the size."""
 
     def change(
@@ -87,7 +87,7 @@ class Spread(Fault):
         return f"noise times {self.size:g}"
 
 
-class Stuck(Fault):
+class Stuck(StreamChange):
     """The sensor repeats what it read last; it has no size."""
 
     def change(
@@ -100,7 +100,7 @@ class Stuck(Fault):
         return "stuck at its last value"
 
 
-class Spikes(Fault):
+class Spikes(StreamChange):
     """Single rows, up or down by the size."""
 
     def change(

@@ -10,7 +10,7 @@ from rga.model.parameter import FloatArray
 
 
 @dataclass(frozen=True)
-class Noise:
+class StationaryNoise:
     """Stationary noise of variance 1.
 
     Attributes:
@@ -26,13 +26,13 @@ class Noise:
     shared: float = 0.0
 
 
-WHITE = Noise("white")
+WHITE = StationaryNoise("white")
 WORLDS = (
     WHITE,
-    Noise("AR(1) 0.3", memory=0.3),
-    Noise("AR(1) 0.6", memory=0.6),
-    Noise("Student's t5", freedom=5.0),
-    Noise("correlated 0.5", shared=0.5),
+    StationaryNoise("AR(1) 0.3", memory=0.3),
+    StationaryNoise("AR(1) 0.6", memory=0.6),
+    StationaryNoise("Student's t5", freedom=5.0),
+    StationaryNoise("correlated 0.5", shared=0.5),
 )
 
 
@@ -45,7 +45,7 @@ class NoiseSource:
         seed: of the rows.
     """
 
-    def __init__(self, noise: Noise, sensors: int, seed: np.random.SeedSequence) -> None:
+    def __init__(self, noise: StationaryNoise, sensors: int, seed: np.random.SeedSequence) -> None:
         self._noise, self._sensors = noise, sensors
         self._generator = np.random.default_rng(seed)
         # The filter's state at which its first row has the variance of all others.

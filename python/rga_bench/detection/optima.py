@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import log
 
 from rga_bench.detection.curves import optimal_curve
-from rga_bench.detection.faults import Fault
+from rga_bench.detection.faults import StreamChange
 from rga_bench.detection.optimum import (
     OPTIMUM,
     expected_delay,
@@ -14,9 +14,9 @@ from rga_bench.detection.optimum import (
 )
 from rga_bench.detection.rates import limit_for
 from rga_bench.detection.result import Point, Seen
-from rga_bench.detection.setting import EXAMPLE, Setting
+from rga_bench.detection.setting import EXAMPLE, DetectionSetting
 from rga_bench.detection.tasks import Job, Progress, courses_of
-from rga_bench.detection.watch import Case
+from rga_bench.detection.watch import WatchedCase
 
 #: expected delay below which false alarms are waited for, and how long in each stream, as a part of
 #: the rows that should be between them
@@ -24,7 +24,7 @@ SOON, WAITED = 4.0, 0.25
 
 
 def optima(
-    setting: Setting, workers: int, progress: Progress | None
+    setting: DetectionSetting, workers: int, progress: Progress | None
 ) -> tuple[list[Seen], list[Point]]:
     """Delays of the optimum for every change that has one; and its curve for the example."""
     faults = [fault for fault in setting.faults() if has_optimum(fault)]
@@ -42,11 +42,11 @@ def optima(
     return seen, points
 
 
-def _job(setting: Setting, fault: Fault) -> Job:
+def _job(setting: DetectionSetting, fault: StreamChange) -> Job:
     """Streams with the change; where it is soon seen, others without it."""
     cases = [setting.changed(fault, setting.streams)]
     if expected_delay(fault, setting.sensors, setting.arl0) < SOON:
         cap = int(WAITED * setting.arl0)
-        cases.append(Case(setting.streams, cap, purpose="limits"))
+        cases.append(WatchedCase(setting.streams, cap, purpose="limits"))
     method = optimal(fault, setting.sensors, setting.arl0)
     return Job(setting.known, method, tuple(cases), log(setting.arl0))

@@ -14,7 +14,7 @@ import numpy as np
 
 from rga.model.parameter import FloatArray
 from rga_bench.detection.charts import Method
-from rga_bench.detection.faults import Drift, Fault, Spread, Step
+from rga_bench.detection.faults import Drift, Spread, Step, StreamChange
 from rga_bench.detection.watch import Course
 
 OPTIMUM = "optimum"
@@ -28,12 +28,12 @@ BLOCK = 32
 ROUNDS = 20
 
 
-def has_optimum(fault: Fault) -> bool:
+def has_optimum(fault: StreamChange) -> bool:
     """Whether the optimum for a fault is known."""
     return isinstance(fault, Step | Drift | Spread)
 
 
-def expected_delay(fault: Fault, sensors: int, arl0: float) -> float:
+def expected_delay(fault: StreamChange, sensors: int, arl0: float) -> float:
     """Rows in which the likelihood of the true change grows by all that an alarm needs, roughly."""
     needed = math.log(arl0) + math.log(math.comb(sensors, fault.count))
     if isinstance(fault, Drift):
@@ -43,7 +43,7 @@ def expected_delay(fault: Fault, sensors: int, arl0: float) -> float:
     return needed / (fault.count * ((fault.size**2 - 1.0) / 2.0 - math.log(fault.size)))
 
 
-def _joint(fault: Fault, sensors: int) -> bool:
+def _joint(fault: StreamChange, sensors: int) -> bool:
     """Whether all sensors change alike, so that their sum tells all."""
     return fault.count == sensors and not fault.signed
 
@@ -62,7 +62,7 @@ class Optimum:
         TypeError: there is no optimum for that fault.
     """
 
-    def __init__(self, fault: Fault, sensors: int, arl0: float) -> None:
+    def __init__(self, fault: StreamChange, sensors: int, arl0: float) -> None:
         if not has_optimum(fault):
             raise TypeError(f"no optimum is known for a fault: {fault.name}")
         self._fault, self._sensors = fault, sensors
@@ -168,13 +168,13 @@ def optimal_limit(courses: Sequence[Course], arl0: float) -> float:
     return limit
 
 
-def optimal(fault: Fault, sensors: int, arl0: float) -> Method:
+def optimal(fault: StreamChange, sensors: int, arl0: float) -> Method:
     """The optimum for a fault as a method, without a limit."""
     return Method(OPTIMUM, partial(_made, fault, sensors, arl0), math.log(arl0))
 
 
 def _made(
-    fault: Fault, sensors: int, arl0: float, baseline: FloatArray | None, seed: int
+    fault: StreamChange, sensors: int, arl0: float, baseline: FloatArray | None, seed: int
 ) -> Optimum:
     """It knows the noise."""
     return Optimum(fault, sensors, arl0)

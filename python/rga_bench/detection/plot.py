@@ -9,20 +9,20 @@ from matplotlib.figure import Figure as Canvas
 
 from rga_bench.detection.detectors import WINDOW_RULE, Z
 from rga_bench.detection.optimum import OPTIMUM
-from rga_bench.detection.result import Result
+from rga_bench.detection.result import DetectionResult
 from rga_bench.measurement import digits
 
 #: as published: samples from a change to the alarm
 PUBLISHED = (49.0, 70.0)
 
 
-def plot(result: Result, folder: Path) -> None:
+def plot(result: DetectionResult, folder: Path) -> None:
     """Write `delays.png` and `limits.png` to a folder."""
     for name, drawn in (("delays.png", delays(result)), ("limits.png", limits(result))):
         drawn.savefig(folder / name, format="png", dpi=110)
 
 
-def delays(result: Result) -> Canvas:
+def delays(result: DetectionResult) -> Canvas:
     """Delay against the size of a step, for one sensor, some and all."""
     steps = [one for one in result.delays if one.kind == "step" and one.known]
     steps = [one for one in steps if one.size in result.setting.sizes and "sign" not in one.fault]
@@ -57,7 +57,7 @@ def delays(result: Result) -> Canvas:
     return canvas
 
 
-def limits(result: Result) -> Canvas:
+def limits(result: DetectionResult) -> Canvas:
     """The window rule at any z; and delay against false alarms of all detectors."""
     canvas = Canvas(figsize=(11.5, 4.8), layout="constrained")
     left, right = canvas.subplots(1, 2, sharey=True)
@@ -66,7 +66,7 @@ def limits(result: Result) -> Canvas:
     return canvas
 
 
-def _any_delay(axes: Axes, result: Result) -> None:
+def _any_delay(axes: Axes, result: DetectionResult) -> None:
     points = [one for one in result.points if one.detector == WINDOW_RULE]
     z = [one.limit for one in points]
     axes.axhspan(*PUBLISHED, color="C1", alpha=0.25, lw=0)
@@ -90,7 +90,7 @@ def _any_delay(axes: Axes, result: Result) -> None:
     axes.legend(fontsize=9)
 
 
-def _costs(axes: Axes, result: Result) -> None:
+def _costs(axes: Axes, result: DetectionResult) -> None:
     highest = result.setting.arl0
     axes.plot([1.0, highest], [1.0, highest], color="0.6", lw=1, ls=":", label="blind")
     for detector, style in _styles(result).items():
@@ -116,7 +116,7 @@ def _costs(axes: Axes, result: Result) -> None:
     axes.legend(fontsize=9)
 
 
-def _styles(result: Result) -> dict[str, dict[str, Any]]:
+def _styles(result: DetectionResult) -> dict[str, dict[str, Any]]:
     """Of the detectors, the optimum last and in black."""
     names = list(dict.fromkeys(one.detector for one in result.delays if one.detector != OPTIMUM))
     styles: dict[str, dict[str, Any]] = {

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from rga_bench.detection.charts import Method
-from rga_bench.detection.faults import Fault
+from rga_bench.detection.faults import StreamChange
 from rga_bench.detection.rates import Arl0, Delay, Share, arl0, delay, share
-from rga_bench.detection.setting import Setting
-from rga_bench.detection.watch import Course, World
-from rga_bench.measurement import Figure
+from rga_bench.detection.setting import DetectionSetting
+from rga_bench.detection.watch import Course, StreamWorld
+from rga_bench.measurement import Measurement
 
 #: None: none
 Bounds = tuple[float | None, float | None]
@@ -36,7 +36,12 @@ class Alarms:
 
     @classmethod
     def of(
-        cls, world: World, method: Method, limit: float | None, rows: float, found: list[Course]
+        cls,
+        world: StreamWorld,
+        method: Method,
+        limit: float | None,
+        rows: float,
+        found: list[Course],
     ) -> "Alarms":
         """Of courses without a change.
 
@@ -80,7 +85,9 @@ class Seen:
     delay: Delay
 
     @classmethod
-    def of(cls, world: World, method: Method, fault: Fault, found: list[Course]) -> "Seen":
+    def of(
+        cls, world: StreamWorld, method: Method, fault: StreamChange, found: list[Course]
+    ) -> "Seen":
         """Of courses with a change."""
         return cls(
             method.name,
@@ -111,7 +118,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedFigure:
     """A figure that something is asked of.
 
     Attributes:
@@ -145,7 +152,7 @@ class Judged:
 
 
 @dataclass(frozen=True)
-class Result:
+class DetectionResult:
     """What was measured, where and when.
 
     Attributes:
@@ -163,9 +170,9 @@ class Result:
     machine: dict[str, Any]
     versions: dict[str, str | None]
     day: str
-    setting: Setting
+    setting: DetectionSetting
     alarms: list[Alarms]
     delays: list[Seen]
     points: list[Point]
-    judged: list[Judged]
-    throughput: list[Figure]
+    judged: list[JudgedFigure]
+    throughput: list[Measurement]

@@ -13,12 +13,12 @@ from rga_bench.detection.detectors import WINDOW_RULE, Z, free, ready
 from rga_bench.detection.noise import WORLDS
 from rga_bench.detection.optima import optima
 from rga_bench.detection.rates import limit_for
-from rga_bench.detection.result import Alarms, Result, Seen
-from rga_bench.detection.setting import BASELINE, EXAMPLE, Setting
+from rga_bench.detection.result import Alarms, DetectionResult, Seen
+from rga_bench.detection.setting import BASELINE, EXAMPLE, DetectionSetting
 from rga_bench.detection.targets import targets
 from rga_bench.detection.tasks import Job, Progress, courses_of
 from rga_bench.detection.throughput import throughput
-from rga_bench.detection.watch import Course, World
+from rga_bench.detection.watch import Course, StreamWorld
 from rga_bench.machine import machine, versions
 
 #: shares of the time that limits and the optimum take, roughly
@@ -26,12 +26,12 @@ LIMITS, OPTIMA = 0.1, 0.2
 
 
 def measure(
-    setting: Setting,
+    setting: DetectionSetting,
     others: Sequence[Method] = (),
     *,
     workers: int = 1,
     progress: Progress | None = None,
-) -> Result:
+) -> DetectionResult:
     """All figures, the same ones for any number of processes.
 
     Args:
@@ -64,11 +64,13 @@ def measure(
     if not setting.judged:
         costs = [replace(one, least=None) for one in costs]
     day = date.today().isoformat()
-    return Result(machine(), versions(), day, setting, alarms, delays, points, judged, costs)
+    return DetectionResult(
+        machine(), versions(), day, setting, alarms, delays, points, judged, costs
+    )
 
 
 def _limited(
-    setting: Setting, workers: int, progress: Progress | None
+    setting: DetectionSetting, workers: int, progress: Progress | None
 ) -> tuple[list[Method], dict[str, list[Course]]]:
     """Detectors with the limits that they need, and what these come from."""
     jobs = [
@@ -84,7 +86,7 @@ def _limited(
     return limited, undisturbed
 
 
-def _jobs(setting: Setting, method: Method) -> list[Job]:
+def _jobs(setting: DetectionSetting, method: Method) -> list[Job]:
     """All that a detector is measured on."""
     known = setting.known
     jobs = [
@@ -96,7 +98,7 @@ def _jobs(setting: Setting, method: Method) -> list[Job]:
     ]
     streams = setting.baselines * setting.each
     for noise in WORLDS:
-        world = World(setting.seed, noise, setting.sensors, BASELINE, setting.each)
+        world = StreamWorld(setting.seed, noise, setting.sensors, BASELINE, setting.each)
         cases = [setting.undisturbed("false alarms", 0, streams)]
         if noise == known.noise:
             cases += [setting.changed(fault, streams) for fault in setting.faults_estimated()]

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from rga_bench.detection.faults import Drift, Fault, Spikes, Spread, Step, Stuck
+from rga_bench.detection.faults import Drift, Spikes, Spread, Step, StreamChange, Stuck
 from rga_bench.detection.noise import WHITE
-from rga_bench.detection.watch import Case, World
+from rga_bench.detection.watch import StreamWorld, WatchedCase
 
 #: the change whose delay is shown against false alarms
 EXAMPLE = Step(1.0)
@@ -15,7 +15,7 @@ PATIENCE_NULL, PATIENCE_DELAY = 2.0, 5.0
 
 
 @dataclass(frozen=True)
-class Setting:
+class DetectionSetting:
     """How much is measured, and of what.
 
     Attributes:
@@ -47,13 +47,15 @@ class Setting:
     judged: bool = True
 
     @property
-    def known(self) -> World:
+    def known(self) -> StreamWorld:
         """White noise, known to all."""
-        return World(self.seed, WHITE, self.sensors)
+        return StreamWorld(self.seed, WHITE, self.sensors)
 
-    def faults(self) -> list[Fault]:
+    def faults(self) -> list[StreamChange]:
         """That are measured where the noise is known."""
-        steps: list[Fault] = [Step(size, count) for count in self.counts for size in self.sizes]
+        steps: list[StreamChange] = [
+            Step(size, count) for count in self.counts for size in self.sizes
+        ]
         many = [count for count in self.counts if count > 1]
         return [
             *steps,
@@ -65,7 +67,7 @@ class Setting:
             Spikes(8.0),
         ]
 
-    def faults_estimated(self) -> list[Fault]:
+    def faults_estimated(self) -> list[StreamChange]:
         """That are measured where the noise is estimated."""
         return [
             *(Step(size, count) for count in self.counts for size in (0.5, 1.0)),
@@ -76,18 +78,18 @@ class Setting:
             Spikes(8.0),
         ]
 
-    def undisturbed(self, purpose: str, fill: int, streams: int) -> Case:
+    def undisturbed(self, purpose: str, fill: int, streams: int) -> WatchedCase:
         """Streams without a change, counted from where a detector is filled."""
-        return Case(streams, int(PATIENCE_NULL * self.arl0), fill, purpose=purpose)
+        return WatchedCase(streams, int(PATIENCE_NULL * self.arl0), fill, purpose=purpose)
 
-    def changed(self, fault: Fault, streams: int) -> Case:
+    def changed(self, fault: StreamChange, streams: int) -> WatchedCase:
         """Streams with a change."""
-        return Case(streams, int(PATIENCE_DELAY * self.arl0), self.onset, fault, "delay")
+        return WatchedCase(streams, int(PATIENCE_DELAY * self.arl0), self.onset, fault, "delay")
 
 
-def shorter(seed: int) -> Setting:
+def shorter(seed: int) -> DetectionSetting:
     """What takes less than a minute: too short to judge by."""
-    return Setting(
+    return DetectionSetting(
         seed,
         arl0=1000.0,
         null=40,

@@ -3,11 +3,11 @@
 import numpy as np
 
 from rga.model.parameter import FloatArray
-from rga_bench.detection.faults import Fault
-from rga_bench.detection.noise import Noise, NoiseSource
+from rga_bench.detection.faults import StreamChange
+from rga_bench.detection.noise import NoiseSource, StationaryNoise
 
 
-class Stream:
+class ResidualStream:
     """Rows of noise, and of a fault from the onset on; the same ones in blocks of any size.
 
     Which sensors change is drawn.
@@ -22,10 +22,10 @@ class Stream:
 
     def __init__(
         self,
-        noise: Noise,
+        noise: StationaryNoise,
         sensors: int,
         seed: np.random.SeedSequence,
-        fault: Fault | None = None,
+        fault: StreamChange | None = None,
         onset: int = 0,
     ) -> None:
         # Children by number, and not by `spawn`, which would change the seed.

@@ -7,7 +7,7 @@ from rich.console import Group
 
 from rga_bench.detection.optimum import OPTIMUM
 from rga_bench.detection.rates import Arl0, Delay, Share
-from rga_bench.detection.result import Bounds, Judged, Result, Seen
+from rga_bench.detection.result import Bounds, DetectionResult, JudgedFigure, Seen
 from rga_bench.detection.setting import BASELINE
 from rga_bench.measurement import HEADINGS, digits
 from rga_bench.sheet import Sheet
@@ -26,12 +26,12 @@ alarms that the first table tells.
 Optimum: knows the change, its size and the number of sensors, but not which sensors nor when."""
 
 
-def terminal(result: Result) -> Group:
+def terminal(result: DetectionResult) -> Group:
     """For rich."""
     return Group(*(sheet.terminal() for sheet in sheets(result)))
 
 
-def markdown(result: Result, command: str) -> str:
+def markdown(result: DetectionResult, command: str) -> str:
     """A page: where and how it was measured, and the tables."""
     lines = ["# How soon a change is seen, at which rate of false alarms", ""]
     lines += [f"`{command}` on {result.day}.", "", *(f"- {line}" for line in about(result)), ""]
@@ -40,7 +40,7 @@ def markdown(result: Result, command: str) -> str:
     return "\n".join([*lines, NOTES, "", "![delays](delays.png)", "", "![limits](limits.png)", ""])
 
 
-def about(result: Result) -> list[str]:
+def about(result: DetectionResult) -> list[str]:
     """The machine, and what was measured, in lines."""
     machine, setting = result.machine, result.setting
     versions = [f"{name} {number}" for name, number in result.versions.items() if number]
@@ -54,7 +54,7 @@ def about(result: Result) -> list[str]:
     ]
 
 
-def sheets(result: Result) -> list[Sheet]:
+def sheets(result: DetectionResult) -> list[Sheet]:
     """All tables."""
     found = [
         _alarms(result),
@@ -70,7 +70,7 @@ def sheets(result: Result) -> list[Sheet]:
     return found
 
 
-def _alarms(result: Result) -> Sheet:
+def _alarms(result: DetectionResult) -> Sheet:
     headings = ["detector", "limit", "noise", "baseline", "rows between alarms", "quiet"]
     rows = [
         [
@@ -87,7 +87,7 @@ def _alarms(result: Result) -> Sheet:
     return Sheet(f"False alarms; there should be {wanted} rows between them", headings, rows)
 
 
-def _delays(result: Result, title: str, seen: Sequence[Seen]) -> Sheet:
+def _delays(result: DetectionResult, title: str, seen: Sequence[Seen]) -> Sheet:
     detectors = list(dict.fromkeys(one.detector for one in seen))
     detectors.sort(key=OPTIMUM.__eq__)  # the optimum last
     cells = {(one.fault, one.count, one.detector): _delay(one.delay) for one in seen}
@@ -102,7 +102,7 @@ def _delays(result: Result, title: str, seen: Sequence[Seen]) -> Sheet:
     return Sheet(title, ["change", "sensors", *detectors], rows)
 
 
-def _judged(judged: Sequence[Judged]) -> Sheet:
+def _judged(judged: Sequence[JudgedFigure]) -> Sheet:
     rows = [
         [
             one.name,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from rga_bench.detection.detectors import MONITOR, WINDOW_RULE
 from rga_bench.detection.optimum import OPTIMUM
 from rga_bench.detection.rates import Delay
-from rga_bench.detection.result import Alarms, Bounds, Judged, Seen
+from rga_bench.detection.result import Alarms, Bounds, JudgedFigure, Seen
 
 #: delay over the optimum's: asked for, and aimed at for one sensor and for more
 OVER_OPTIMUM, ONE, MORE = 1.6, 1.2, 1.4
@@ -19,7 +19,7 @@ QUIET_AIM: Bounds = (0.3, 0.45)
 RARE = 0.8
 
 
-def targets(arl0: float, alarms: Sequence[Alarms], delays: Sequence[Seen]) -> list[Judged]:
+def targets(arl0: float, alarms: Sequence[Alarms], delays: Sequence[Seen]) -> list[JudgedFigure]:
     """All that is asked, of figures that are there.
 
     Args:
@@ -52,7 +52,7 @@ def targets(arl0: float, alarms: Sequence[Alarms], delays: Sequence[Seen]) -> li
                 )
             )  # fmt: skip
     return judged + [
-        Judged(
+        JudgedFigure(
             f"{one.noise}, baseline estimated: monitor quiet as long as it should be",
             one.quiet.share, one.quiet.low, one.quiet.high, True, QUIET, QUIET_AIM,
         )
@@ -67,13 +67,15 @@ def _rare(arl0: float, alarms: Sequence[Alarms]) -> bool:
     return all(high is None or high >= RARE * arl0 for high in highest)
 
 
-def _ratio(name: str, over: Delay, under: Delay, rare: bool, least: Bounds, aim: Bounds) -> Judged:
+def _ratio(
+    name: str, over: Delay, under: Delay, rare: bool, least: Bounds, aim: Bounds
+) -> JudgedFigure:
     """Of means; the interval adds the squares of both relative errors."""
     if over.mean is None or under.mean is None:
-        return Judged(name, None, None, None, rare, least, aim)
+        return JudgedFigure(name, None, None, None, rare, least, aim)
     ratio = over.mean / under.mean
     error = math.exp(math.hypot(_relative(over), _relative(under)))
-    return Judged(name, ratio, ratio / error, ratio * error, rare, least, aim)
+    return JudgedFigure(name, ratio, ratio / error, ratio * error, rare, least, aim)
 
 
 def _relative(delay: Delay) -> float:

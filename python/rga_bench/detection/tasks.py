@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rga.parallel import finished
 from rga_bench.detection.charts import Method
-from rga_bench.detection.watch import Case, Course, World, watched_together
+from rga_bench.detection.watch import Course, StreamWorld, WatchedCase, watched_together
 
 #: streams, or baselines, that one process watches in one go
 CHUNK, BASELINES = 25, 2
@@ -24,9 +24,9 @@ class Job:
         ceiling: a stream ends where a value exceeds it; None: the method's limit.
     """
 
-    world: World
+    world: StreamWorld
     method: Method
-    cases: tuple[Case, ...]
+    cases: tuple[WatchedCase, ...]
     ceiling: float | None = None
 
     def chunks(self) -> list[range]:

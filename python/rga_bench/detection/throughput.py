@@ -18,7 +18,7 @@ from rga.detection.statistic import STATISTICS
 from rga.model.parameter import FloatArray
 from rga_bench.detection.windows import Bottleneck, River
 from rga_bench.installed import present
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.timing import shortest
 
 SENSORS, WINDOW, Z = 84, 200, 3.0
@@ -36,7 +36,7 @@ MONITOR = f"Monitor, {SENSORS} sensors"
 CASE = f"Gaussian window, {SENSORS} sensors, W = {WINDOW}"
 
 
-def throughput(seconds: float, seed: int = 0, size: int = BYTES) -> list[Figure]:
+def throughput(seconds: float, seed: int = 0, size: int = BYTES) -> list[Measurement]:
     """Figures of the window, on one core.
 
     Args:
@@ -65,13 +65,15 @@ def throughput(seconds: float, seed: int = 0, size: int = BYTES) -> list[Figure]
     bandwidth = source.nbytes / read
     taken = 8 * SENSORS * CALL / many
     beyond = one / CALL - 8 * SENSORS / bandwidth
-    rate = Figure(CASE, "update_many", SENSORS * CALL / many, "/s")
+    rate = Measurement(CASE, "update_many", SENSORS * CALL / many, "/s")
     return [
         *monitor(rows, bandwidth, seconds, draw),
-        Figure(CASE, "update_many, rows read", taken / 1e9, "GB/s").beside(
+        Measurement(CASE, "update_many, rows read", taken / 1e9, "GB/s").beside(
             "NumPy, scalar product", bandwidth / 1e9, 0.4
         ),
-        Figure(CASE, "update of a row, beyond reading it", beyond, "s").beside("most", MOST, 1.0),
+        Measurement(CASE, "update of a row, beyond reading it", beyond, "s").beside(
+            "most", MOST, 1.0
+        ),
         rate.beside("river GaussianScorer", river(rows[: WINDOW + FEW], seconds), 1000.0),
         rate.beside("bottleneck move_mean, move_std", bottleneck(rows, seconds), 8.0),
     ]
@@ -79,7 +81,7 @@ def throughput(seconds: float, seed: int = 0, size: int = BYTES) -> list[Figure]
 
 def monitor(
     rows: FloatArray, bandwidth: float, seconds: float, draw: np.random.Generator
-) -> list[Figure]:
+) -> list[Measurement]:
     """Rows that the monitor reads in a second, beside memory [bytes/s].
 
     Its reference is learned from white noise, and from noise that remembers and that sensors
@@ -105,10 +107,10 @@ def monitor(
     rates = [8 * SENSORS * CALL / one / 1e9 for one in taken]
     peer = ("NumPy, scalar product", bandwidth / 1e9)
     return [
-        Figure(MONITOR, "update_many, white noise", rates[0], "GB/s").beside(*peer, 0.1),
-        Figure(MONITOR, "update_many, noise with memory and in common", rates[1], "GB/s").beside(
-            *peer
-        ),
+        Measurement(MONITOR, "update_many, white noise", rates[0], "GB/s").beside(*peer, 0.1),
+        Measurement(
+            MONITOR, "update_many, noise with memory and in common", rates[1], "GB/s"
+        ).beside(*peer),
     ]
 
 

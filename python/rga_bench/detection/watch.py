@@ -8,16 +8,16 @@ import numpy as np
 
 from rga.model.parameter import FloatArray
 from rga_bench.detection.charts import Chart, Method
-from rga_bench.detection.faults import Fault
-from rga_bench.detection.noise import WHITE, Noise, NoiseSource
-from rga_bench.detection.streams import Stream
+from rga_bench.detection.faults import StreamChange
+from rga_bench.detection.noise import WHITE, NoiseSource, StationaryNoise
+from rga_bench.detection.streams import ResidualStream
 
 #: rows that are fed at once: few at first, for an alarm may come soon, then what caches hold
 FIRST_BLOCK, LAST_BLOCK = 64, 256
 
 
 @dataclass(frozen=True)
-class World:
+class StreamWorld:
     """Where streams and baselines come from.
 
     Attributes:
@@ -30,7 +30,7 @@ class World:
     """
 
     seed: int
-    noise: Noise = WHITE
+    noise: StationaryNoise = WHITE
     sensors: int = 84
     baseline: int = 0
     each: int = 1
@@ -40,10 +40,10 @@ class World:
         """Streams in turn that have a baseline in common; 1: none have."""
         return self.each if self.baseline else 1
 
-    def stream(self, case: "Case", number: int) -> Stream:
+    def stream(self, case: "WatchedCase", number: int) -> ResidualStream:
         """One of a case."""
         seed = self._seed(case.purpose, number)
-        return Stream(self.noise, self.sensors, seed, case.fault, case.onset)
+        return ResidualStream(self.noise, self.sensors, seed, case.fault, case.onset)
 
     def made(self, method: Method, number: int) -> Chart:
         """A fresh chart from the baseline of that number."""
@@ -59,7 +59,7 @@ class World:
 
 
 @dataclass(frozen=True)
-class Case:
+class WatchedCase:
     """What is watched.
 
     Attributes:
@@ -73,7 +73,7 @@ class Case:
     streams: int
     cap: int
     onset: int = 0
-    fault: Fault | None = None
+    fault: StreamChange | None = None
     purpose: str = ""
 
 
@@ -105,8 +105,8 @@ class Course:
 
 
 def watched(
-    world: World,
-    case: Case,
+    world: StreamWorld,
+    case: WatchedCase,
     method: Method,
     numbers: range | None = None,
     ceiling: float | None = None,
@@ -124,8 +124,8 @@ def watched(
 
 
 def watched_together(
-    world: World,
-    cases: Sequence[Case],
+    world: StreamWorld,
+    cases: Sequence[WatchedCase],
     method: Method,
     numbers: range,
     ceiling: float | None = None,
@@ -144,7 +144,7 @@ def watched_together(
     return courses
 
 
-def _course(chart: Chart, stream: Stream, onset: int, cap: int, ceiling: float) -> Course:
+def _course(chart: Chart, stream: ResidualStream, onset: int, cap: int, ceiling: float) -> Course:
     before = -np.inf
     for size in _blocks(onset):
         before = max(before, float(chart.values(stream.take(size)).max()))

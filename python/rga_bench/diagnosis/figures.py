@@ -9,7 +9,7 @@ from scipy.stats import binomtest, bootstrap
 
 from rga_bench.diagnosis.design import NULLS
 from rga_bench.diagnosis.field_design import FIELD_NULLS
-from rga_bench.diagnosis.judge import Outcome
+from rga_bench.diagnosis.judge import DrawOutcome
 from rga_bench.diagnosis.yardstick import NORMAL_90
 
 #: bounds of d_perp between which effects count alike; found above `PLAIN`, mostly above `FAINT`
@@ -35,7 +35,7 @@ Bounds = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Figure:
+class ChallengeFigure:
     """A figure with its 90 % interval, and the bounds within which it should lie.
 
     Attributes:
@@ -70,13 +70,13 @@ class Figure:
 
 def rate(
     name: str, hits: Iterable[bool], least: Bounds | None = None, aim: Bounds | None = None
-) -> Figure:
+) -> ChallengeFigure:
     """A share of draws, with Wilson's interval."""
     known = list(hits)
     if not known:
-        return Figure(name, None, None, None, 0, 0, least, aim)
+        return ChallengeFigure(name, None, None, None, 0, 0, least, aim)
     found = binomtest(sum(known), len(known)).proportion_ci(0.9, method="wilson")
-    return Figure(
+    return ChallengeFigure(
         name, sum(known) / len(known), float(found.low), float(found.high), sum(known), len(known),
         least, aim,
     )  # fmt: skip
@@ -84,10 +84,10 @@ def rate(
 
 def middle(
     name: str, values: Sequence[float], least: Bounds, aim: Bounds, share: float | None = None
-) -> Figure:
+) -> ChallengeFigure:
     """A mean, or the quantile at a `share`, with a bootstrapped interval."""
     if not values:
-        return Figure(name, None, None, None, None, 0, least, aim)
+        return ChallengeFigure(name, None, None, None, None, 0, least, aim)
 
     def taken(sample: np.ndarray, axis: int = -1) -> np.ndarray:
         if share is None:
@@ -105,37 +105,37 @@ def middle(
             rng=np.random.default_rng(0),
         ).confidence_interval
         low, high = float(found.low), float(found.high)
-    return Figure(name, value, low, high, None, len(values), least, aim)
+    return ChallengeFigure(name, value, low, high, None, len(values), least, aim)
 
 
-def figures(outcomes: Sequence[Outcome]) -> list[Figure]:
+def figures(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     """All figures of a challenge."""
     return [*_finding(outcomes), *_sureness(outcomes), *_gains(outcomes), *_onsets(outcomes)]
 
 
-def of(outcomes: Sequence[Outcome], stratum: str, null: bool = False) -> list[Outcome]:
+def of(outcomes: Sequence[DrawOutcome], stratum: str, null: bool = False) -> list[DrawOutcome]:
     """The outcomes of a stratum, or of its null twins."""
     return [o for o in outcomes if o.draw.stratum == stratum and o.draw.null == null]
 
 
-def singles(outcomes: Sequence[Outcome], low: float, high: float = np.inf) -> list[Outcome]:
+def singles(outcomes: Sequence[DrawOutcome], low: float, high: float = np.inf) -> list[DrawOutcome]:
     """Single effects with d_perp from `low` to `high`."""
     return [o for o in of(outcomes, "single") if low <= o.hidden[0]["d_perp"] < high]
 
 
-def knowledge(one: Outcome) -> str:
+def knowledge(one: DrawOutcome) -> str:
     """How much of its surroundings a case knows: its contexts, and whether the model is right."""
     wrong = one.null == "frame" or one.null.startswith(WELDED)
     return "base error" if wrong else CONTEXTS[one.contexts]
 
 
-def nulls_of(outcomes: Sequence[Outcome]) -> list[str]:
+def nulls_of(outcomes: Sequence[DrawOutcome]) -> list[str]:
     """Names of the null records that there are, in the order of their designs."""
     present = {o.null for o in outcomes}
     return [name for name in (*NULLS, *FIELD_NULLS) if name in present]
 
 
-def _finding(outcomes: Sequence[Outcome]) -> list[Figure]:
+def _finding(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     nulls = [o for o in outcomes if o.draw.null]
     pairs = [o for o in of(outcomes, "pair") if all(one["d_prime"] >= LARGE for one in o.hidden)]
     plain = [o for o in pairs if all(one["d_perp"] >= PLAIN for one in o.hidden)]
@@ -176,7 +176,7 @@ def _finding(outcomes: Sequence[Outcome]) -> list[Figure]:
     ]  # fmt: skip
 
 
-def _sureness(outcomes: Sequence[Outcome]) -> list[Figure]:
+def _sureness(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     outside = [o for o in of(outcomes, "outside") if o.hidden[0]["d_prime"] >= LARGE]
     apart = [o for o in outside if o.hidden[0]["d_perp"] >= LARGE]
     told = [*of(outcomes, "single"), *of(outcomes, "pair")]
@@ -220,11 +220,11 @@ def _sureness(outcomes: Sequence[Outcome]) -> list[Figure]:
     ]  # fmt: skip
 
 
-def _deviations(one: Outcome) -> list[float]:
+def _deviations(one: DrawOutcome) -> list[float]:
     return [off for by_parameter in one.deviations.values() for off in by_parameter.values()]
 
 
-def share_gained(one: Outcome) -> float | None:
+def share_gained(one: DrawOutcome) -> float | None:
     """Gain of what was found, in that of the true model, on unseen sensors and days, -1 to 1."""
     if one.gaps is None:
         return None
@@ -234,7 +234,7 @@ def share_gained(one: Outcome) -> float | None:
     return float(np.clip((one.gaps["given"] - one.gaps["found"]) / possible, -1.0, 1.0))
 
 
-def _gains(outcomes: Sequence[Outcome]) -> list[Figure]:
+def _gains(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     by_bin = [
         middle(
             f"share of the true gain, d_perp {low:g} to {high:g}",
@@ -262,7 +262,7 @@ def _gains(outcomes: Sequence[Outcome]) -> list[Figure]:
     ]  # fmt: skip
 
 
-def _onsets(outcomes: Sequence[Outcome]) -> list[Figure]:
+def _onsets(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     told = [one for o in outcomes for one in o.onsets]
     large = [
         onset["error"]

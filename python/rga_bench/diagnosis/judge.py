@@ -30,7 +30,7 @@ KEPT = 8
 
 
 @dataclass(frozen=True)
-class Outcome:
+class DrawOutcome:
     """What became of a draw; what stands in a line of the ledger.
 
     Attributes:
@@ -84,7 +84,7 @@ class Outcome:
         return all(one["found"] for one in self.hidden)
 
 
-def judge(draw: Draw) -> Outcome:
+def judge(draw: Draw) -> DrawOutcome:
     """Draw a case, diagnose it from its files, and score."""
     case = draw.case()
     with tempfile.TemporaryDirectory() as folder:
@@ -125,7 +125,7 @@ def judge(draw: Draw) -> Outcome:
                     "cause": number,
                 }
             )
-    return Outcome(
+    return DrawOutcome(
         id=draw.id,
         null=draw.null_name,
         contexts=draw.contexts,

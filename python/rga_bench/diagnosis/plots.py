@@ -15,13 +15,13 @@ from rga_bench.diagnosis.figures import (
     CONTEXTS,
     FAINT,
     PLAIN,
-    Figure,
+    ChallengeFigure,
     knowledge,
     nulls_of,
     rate,
     singles,
 )
-from rga_bench.diagnosis.judge import Outcome
+from rga_bench.diagnosis.judge import DrawOutcome
 from rga_bench.diagnosis.tables import KINDS, named_as
 
 LEVELS = (0.5, 0.68, 0.8, 0.9, 0.95, 0.99)
@@ -30,7 +30,7 @@ BINS = (0.0, 3.0, 5.0, 6.5, 8.0, 12.0, 20.0, 35.0, np.inf)
 ODDS = (-np.inf, -6.9, -4.6, -2.3, 0.0, 2.3, 4.6, 6.9, np.inf)
 
 
-def plot(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
+def plot(outcomes: Sequence[DrawOutcome], folder: Path) -> list[Path]:
     """Write `calibration.png` and `confusion.png` to a folder."""
     canvas = Canvas(figsize=(12, 9), layout="constrained")
     axes = canvas.subplots(2, 2)
@@ -48,7 +48,7 @@ def plot(outcomes: Sequence[Outcome], folder: Path) -> list[Path]:
     return paths
 
 
-def _bar(axes: Axes, x: float, one: Figure, color: str = "C0") -> None:
+def _bar(axes: Axes, x: float, one: ChallengeFigure, color: str = "C0") -> None:
     """A rate with its interval and the number of draws."""
     if one.value is None or one.low is None or one.high is None:
         return
@@ -57,7 +57,7 @@ def _bar(axes: Axes, x: float, one: Figure, color: str = "C0") -> None:
     axes.annotate(str(one.of), (x, one.value), (4, 3), textcoords="offset points", size=7)
 
 
-def _intervals(axes: Axes, outcomes: Sequence[Outcome]) -> None:
+def _intervals(axes: Axes, outcomes: Sequence[DrawOutcome]) -> None:
     axes.plot([0, 1], [0, 1], color="0.7", lw=1)
     groups = (*dict.fromkeys(CONTEXTS.values()), "base error")
     for number, name in enumerate(groups):
@@ -85,7 +85,7 @@ def _intervals(axes: Axes, outcomes: Sequence[Outcome]) -> None:
         axes.legend(loc="lower right", fontsize=8, title="estimates of parameters")
 
 
-def _found(axes: Axes, outcomes: Sequence[Outcome]) -> None:
+def _found(axes: Axes, outcomes: Sequence[DrawOutcome]) -> None:
     names = []
     for x, (low, high) in enumerate(pairwise(BINS)):
         _bar(axes, x, rate("", [o.found for o in singles(outcomes, low, high)]))
@@ -100,7 +100,7 @@ def _found(axes: Axes, outcomes: Sequence[Outcome]) -> None:
     axes.legend(loc="lower right", fontsize=8)
 
 
-def _odds(axes: Axes, outcomes: Sequence[Outcome]) -> None:
+def _odds(axes: Axes, outcomes: Sequence[DrawOutcome]) -> None:
     pairs = [pair for o in outcomes if o.draw.stratum != "outside" for pair in o.chances]
     shares = np.array([share for share, _ in pairs])
     right = np.array([hit for _, hit in pairs], dtype=bool)
@@ -118,7 +118,7 @@ def _odds(axes: Axes, outcomes: Sequence[Outcome]) -> None:
     axes.legend(loc="upper left", fontsize=8)
 
 
-def _nulls(axes: Axes, outcomes: Sequence[Outcome]) -> None:
+def _nulls(axes: Axes, outcomes: Sequence[DrawOutcome]) -> None:
     nulls = nulls_of(outcomes)
     for x, null in enumerate(nulls):
         own = [bool(o.named) for o in outcomes if o.draw.null and o.null == null]
@@ -130,7 +130,7 @@ def _nulls(axes: Axes, outcomes: Sequence[Outcome]) -> None:
     axes.legend(loc="upper left", fontsize=8)
 
 
-def _confusion(canvas: Canvas, outcomes: Sequence[Outcome]) -> None:
+def _confusion(canvas: Canvas, outcomes: Sequence[DrawOutcome]) -> None:
     counts = Counter((o.hidden[0]["kind"], named_as(o)) for o in singles(outcomes, FAINT))
     rows = [kind for kind in KINDS if any(hidden == kind for hidden, _ in counts)]
     others = sorted({named for _, named in counts if named not in rows})

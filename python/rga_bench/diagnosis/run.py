@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rga_bench.diagnosis.design import Draw
-from rga_bench.diagnosis.judge import Outcome, judge
+from rga_bench.diagnosis.judge import DrawOutcome, judge
 from rga_bench.ledger import outcomes_of
 
 
@@ -17,7 +17,7 @@ def run(
     dask: str | None = None,
     minutes: float | None = None,
     progress: Callable[[float], None] = lambda done: None,
-) -> list[Outcome]:
+) -> list[DrawOutcome]:
     """Judge draws; no outcome depends on the number of workers.
 
     Args:
@@ -39,7 +39,7 @@ def run(
     return outcomes_of(
         judge,
         chosen,
-        Outcome,
+        DrawOutcome,
         folder=folder,
         workers=workers,
         dask=dask,

@@ -12,13 +12,13 @@ from rga_bench.diagnosis.figures import (
     PLAIN,
     UNSURE,
     Bounds,
-    Figure,
+    ChallengeFigure,
     figures,
     of,
     share_gained,
     singles,
 )
-from rga_bench.diagnosis.judge import Outcome
+from rga_bench.diagnosis.judge import DrawOutcome
 from rga_bench.diagnosis.yardstick import NORMAL_90
 from rga_bench.field import INSIDE
 
@@ -28,7 +28,7 @@ FAR = 4.0
 KINDS = tuple(dict.fromkeys((*SINGLES, *INSIDE)))
 
 
-def tables(outcomes: Sequence[Outcome]) -> str:
+def tables(outcomes: Sequence[DrawOutcome]) -> str:
     """All tables of a challenge."""
     middle, slow = np.quantile([o.seconds for o in outcomes], [0.5, 0.95])
     parts = [
@@ -48,7 +48,7 @@ def tables(outcomes: Sequence[Outcome]) -> str:
     return "\n".join(parts) + "\n"
 
 
-def _figures(several: Sequence[Figure]) -> Iterator[str]:
+def _figures(several: Sequence[ChallengeFigure]) -> Iterator[str]:
     yield f"{'':50} {'measured':>8} {'90 % interval':>15} {'draws':>11} {'least':>10} {'aim':>10}"
     for one in several:
         asked = f"{_bounds(one.least):>10} {_bounds(one.aim):>10}  {one.judged}"
@@ -74,7 +74,7 @@ def _bounds(bounds: Bounds | None) -> str:
     )
 
 
-def _kinds(outcomes: Sequence[Outcome]) -> Iterator[str]:
+def _kinds(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
     head = (f"d_perp {PLAIN:g}+", f"{FAINT:g} to {PLAIN:g}", "below", "intervals", "gain", "unsure")
     yield f"{'':22}" + "".join(f"{word:>12}" for word in head)
     bins = ((PLAIN, np.inf), (FAINT, PLAIN), (0.0, FAINT))
@@ -101,7 +101,7 @@ def _ratio(hits: Sequence[bool]) -> str:
     return f"{sum(hits)} of {len(hits)}" if hits else "-"
 
 
-def named_as(one: Outcome) -> str:
+def named_as(one: DrawOutcome) -> str:
     """What a hidden effect was named: its kind, another, or nothing."""
     hidden = one.hidden[0]
     if hidden["cause"] is not None:
@@ -114,7 +114,7 @@ def named_as(one: Outcome) -> str:
     return "unknown" if one.verdict in UNSURE else "nothing"
 
 
-def _confusion(outcomes: Sequence[Outcome]) -> Iterator[str]:
+def _confusion(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
     for kind in KINDS:
         own = [o for o in singles(outcomes, FAINT) if o.hidden[0]["kind"] == kind]
         named = Counter(named_as(o) for o in own)
@@ -123,14 +123,14 @@ def _confusion(outcomes: Sequence[Outcome]) -> Iterator[str]:
             yield f"{kind:22} {named[kind]:3} of {len(own):<4} {', '.join(others)}".rstrip()
 
 
-def _outside(outcomes: Sequence[Outcome]) -> Iterator[str]:
+def _outside(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
     several = [o for o in of(outcomes, "outside") if o.hidden[0]["d_prime"] >= LARGE]
     for kind in dict.fromkeys(o.hidden[0]["kind"] for o in several):
         told = Counter(o.verdict for o in several if o.hidden[0]["kind"] == kind)
         yield f"{kind:22} " + ", ".join(f"{word} {many}" for word, many in told.most_common())
 
 
-def _structures(outcomes: Sequence[Outcome]) -> Iterator[str]:
+def _structures(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
     yield f"{'':22}" + "".join(f"{word:>20}" for word in (f"d_perp {PLAIN:g}+", "null, named"))
     for name in dict.fromkeys(o.bridge for o in outcomes):
         own = [o for o in outcomes if o.bridge == name]
@@ -139,7 +139,7 @@ def _structures(outcomes: Sequence[Outcome]) -> Iterator[str]:
         yield f"{name:22}{found:>20}{named:>20}"
 
 
-def failures(outcomes: Sequence[Outcome]) -> Iterator[str]:
+def failures(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
     """A line for every failure, those of a sort together."""
     lines = [(why, o) for o in outcomes if (why := _failure(o))]
     for why in dict.fromkeys(sorted(why for why, _ in lines)):
@@ -148,7 +148,7 @@ def failures(outcomes: Sequence[Outcome]) -> Iterator[str]:
         yield from (f"  {_line(o)}" for o in several)
 
 
-def _failure(one: Outcome) -> str:
+def _failure(one: DrawOutcome) -> str:
     if one.draw.null:
         return f"named on a null record, {one.null}" if one.named else ""
     if one.draw.stratum == "outside":
@@ -169,7 +169,7 @@ def _failure(one: Outcome) -> str:
     return "unknown or partial, though the vocabulary has it" if one.verdict in UNSURE else ""
 
 
-def _line(one: Outcome) -> str:
+def _line(one: DrawOutcome) -> str:
     hidden = "; ".join(
         f"{h['kind']} {_place(h['place'])}d' {h['d_prime']:.0f}, d_perp {h['d_perp']:.1f}"
         + (f" beside {h['nearest']['kind']}" if h["nearest"] else "")

@@ -14,7 +14,7 @@ from rga_bench.synthetic import Beyond, Case
 
 
 @dataclass(frozen=True)
-class Gaps:
+class UnseenGaps:
     """Mean squared distance from the truth in noise variances, where the record shows nothing.
 
     Of the model as given, as the diagnosis extended it, and with what is hidden in it; neither
@@ -26,7 +26,7 @@ class Gaps:
     true: float
 
 
-def unseen_gaps(case: Case, found: Mapping[str, Effect]) -> Gaps | None:
+def unseen_gaps(case: Case, found: Mapping[str, Effect]) -> UnseenGaps | None:
     """The gaps on sensors and days that the diagnosis did not get; None where nothing is known.
 
     Args:
@@ -46,7 +46,7 @@ def unseen_gaps(case: Case, found: Mapping[str, Effect]) -> Gaps | None:
     except InputError:
         # What cannot be simulated there gains nothing there.
         gap = given
-    return Gaps(given, gap, _gap(beyond, model.extended(hidden)))
+    return UnseenGaps(given, gap, _gap(beyond, model.extended(hidden)))
 
 
 def _gap(beyond: Beyond, model: Model) -> float:

@@ -1,5 +1,5 @@
 """Channels as loggers break them: a library of faults, and what a diagnosis makes of each."""
 
-from rga_bench.faults.library import FAULTS, Fault, Scale
+from rga_bench.faults.library import FAULTS, ChannelFault, Scale
 
-__all__ = ["FAULTS", "Fault", "Scale"]
+__all__ = ["FAULTS", "ChannelFault", "Scale"]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rga_bench.faults.judge import ERROR, Outcome
+from rga_bench.faults.judge import ERROR, FaultOutcome
 from rga_bench.faults.trial import LEFT_OUT, SOUND
 
 #: ratio of the gap to the one before above which it rises
@@ -33,7 +33,7 @@ class Comparison:
         times: seconds over those of the sound record.
     """
 
-    outcome: Outcome
+    outcome: FaultOutcome
     unmoved: bool
     kept: bool | None
     told: bool
@@ -42,7 +42,7 @@ class Comparison:
     times: float
 
 
-def comparisons(outcomes: Sequence[Outcome]) -> list[Comparison]:
+def comparisons(outcomes: Sequence[FaultOutcome]) -> list[Comparison]:
     """Of all broken records whose sound twin is there.
 
     Left out are records in which a channel broke that was broken before.
@@ -58,7 +58,7 @@ def comparisons(outcomes: Sequence[Outcome]) -> list[Comparison]:
     ]
 
 
-def _compared(one: Outcome, sound: Outcome) -> Comparison:
+def _compared(one: FaultOutcome, sound: FaultOutcome) -> Comparison:
     healthy = one.verdict != ERROR
     known = [now for now, before in zip(one.found, sound.found, strict=True) if before]
     gone = [] if one.way == LEFT_OUT else [each["sensor"] for each in one.broken]
@@ -74,7 +74,7 @@ def _compared(one: Outcome, sound: Outcome) -> Comparison:
     )
 
 
-def _others(one: Outcome) -> list[dict[str, Any]]:
+def _others(one: FaultOutcome) -> list[dict[str, Any]]:
     """Causes that are no sensor's."""
     return [cause for cause in one.causes if not _sensors(cause)]
 
@@ -105,7 +105,7 @@ def _same(one: dict[str, Any], other: dict[str, Any]) -> bool:
     return own == its or own in other["rivals"] or its in one["rivals"]
 
 
-def _told(sensor: str, one: Outcome, sound: Outcome) -> bool:
+def _told(sensor: str, one: FaultOutcome, sound: FaultOutcome) -> bool:
     if _is_named(sensor, one):
         return True
     name = re.compile(rf"(?<!\w){re.escape(sensor)}(?!\w)")
@@ -113,17 +113,17 @@ def _told(sensor: str, one: Outcome, sound: Outcome) -> bool:
     return any(name.search(_LIKE.sub("", text)) for text in fresh)
 
 
-def _is_named(sensor: str, one: Outcome) -> bool:
+def _is_named(sensor: str, one: FaultOutcome) -> bool:
     return _is_cause(sensor, one) or any(
         sensor in _sensors(rival) for cause in one.causes for rival in cause["rivals"]
     )
 
 
-def _is_cause(sensor: str, one: Outcome) -> bool:
+def _is_cause(sensor: str, one: FaultOutcome) -> bool:
     return any(sensor in _sensors(cause) for cause in one.causes)
 
 
-def _calm(one: Outcome, told: bool) -> bool:
+def _calm(one: FaultOutcome, told: bool) -> bool:
     if one.verdict not in ("nothing_wrong", "named") or one.before is None or one.after is None:
         return False
     rising = one.verdict == "named" and one.after > RISING * one.before

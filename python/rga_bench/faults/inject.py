@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rga.model import Model
 from rga.records import Record
 from rga_bench.faults.library import FAULTS, Array, Scale
-from rga_bench.faults.trial import LEFT_OUT, SOUND, Trial
+from rga_bench.faults.trial import LEFT_OUT, SOUND, FaultTrial
 
 #: root of the mean square that a fault adds from its onset on, in the channel's noise: less is
 #: no broken channel, as with a sign turned where nothing is read
@@ -20,7 +20,7 @@ ONSETS = (0.2, 0.7)
 SEVERAL = 0.15
 
 
-def broken(trial: Trial, model: Model, record: Record) -> tuple[Record, list[dict[str, Any]]]:
+def broken(trial: FaultTrial, model: Model, record: Record) -> tuple[Record, list[dict[str, Any]]]:
     """The record of a trial, and its broken channels with `sensor`, `fault` and first `row`."""
     if trial.way == SOUND:
         return record, []

@@ -9,14 +9,14 @@ from rga_bench.diagnosis.hidden import Truth
 from rga_bench.diagnosis.judge import FEW_RIVALS, kind_and_place
 from rga_bench.faults.base import load
 from rga_bench.faults.inject import broken
-from rga_bench.faults.trial import Trial
+from rga_bench.faults.trial import FaultTrial
 
 #: verdict where the diagnosis ended with an error
 ERROR = "error"
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FaultOutcome:
     """What became of a trial; what stands in a line of the ledger.
 
     Attributes:
@@ -49,7 +49,7 @@ class Outcome:
     error: str = ""
 
 
-def judge(trial: Trial) -> Outcome:
+def judge(trial: FaultTrial) -> FaultOutcome:
     """Break the channels of a record, and diagnose it."""
     sound = load(trial.base, trial.seed)
     record, gone = broken(trial, sound.model, sound.record)
@@ -58,14 +58,14 @@ def judge(trial: Trial) -> Outcome:
         findings = diagnose(sound.model, record, seed=trial.seed)
     except Exception as error:
         # A diagnosis that breaks down over a broken channel is what is looked for here.
-        return Outcome(
+        return FaultOutcome(
             trial.id, trial.base.name, trial.way, trial.fault, gone, ERROR, [],
             [False] * len(sound.hidden), [], None, None, None,
             time.process_time() - begun, f"{type(error).__name__}: {error}",
         )  # fmt: skip
     seconds = time.process_time() - begun
     held_out = findings.gap.held_out
-    return Outcome(
+    return FaultOutcome(
         id=trial.id,
         base=trial.base.name,
         way=trial.way,

@@ -78,7 +78,7 @@ Change = Callable[[Array, np.random.Generator, Scale, Array], Array]
 
 
 @dataclass(frozen=True)
-class Fault:
+class ChannelFault:
     """One way in which a channel breaks.
 
     Attributes:
@@ -246,96 +246,100 @@ def _bursts(
     return hit
 
 
-FAULTS: dict[str, Fault] = {
+FAULTS: dict[str, ChannelFault] = {
     one.name: one
     for one in (
-        Fault(
+        ChannelFault(
             "noise",
             "A loose wire at a bridge amplifier adds white noise many times the channel's.",
             "N K",
             _noise,
         ),
-        Fault(
+        ChannelFault(
             "wander",
             "Moisture under the cover lowers the insulation, and the zero walks at random.",
             "B H",
             _wander,
         ),
-        Fault(
+        ChannelFault(
             "clipping",
             "The readings leave the range that the amplifier was set to, and stay at its end.",
             "N",
             _clipping,
         ),
-        Fault(
+        ChannelFault(
             "zeros",
             "Telegrams of a bus or a radio are lost, and the logger writes zeros instead.",
             "N B",
             _zeros,
         ),
-        Fault(
+        ChannelFault(
             "jumps",
             "Plugs, restarts and knocks move the zero several times to another value.",
             "B K",
             _jumps,
         ),
-        Fault("sign", "Two wires of the bridge are exchanged: the sign is turned.", "H", _sign),
-        Fault(
+        ChannelFault(
+            "sign", "Two wires of the bridge are exchanged: the sign is turned.", "H", _sign
+        ),
+        ChannelFault(
             "thousandfold",
             "The channel is set to another unit, and reads a thousand times as much.",
             "N",
             _thousandfold,
         ),
-        Fault(
+        ChannelFault(
             "copy",
             "The logger maps two names to one input: the channel copies another.",
             "N",
             _copy,
         ),
-        Fault(
+        ChannelFault(
             "bad contact",
             "A contact opens from time to time, and the amplifier goes to the end of its range.",
             "B H",
             _contact,
         ),
-        Fault(
+        ChannelFault(
             "mains",
             "A cable without a screen picks 50 Hz up, which sampling folds to a slow sine.",
             "H",
             _mains,
         ),
-        Fault(
+        ChannelFault(
             "creep",
             "An adhesive that was not cured lets the gauge slip, quickly first and then slower.",
             "H K",
             _creep,
         ),
-        Fault(
+        ChannelFault(
             "stuck",
             "The converter or its driver hangs, and the last reading is repeated.",
             "N K",
             _stuck,
         ),
-        Fault(
+        ChannelFault(
             "late",
             "The clock of the channel's own logger is late by some rows.",
             "N",
             _late,
         ),
-        Fault(
+        ChannelFault(
             "one bit",
             "The converter is set to a range far too wide: one bit or two are left.",
             "B",
             _one_bit,
         ),
-        Fault("spikes", "Sparks and switched motors nearby give lone spikes.", "N B", _spikes),
-        Fault(
+        ChannelFault(
+            "spikes", "Sparks and switched motors nearby give lone spikes.", "N B", _spikes
+        ),
+        ChannelFault(
             "dead",
             "The cable is cut: there is nothing but the amplifier's noise about zero.",
             "N K",
             _dead,
         ),
-        Fault(
+        ChannelFault(
             "swings",
             "A gauge whose wire is about to break swings over the whole range and saturates.",
             "B H",

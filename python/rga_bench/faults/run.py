@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rga_bench.faults.judge import Outcome, judge
-from rga_bench.faults.trial import Trial
+from rga_bench.faults.judge import FaultOutcome, judge
+from rga_bench.faults.trial import FaultTrial
 from rga_bench.ledger import outcomes_of, versions
 from rga_bench.machine import machine
 
 
 @dataclass(frozen=True)
-class Result:
+class FaultsResult:
     """What was found.
 
     Attributes:
@@ -24,18 +24,18 @@ class Result:
 
     machine: dict[str, Any]
     versions: dict[str, str]
-    outcomes: list[Outcome]
+    outcomes: list[FaultOutcome]
 
 
 def measure(
-    chosen: Sequence[Trial],
+    chosen: Sequence[FaultTrial],
     *,
     folder: Path | None = None,
     workers: int = 1,
     dask: str | None = None,
     minutes: float | None = None,
     progress: Callable[[float], None] = lambda done: None,
-) -> Result:
+) -> FaultsResult:
     """Diagnose every trial once; no outcome depends on the number of workers, but for times.
 
     Args:
@@ -54,11 +54,11 @@ def measure(
     outcomes = outcomes_of(
         judge,
         chosen,
-        Outcome,
+        FaultOutcome,
         folder=folder,
         workers=workers,
         dask=dask,
         going=lambda: until is None or time.monotonic() < until,
         progress=progress,
     )
-    return Result(machine(), versions(), outcomes)
+    return FaultsResult(machine(), versions(), outcomes)

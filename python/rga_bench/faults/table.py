@@ -8,7 +8,7 @@ from rich.console import Group
 from rga_bench.diagnosis.figures import rate
 from rga_bench.faults.comparison import Comparison, comparisons
 from rga_bench.faults.library import FAULTS
-from rga_bench.faults.run import Result
+from rga_bench.faults.run import FaultsResult
 from rga_bench.faults.trial import LEFT_OUT
 from rga_bench.sheet import Sheet
 
@@ -43,7 +43,7 @@ processor, over that of the sound record, in the middle and at worst. Intervals 
 90 %. Records that lose channels without a fault show what the other channels can tell."""
 
 
-def about(result: Result) -> list[str]:
+def about(result: FaultsResult) -> list[str]:
     """How much was measured, and by what."""
     several = comparisons(result.outcomes)
     records = len({one.outcome.base for one in several})
@@ -51,12 +51,12 @@ def about(result: Result) -> list[str]:
     return [f"{len(several)} diagnoses of {records} records", ", ".join(named)]
 
 
-def terminal(result: Result) -> Group:
+def terminal(result: FaultsResult) -> Group:
     """For rich."""
     return Group(*(sheet.terminal() for sheet in _sheets(result)))
 
 
-def markdown(result: Result, command: str) -> str:
+def markdown(result: FaultsResult, command: str) -> str:
     """A page with the tables, what is meant, and every record that was not told right."""
     lines = ["# What broken channels do to a diagnosis", "", f"`{command}`", ""]
     lines += [*(f"- {line}" for line in about(result)), "", NOTES, ""]
@@ -67,7 +67,7 @@ def markdown(result: Result, command: str) -> str:
     return "\n".join(lines)
 
 
-def _sheets(result: Result) -> list[Sheet]:
+def _sheets(result: FaultsResult) -> list[Sheet]:
     several = comparisons(result.outcomes)
     single = [one for one in several if one.outcome.way in WAYS["one channel"]]
 

@@ -15,7 +15,7 @@ QUICK, QUICK_ROWS, ROWS = 18, 100, 200
 
 
 @dataclass(frozen=True)
-class Trial:
+class FaultTrial:
     """A record to be diagnosed.
 
     Attributes:
@@ -41,27 +41,27 @@ class Trial:
         return ", ".join(words)
 
 
-def trials(seed: int, count: int, rows: int, given: Sequence[Base] = ()) -> list[Trial]:
+def trials(seed: int, count: int, rows: int, given: Sequence[Base] = ()) -> list[FaultTrial]:
     """About `count` broken records, each record's sound twin before them.
 
     Records take turns: those of every generator, and the `given` ones. A record is broken in
     every way in turn, then the next. Their number has no common divisor with that of the faults,
     so every fault meets every way, and every beginning of the list is balanced.
     """
-    order: list[Trial] = []
+    order: list[FaultTrial] = []
     begun = set()
     names = list(FAULTS)
     for block in range(-(-count // len(WAYS))):
         base = _base(block, rows, given)
         if base.name not in begun:
             begun.add(base.name)
-            order.append(Trial(base, seed, 0, SOUND))
+            order.append(FaultTrial(base, seed, 0, SOUND))
         first = block * len(WAYS)
         order += [
-            Trial(base, seed, first + k + 1, way, names[(first + k) % len(names)])
+            FaultTrial(base, seed, first + k + 1, way, names[(first + k) % len(names)])
             for k, way in enumerate(WAYS)
         ]
-        order.append(Trial(base, seed, block + 1, LEFT_OUT))
+        order.append(FaultTrial(base, seed, block + 1, LEFT_OUT))
     return order
 
 

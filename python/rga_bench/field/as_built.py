@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from rga_bench.field.solver import Array
-from rga_bench.field.structure import Structure
-from rga_bench.field.world import Gauge, World
+from rga_bench.field.structure import FieldStructure
+from rga_bench.field.world import FieldWorld, Gauge
 
 #: coefficients of variation: of E, of areas (JCSS; 6 % of EN 10210-2 as two of them is 0.03)
 _MODULUS, _AREA = 0.03, 0.035
@@ -38,9 +38,11 @@ _OFF_CENTROID = (0.1, 1.0)
 _PLACED = 0.004
 
 
-def as_built(structure: Structure, rng: np.random.Generator, welded: bool, spread: float) -> World:
+def as_built(
+    structure: FieldStructure, rng: np.random.Generator, welded: bool, spread: float
+) -> FieldWorld:
     """A reality of the structure; ``welded``: no joint is a pin, and gauges stand on faces."""
-    world = World.of(structure)
+    world = FieldWorld.of(structure)
     bars = world.bars
     area = _scatter(structure, rng, spread * _AREA)
     stiff = area * _scatter(structure, rng, spread * _MODULUS)
@@ -80,10 +82,10 @@ def as_built(structure: Structure, rng: np.random.Generator, welded: bool, sprea
     return world
 
 
-def facts(world: World, welded: bool, spread: float) -> dict[str, Any]:
+def facts(world: FieldWorld, welded: bool, spread: float) -> dict[str, Any]:
     """What a truth file says of a reality; ``stiffness``: of every member over the model's [-]."""
     members = world.structure.model["members"]
-    factors = world.bars.ea / World.of(world.structure).bars.ea
+    factors = world.bars.ea / FieldWorld.of(world.structure).bars.ea
     return {
         "stiffness": {name: float(x) for name, x in zip(members, factors, strict=True)},
         "reality": "frame" if welded else "truss",
@@ -93,7 +95,7 @@ def facts(world: World, welded: bool, spread: float) -> dict[str, Any]:
     }
 
 
-def _scatter(structure: Structure, rng: np.random.Generator, sd: float) -> Array:
+def _scatter(structure: FieldStructure, rng: np.random.Generator, sd: float) -> Array:
     """Lognormal factors of the members, alike within rollings, [m]."""
     members = structure.model["members"].values()
     common = rng.uniform(*_COMMON)

@@ -9,13 +9,13 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga_bench.faults.library import FAULTS, Scale
-from rga_bench.field.hidden import KINDS, Setting
-from rga_bench.field.inject import ONSETS, Hidden, hide, readings
+from rga_bench.field.hidden import KINDS, FieldSetting
+from rga_bench.field.inject import ONSETS, FieldEffect, hide, readings
 from rga_bench.field.solver import Array
 from rga_bench.field.stage import PLAIN, Options, Stage, account_of, put_up, tare_rows
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 from rga_bench.field.structures import STRUCTURES
-from rga_bench.field.world import World
+from rga_bench.field.world import FieldWorld
 from rga_bench.synthetic.case import Beyond, Case
 from rga_bench.synthetic.noise import stream
 
@@ -68,11 +68,13 @@ def fits(kind: str, structure: str) -> bool:
     """Whether a structure has what a kind acts on."""
     place = STRUCTURES[structure](np.random.default_rng(0))
     time = np.arange(10.0)
-    setting = Setting(World.of(place), time, np.zeros((10, len(place.model["sensors"]))))
+    setting = FieldSetting(FieldWorld.of(place), time, np.zeros((10, len(place.model["sensors"]))))
     return KINDS[kind].draw(setting, np.random.default_rng(0)) is not None
 
 
-def _case(seed: int, name: str, stage: Stage, hidden: Sequence[Hidden], options: Options) -> Case:
+def _case(
+    seed: int, name: str, stage: Stage, hidden: Sequence[FieldEffect], options: Options
+) -> Case:
     site, record = stage.site, stage.record
     place = stage.world.structure
     clean = readings(stage, hidden)
@@ -127,7 +129,9 @@ def _case(seed: int, name: str, stage: Stage, hidden: Sequence[Hidden], options:
     return Case(place.model, site.time[record] - first, channels, truth, beyond, mapping)
 
 
-def _break(seed: int, place: Structure, shown: Array, hidden: Sequence[Hidden]) -> dict[str, Any]:
+def _break(
+    seed: int, place: FieldStructure, shown: Array, hidden: Sequence[FieldEffect]
+) -> dict[str, Any]:
     """Break a channel [n, c] in place; not one that something is hidden in."""
     rng = stream(seed, "broken")
     sensors = place.model["sensors"]

@@ -8,12 +8,12 @@ import numpy as np
 
 from rga_bench.field.logger import Logger
 from rga_bench.field.solver import Array
-from rga_bench.field.world import Contexts, World, amplitudes, influence, warmth
+from rga_bench.field.world import Contexts, FieldWorld, amplitudes, influence, warmth
 
 _DAY = 86400.0
 
 
-class Site(NamedTuple):
+class FieldSite(NamedTuple):
     """What all realities of a case share: time [n] [s], true contexts, and the logger."""
 
     time: Array
@@ -21,7 +21,7 @@ class Site(NamedTuple):
     logger: Logger
 
 
-def respond(world: World, contexts: Contexts) -> Array:
+def respond(world: FieldWorld, contexts: Contexts) -> Array:
     """Channels [n, c] of the structure alone; strange ones only with some amount."""
     amounts = amplitudes(world, contexts)
     if world.strange is None:
@@ -52,7 +52,7 @@ def respond(world: World, contexts: Contexts) -> Array:
     return channels
 
 
-def observe(world: World, site: Site) -> Array:
+def observe(world: FieldWorld, site: FieldSite) -> Array:
     """Readings [n, c] before noise."""
     kelvin = warmth(world, site.contexts)
     out = site.logger.read(respond(world, site.contexts), kelvin - kelvin.mean())
@@ -82,7 +82,7 @@ def _play(course: Array, width: float) -> Array:
     return out
 
 
-def _jammed(world: World, amounts: Array, dof: int, stuck: Array, size: float) -> Array:
+def _jammed(world: FieldWorld, amounts: Array, dof: int, stuck: Array, size: float) -> Array:
     """A bearing that holds what it is at while it is stuck, [n, c]; ``size`` is its stiffness."""
     free = world.copy()
     free.strange = None
@@ -96,7 +96,7 @@ def _jammed(world: World, amounts: Array, dof: int, stuck: Array, size: float) -
     return out
 
 
-def _swelling(world: World, members: Array) -> Array:
+def _swelling(world: FieldWorld, members: Array) -> Array:
     """Channels [c] where some members would grow as by one kelvin."""
     groups = world.structure.model["effects"]["warmth"]["groups"]
     own = [sum(groups.get(g, 0.0) for g in m["groups"])

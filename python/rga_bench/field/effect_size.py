@@ -14,7 +14,7 @@ import numpy as np
 from rga_bench.field.solver import Array
 
 
-class Account:
+class ReadingCovariance:
     """``variance`` [c]; ``amounts`` [n, p] of the patterns of loads in every row; ``scatter``
     [k, p, c]: what drawn realities answer to a unit of each, less their mean."""
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rga_bench.field.channels import observe
-from rga_bench.field.effect_size import Account
-from rga_bench.field.hidden import KINDS, Setting, Span
+from rga_bench.field.effect_size import ReadingCovariance
+from rga_bench.field.hidden import KINDS, FieldSetting, FieldSpan
 from rga_bench.field.solver import Array
 from rga_bench.field.stage import Options, Stage, tare_rows
 from rga_bench.synthetic.noise import stream
@@ -19,11 +19,11 @@ ONSETS = (0.25, 0.7)
 _PLACES, _HALVINGS = 8, 9
 
 
-class Hidden(NamedTuple):
+class FieldEffect(NamedTuple):
     """An effect in a case; ``onset`` [s], None: always."""
 
     kind: str
-    span: Span
+    span: FieldSpan
     value: float
     onset: float | None
     d_prime: float = 0.0
@@ -48,10 +48,10 @@ def hide(
     seed: int,
     kind: str,
     stage: Stage,
-    account: Account,
+    account: ReadingCovariance,
     options: Options,
     aims: tuple[float, float],
-) -> Hidden:
+) -> FieldEffect:
     """Draw a place that can be seen, then the value whose d' meets a drawn aim."""
     rng = stream(seed, f"hidden {kind}")
     how = KINDS[kind]
@@ -60,16 +60,16 @@ def hide(
     row = stage.record[int(rng.uniform(*ONSETS) * len(stage.record))]
     onset = float(time[row]) if late else None
     aim = float(np.exp(rng.uniform(*np.log(aims))))
-    setting = Setting(stage.world, time, stage.clean)
+    setting = FieldSetting(stage.world, time, stage.clean)
 
-    def size(span: Span, value: float) -> float:
-        one = Hidden(kind, span, value, onset)
+    def size(span: FieldSpan, value: float) -> float:
+        one = FieldEffect(kind, span, value, onset)
         change = readings(stage, [one]) - stage.clean
         if options.tared:
             change = change - change[tare_rows(seed, stage)].mean(axis=0)
         return account.d_prime(change[stage.record])
 
-    best: tuple[float, Span] | None = None
+    best: tuple[float, FieldSpan] | None = None
     for _ in range(_PLACES):
         span = how.draw(setting, rng)
         if span is None:
@@ -82,7 +82,7 @@ def hide(
     assert best is not None
     most, span = best
     if span.mild == span.severe or most <= aim:
-        return Hidden(kind, span, span.severe, onset, most)
+        return FieldEffect(kind, span, span.severe, onset, most)
     below, above = 0.0, 1.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (below + above)
@@ -91,10 +91,10 @@ def hide(
         else:
             above = middle
     value = float(f"{span.at(above):.6g}")
-    return Hidden(kind, span, value, onset, size(span, value))
+    return FieldEffect(kind, span, value, onset, size(span, value))
 
 
-def readings(stage: Stage, hidden: Sequence[Hidden]) -> Array:
+def readings(stage: Stage, hidden: Sequence[FieldEffect]) -> Array:
     """The channels without noise with effects, [n, c]."""
     time = stage.site.time
     begun = np.array([-np.inf if one.onset is None else one.onset for one in hidden])

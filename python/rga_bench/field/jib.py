@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from rga_bench.field.structure import Structure, pushes, tube
+from rga_bench.field.structure import FieldStructure, pushes, tube
 from rga_bench.synthetic.bridges.model_draft import Draft, steel
 
 _BAYS = 6
 _WIDTH, _DEEP = 1.0, 1.1
 
 
-def jib(rng: np.random.Generator) -> Structure:
+def jib(rng: np.random.Generator) -> FieldStructure:
     """The trolley runs along the lower chords; its load is shared by both."""
     bay, height = float(rng.uniform(1.8, 2.4)), float(rng.uniform(8.0, 11.0))
     sections = {
@@ -84,7 +84,7 @@ def jib(rng: np.random.Generator) -> Structure:
             draft.strains(f"P {name} {face}", name, round(strain, 3))
             draft.model["members"][name]["local_y"] = [0.0, 1.0, 0.0]
             draft.model["sensors"][f"P {name} {face}"] |= {"at": 0.5, "z": z}
-    return Structure(
+    return FieldStructure(
         name="jib",
         model=draft.model,
         moods={

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 from rga_bench.synthetic.bridges.model_draft import Draft, steel
 
 _PANELS = 8
 
 
-def k_truss(rng: np.random.Generator) -> Structure:
+def k_truss(rng: np.random.Generator) -> FieldStructure:
     """Webs meet the posts at half of their height; open towards the middle of the span."""
     panel, height = float(rng.uniform(6.0, 8.0)), float(rng.uniform(10.0, 13.0))
     sections = {
@@ -63,7 +63,7 @@ def k_truss(rng: np.random.Generator) -> Structure:
     gauged += ["L1-M2", "U1-M2", "L3-M4", "L5-M4", "U5-M4", "L2-M2", "M6-U6", "L1-U1"]
     for name in gauged:
         draft.strains(f"S {name}", name, round(strain, 3))
-    return Structure(
+    return FieldStructure(
         name="K truss",
         model=draft.model,
         moods={

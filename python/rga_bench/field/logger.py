@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga_bench.field.solver import Array
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 
 #: gauge factor: uniform within [-]; half of what lead wires take away at most [-]
 _GAUGE_FACTOR, _WIRES = 0.01, 0.005
@@ -70,7 +70,7 @@ class Logger:
 
 
 def logger(
-    structure: Structure,
+    structure: FieldStructure,
     rng: np.random.Generator,
     healthy: Array,
     spread: float,

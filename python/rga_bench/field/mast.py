@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from rga_bench.field.structure import Structure, pushes, tube
+from rga_bench.field.structure import FieldStructure, pushes, tube
 from rga_bench.synthetic.bridges.model_draft import Draft, steel
 
 _BAYS = 5
 _CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 
 
-def mast(rng: np.random.Generator) -> Structure:
+def mast(rng: np.random.Generator) -> FieldStructure:
     """Legs run through; faces have one diagonal a bay."""
     guyed = rng.random() < 0.5
     bay = float(rng.uniform(4.0, 6.0))
@@ -68,7 +68,7 @@ def mast(rng: np.random.Generator) -> Structure:
         draft.strains(f"D1{corner}", f"0{corner}-1{(corner + 1) % 4}", round(strain, 3))
         if guyed:
             draft.strains(f"T{corner}", f"guy {corner}", round(strain, 3))
-    return Structure(
+    return FieldStructure(
         name="mast",
         model=draft.model,
         moods={"air": ("air", 1.0), "wind x": ("wind", 0.5), "wind y": ("wind", 0.35)},

@@ -6,13 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from rga_bench.field.structure import Structure, fibre, frame, pushes
+from rga_bench.field.structure import FieldStructure, fibre, frame, pushes
 from rga_bench.synthetic.bridges.model_draft import Draft, steel
 
 _COLUMN, _RAFTER = 3, 4
 
 
-def portal(rng: np.random.Generator) -> Structure:
+def portal(rng: np.random.Generator) -> FieldStructure:
     """Columns fixed in their foundations, rafters rigid at eaves and ridge."""
     span, eaves = float(rng.uniform(18.0, 26.0)), float(rng.uniform(5.5, 8.0))
     rise, bay = 0.12 * span, 6.0
@@ -63,7 +63,7 @@ def portal(rng: np.random.Generator) -> Structure:
     for name, member in (("rafter w", "r1-r2"), ("ridge", "r3-r4"), ("rafter e", "r6-r7")):
         fibre(draft, f"{name} top", member, round(strain, 3), 0.5, 0.16)
         fibre(draft, f"{name} bottom", member, round(strain, 3), 0.5, -0.16)
-    return Structure(
+    return FieldStructure(
         name="portal",
         model=draft.model,
         moods={"air": ("air", 1.0), "snow": ("snow", 0.5), "wind": ("wind", 0.35)},

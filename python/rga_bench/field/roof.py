@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rga_bench.field.structure import Structure, tube
+from rga_bench.field.structure import FieldStructure, tube
 from rga_bench.synthetic.bridges.model_draft import Draft, steel
 
 _CELLS = 4
 
 
-def roof(rng: np.random.Generator) -> Structure:
+def roof(rng: np.random.Generator) -> FieldStructure:
     """Tubes between ball joints, on four corners or on eight columns."""
     side, depth = float(rng.uniform(2.4, 3.2)), float(rng.uniform(1.6, 2.2))
     sections = {"chord": tube(0.1016, 0.005), "web": tube(0.0761, 0.004)}
@@ -59,7 +59,7 @@ def roof(rng: np.random.Generator) -> Structure:
     webs = ("b00-t00", "b30-t40", "b03-t04", "b33-t44", "b11-t11", "b22-t33")
     for name in (*chords, *uppers, *webs):
         draft.strains(f"S {name}", name, round(strain, 3))
-    return Structure(
+    return FieldStructure(
         name="roof",
         model=draft.model,
         moods={"air": ("air", 1.0), "snow": ("snow", 0.8), "drift": ("snow", 0.6)},

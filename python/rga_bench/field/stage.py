@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rga_bench.field.as_built import as_built, facts
-from rga_bench.field.channels import Site, observe, respond
-from rga_bench.field.effect_size import Account
+from rga_bench.field.channels import FieldSite, observe, respond
+from rga_bench.field.effect_size import ReadingCovariance
 from rga_bench.field.logger import logger
 from rga_bench.field.solver import Array
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 from rga_bench.field.weather import courses, measured
-from rga_bench.field.world import Contexts, World, amplitudes, influence
+from rga_bench.field.world import Contexts, FieldWorld, amplitudes, influence
 from rga_bench.synthetic.noise import stream
 
 #: rows after the record, which the diagnosis does not get
@@ -51,15 +51,15 @@ PLAIN = Options()
 class Stage(NamedTuple):
     """All of a case that does not depend on what is hidden; rows are those of an even grid."""
 
-    world: World
-    site: Site
+    world: FieldWorld
+    site: FieldSite
     told: Contexts
     clean: Array
     record: np.ndarray
     facts: dict[str, Any]
 
 
-def put_up(seed: int, place: Structure, welded: bool, rows: int, options: Options) -> Stage:
+def put_up(seed: int, place: FieldStructure, welded: bool, rows: int, options: Options) -> Stage:
     """The stage of a seed; every other context states its noise in the model."""
     rng = stream(seed, "sampling")
     spread = float(np.exp(rng.uniform(*np.log(_SPREADS))))
@@ -81,7 +81,7 @@ def put_up(seed: int, place: Structure, welded: bool, rows: int, options: Option
     world = as_built(place, stream(seed, "as built"), welded, spread)
     healthy = respond(world, contexts)
     errors = logger(place, stream(seed, "logger"), healthy, spread, options.quantised)
-    site = Site(time, contexts, errors)
+    site = FieldSite(time, contexts, errors)
     return Stage(
         world,
         site,
@@ -92,7 +92,7 @@ def put_up(seed: int, place: Structure, welded: bool, rows: int, options: Option
     )
 
 
-def account_of(seed: int, place: Structure, welded: bool, stage: Stage) -> Account:
+def account_of(seed: int, place: FieldStructure, welded: bool, stage: Stage) -> ReadingCovariance:
     """What the scatter of realities of this sort does, and noise, over the rows of the record."""
     rng = stream(seed, "other realities")
     spread, rows = stage.facts["spread"], stage.record
@@ -103,7 +103,7 @@ def account_of(seed: int, place: Structure, welded: bool, stage: Stage) -> Accou
     blur = respond(stage.world, stage.told)[rows] - respond(stage.world, stage.site.contexts)[rows]
     variance = stage.site.logger.long_run + (blur**2).mean(axis=0)
     amounts = amplitudes(stage.world, stage.site.contexts)[rows]
-    return Account(variance, amounts, scatter)
+    return ReadingCovariance(variance, amounts, scatter)
 
 
 def tare_rows(seed: int, stage: Stage) -> np.ndarray:

@@ -12,7 +12,7 @@ Mood = Literal["air", "wind", "snow", "traffic", "trolley", "hoist"]
 
 
 @dataclass(frozen=True)
-class Structure:
+class FieldStructure:
     """A structure as its engineer modelled it.
 
     ``moods``: of every context, how it moves and its size in its unit; ``depths``: of every

@@ -11,9 +11,9 @@ from rga_bench.field.k_truss import k_truss
 from rga_bench.field.mast import mast
 from rga_bench.field.portal import portal
 from rga_bench.field.roof import roof
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 
-STRUCTURES: dict[str, Callable[[np.random.Generator], Structure]] = {
+STRUCTURES: dict[str, Callable[[np.random.Generator], FieldStructure]] = {
     "mast": mast,
     "roof": roof,
     "K truss": k_truss,

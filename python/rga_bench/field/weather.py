@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import norm
 
 from rga_bench.field.solver import Array
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 from rga_bench.field.world import Contexts
 
 _DAY = 86400.0
@@ -23,7 +23,7 @@ _ERRORS = {
 }
 
 
-def courses(structure: Structure, rng: np.random.Generator, time: Array) -> Contexts:
+def courses(structure: FieldStructure, rng: np.random.Generator, time: Array) -> Contexts:
     """True contexts [n] each, within their ranges."""
     days = time / _DAY
     out = {}
@@ -48,7 +48,7 @@ def courses(structure: Structure, rng: np.random.Generator, time: Array) -> Cont
 
 
 def measured(
-    structure: Structure, rng: np.random.Generator, contexts: Contexts, spread: float
+    structure: FieldStructure, rng: np.random.Generator, contexts: Contexts, spread: float
 ) -> tuple[Contexts, dict[str, float]]:
     """Contexts as their sensors give them, and the standard deviation of each sensor's noise."""
     out, noises = {}, {}

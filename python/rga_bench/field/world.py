@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rga_bench.field.solver import DOFS, Array, Bars, Solved, axes_of
-from rga_bench.field.structure import Structure
+from rga_bench.field.structure import FieldStructure
 
 Contexts = dict[str, Array]
 _PER_SI = {"mm": 1e3, "mrad": 1e3, "microstrain": 1e6}
@@ -28,14 +28,14 @@ class Gauge(NamedTuple):
 
 
 @dataclass
-class World:
+class FieldWorld:
     """Reality; effects change copies of it.
 
     ``gradient``: by axis, the parameter's name and value; ``settled`` [m or rad] by degree of
     freedom; ``ops``: what happens to readings; ``strange``: what no vocabulary has, and how much.
     """
 
-    structure: Structure
+    structure: FieldStructure
     xyz: Array
     bars: Bars
     held: set[int]
@@ -48,7 +48,7 @@ class World:
     strange: tuple[str, Any, float] | None = None
 
     @classmethod
-    def of(cls, structure: Structure) -> World:
+    def of(cls, structure: FieldStructure) -> FieldWorld:
         """The structure exactly as its model has it."""
         model = structure.model
         place = {name: k for k, name in enumerate(model["nodes"])}
@@ -92,7 +92,7 @@ class World:
         }
         return cls(structure, xyz, bars, held, gauges)
 
-    def copy(self) -> World:
+    def copy(self) -> FieldWorld:
         """An independent copy; the structure, which nothing changes, is shared."""
         return copy.deepcopy(self, {id(self.structure): self.structure})
 
@@ -106,13 +106,13 @@ class World:
         return self.dof(self.structure.model["supports"][support]["node"], name)
 
 
-def warmth(world: World, contexts: Contexts) -> Array:
+def warmth(world: FieldWorld, contexts: Contexts) -> Array:
     """Kelvin above the temperature of erection, [n]."""
     delta = world.structure.model["effects"]["warmth"]["delta"]
     return contexts[delta["context"]] - float(delta["minus"])
 
 
-def influence(world: World) -> Array:
+def influence(world: FieldWorld) -> Array:
     """Channels [p, c] under a unit of every pattern: warmth, gradients, settlement, loads."""
     model = world.structure.model
     size, many = 6 * len(world.xyz), len(world.bars.ends)
@@ -149,7 +149,7 @@ def influence(world: World) -> Array:
     return np.column_stack([_channel(world, name, solved) for name in model["sensors"]])
 
 
-def _channel(world: World, name: str, solved: Solved) -> Array:
+def _channel(world: FieldWorld, name: str, solved: Solved) -> Array:
     sensor = world.structure.model["sensors"][name]
     scale = _PER_SI[sensor["unit"]]
     if sensor["kind"] == "strain":
@@ -159,7 +159,7 @@ def _channel(world: World, name: str, solved: Solved) -> Array:
     return np.asarray(scale * (np.array(sensor["direction"]) @ solved.u[first : first + 3]))
 
 
-def amplitudes(world: World, contexts: Contexts) -> Array:
+def amplitudes(world: FieldWorld, contexts: Contexts) -> Array:
     """How much of every pattern there is in every row, [n, p]."""
     kelvin = warmth(world, contexts)
     columns = [kelvin]
@@ -179,7 +179,7 @@ def amplitudes(world: World, contexts: Contexts) -> Array:
     return np.column_stack(columns)
 
 
-def _levers(world: World, path: list[str], position: Array) -> list[Array]:
+def _levers(world: FieldWorld, path: list[str], position: Array) -> list[Array]:
     """Share of an axle that each node of its path carries, [n] each."""
     points = np.array([world.structure.model["nodes"][node] for node in path])
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -189,7 +189,7 @@ def _levers(world: World, path: list[str], position: Array) -> list[Array]:
     return [np.where(on, np.interp(position, arc, unit[k]), 0.0) for k in range(len(arc))]
 
 
-def _gradient(world: World, column: int) -> Array:
+def _gradient(world: FieldWorld, column: int) -> Array:
     """Kelvin of every member per kelvin of difference, from its middle, [m]."""
     across = np.array(list(world.structure.model["nodes"].values()))[:, column]
     low, high = across.min(), across.max()

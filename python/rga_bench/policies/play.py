@@ -12,16 +12,16 @@ from rga.records import load_record
 from rga.twin.calibration.expectation import rows_against_expected
 from rga.twin.history import History
 from rga.twin.messages.queries import Q3, Q4
-from rga.twin.repository import Repository, View
+from rga.twin.repository import Repository, RunView
 from rga.twin.restore import history_of, log_of, standing_of
 from rga.twin.runner import taken_up
 from rga.twin.settings import Settings
-from rga_bench.policies.setting import STREAMS, Task
+from rga_bench.policies.setting import STREAMS, PolicyTask
 from rga_bench.synthetic import draw_stream
 
 
 @dataclass(frozen=True)
-class Played:
+class PolicyResult:
     """What became of a twin on a stream; costs are those after the first calibration.
 
     Attributes:
@@ -52,7 +52,7 @@ class Played:
     seconds: float = field(compare=False)
 
 
-def play(task: Task) -> Played:
+def play(task: PolicyTask) -> PolicyResult:
     """Draw the stream, and let the twin live through it up to the closing diagnosis.
 
     Nothing is hidden in the structure: a diagnosis that the twin asks for is counted, not made.
@@ -78,12 +78,12 @@ def play(task: Task) -> Played:
             return _measured(task, view, seconds)
 
 
-def _measured(task: Task, view: View, seconds: float) -> Played:
+def _measured(task: PolicyTask, view: RunView, seconds: float) -> PolicyResult:
     history, log = history_of(view), log_of(view)
     kinds = [event.kind for event in history.events]
     trained = sum(isinstance(one, Q4) for one in log)
     simulated = [one.rows for one in log if isinstance(one, Q3)]
-    return Played(
+    return PolicyResult(
         stream=task.stream,
         seed=task.seed,
         policy=task.policy,

@@ -5,13 +5,13 @@ from pathlib import Path
 
 from matplotlib.figure import Figure as Canvas
 
-from rga_bench.policies.play import Played
+from rga_bench.policies.play import PolicyResult
 from rga_bench.policies.run import means
 
 MARKS = {"event": "o", "time": "s", "hybrid": "D", "adaptive": "^"}
 
 
-def plot(played: Sequence[Played], path: Path) -> None:
+def plot(played: Sequence[PolicyResult], path: Path) -> None:
     """Write a panel for each sort of stream, a mark for each policy, to a PNG file."""
     known = means(played)
     streams = list(dict.fromkeys(stream for stream, _ in known))

@@ -6,16 +6,19 @@ from dataclasses import fields
 import numpy as np
 
 from rga.parallel import finished
-from rga_bench.policies.play import Played, play
-from rga_bench.policies.setting import Setting
+from rga_bench.policies.play import PolicyResult, play
+from rga_bench.policies.setting import PolicySetting
 
 #: of a policy on all streams of a sort: the means of what was measured
 Means = dict[str, float]
 
 
 def compare(
-    setting: Setting, *, workers: int = 1, progress: Callable[[float], None] = lambda done: None
-) -> list[Played]:
+    setting: PolicySetting,
+    *,
+    workers: int = 1,
+    progress: Callable[[float], None] = lambda done: None,
+) -> list[PolicyResult]:
     """Play every stream through a twin of every policy; nothing depends on the workers.
 
     Args:
@@ -27,17 +30,19 @@ def compare(
         In the order of the tasks.
     """
     tasks = setting.tasks()
-    known: dict[tuple[str, int, str], Played] = {}
+    known: dict[tuple[str, int, str], PolicyResult] = {}
     for task, played in finished(play, tasks, workers=workers):
         known[task.stream, task.seed, task.policy] = played.result()
         progress(len(known) / len(tasks))
     return [known[task.stream, task.seed, task.policy] for task in tasks]
 
 
-def means(played: Sequence[Played]) -> dict[tuple[str, str], Means]:
+def means(played: Sequence[PolicyResult]) -> dict[tuple[str, str], Means]:
     """By stream and policy, the mean over the streams drawn of every measure."""
     places = dict.fromkeys((one.stream, one.policy) for one in sorted(played, key=_sort(played)))
-    measures = [one.name for one in fields(Played) if one.name not in ("stream", "seed", "policy")]
+    measures = [
+        one.name for one in fields(PolicyResult) if one.name not in ("stream", "seed", "policy")
+    ]
     return {
         place: {
             name: float(
@@ -49,6 +54,6 @@ def means(played: Sequence[Played]) -> dict[tuple[str, str], Means]:
     }
 
 
-def _sort(played: Sequence[Played]) -> Callable[[Played], int]:
+def _sort(played: Sequence[PolicyResult]) -> Callable[[PolicyResult], int]:
     streams = list(dict.fromkeys(one.stream for one in played))
     return lambda one: streams.index(one.stream)

@@ -15,7 +15,7 @@ STREAMS: dict[str, dict[str, Any]] = {
 
 
 @dataclass(frozen=True)
-class Setting:
+class PolicySetting:
     """How much is played.
 
     Attributes:
@@ -42,11 +42,11 @@ class Setting:
             chosen[f"{policy}, {usual} rows"] = {"policy": policy, "interval": usual}
         return {name: self.settings.model_copy(update=one) for name, one in chosen.items()}
 
-    def tasks(self) -> list["Task"]:
+    def tasks(self) -> list["PolicyTask"]:
         """Every twin of every stream."""
         seeds = range(self.seed * self.streams, (self.seed + 1) * self.streams)
         return [
-            Task(stream, seed, self.rows, policy, settings)
+            PolicyTask(stream, seed, self.rows, policy, settings)
             for seed in seeds
             for stream in STREAMS
             for policy, settings in self.policies().items()
@@ -54,7 +54,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Task:
+class PolicyTask:
     """A stream that a twin is to live through.
 
     Attributes:
@@ -72,8 +72,8 @@ class Task:
     settings: Settings
 
 
-def shorter(seed: int) -> Setting:
+def shorter(seed: int) -> PolicySetting:
     """What takes less than a minute: one stream of each sort, and networks that learn little."""
     training = TrainingSettings(steps=700, reduced_steps=500)
     settings = Settings(design_rows=2048, training=training)
-    return Setting(streams=1, rows=240, seed=seed, clocks=(6,), settings=settings)
+    return PolicySetting(streams=1, rows=240, seed=seed, clocks=(6,), settings=settings)

@@ -7,7 +7,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rga_bench.machine import machine, versions
-from rga_bench.policies.play import Played
+from rga_bench.policies.play import PolicyResult
 from rga_bench.policies.run import Means, means
 
 #: measure and format of each column
@@ -34,7 +34,7 @@ recalibration looked back. A row is out of sync where its gap is beyond what a r
 leave (`recovered`). On the null twin nothing drifts: all that is spent there is waste."""
 
 
-def about(played: Sequence[Played]) -> list[str]:
+def about(played: Sequence[PolicyResult]) -> list[str]:
     """Where it was measured, and how much."""
     place = machine()
     named = [f"{name} {number}" for name, number in versions().items() if number]
@@ -46,7 +46,7 @@ def about(played: Sequence[Played]) -> list[str]:
     ]
 
 
-def terminal(played: Sequence[Played]) -> Table:
+def terminal(played: Sequence[PolicyResult]) -> Table:
     """For rich."""
     table = Table(HEADINGS[0])
     for heading in COLUMNS:
@@ -59,7 +59,7 @@ def terminal(played: Sequence[Played]) -> Table:
     return table
 
 
-def markdown(played: Sequence[Played], command: str) -> str:
+def markdown(played: Sequence[PolicyResult], command: str) -> str:
     """A page with the table and the figure."""
     lines = ["# What each policy of synchronisation costs", "", f"`{command}`", ""]
     lines += [*(f"- {line}" for line in about(played)), ""]
@@ -70,7 +70,7 @@ def markdown(played: Sequence[Played], command: str) -> str:
     return "\n".join([*lines, "", NOTES, "", "![cost against gap](policies.png)", ""])
 
 
-def _by_stream(played: Sequence[Played]) -> list[tuple[str, list[list[str]]]]:
+def _by_stream(played: Sequence[PolicyResult]) -> list[tuple[str, list[list[str]]]]:
     known = means(played)
     return [
         (stream, [[policy, *_cells(known[stream, policy])] for _, policy in places])

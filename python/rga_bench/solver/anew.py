@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from rga import _core
 from rga.model.parameter import FloatArray
-from rga_bench.solver.box_bridge import Bridge
+from rga_bench.solver.box_bridge import BoxBridge
 from rga_bench.solver.space_truss import Arrays, SpaceTruss
 
 
@@ -33,7 +33,7 @@ class Anew:
         return np.asarray(_core.respond(structure, loads, self._truss.outputs)[0])
 
 
-def whole_factors(bridge: Bridge, factors: FloatArray) -> FloatArray:
+def whole_factors(bridge: BoxBridge, factors: FloatArray) -> FloatArray:
     """Factors of all members and springs, float[n, m + s], from those of the few that vary."""
     members = len(bridge.structure["ends"])
     varied: NDArray[np.int64] = np.concatenate([bridge.members, members + bridge.springs])

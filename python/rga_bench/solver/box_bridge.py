@@ -26,7 +26,7 @@ OF_LOADS, OF_FIELDS, OF_MEMBERS, OF_SPRINGS = (0.0, 2.0), (-30.0, 30.0), (0.7, 1
 
 
 @dataclass(frozen=True)
-class Bridge(SpaceTruss):
+class BoxBridge(SpaceTruss):
     """A bridge, and what varies in it.
 
     Attributes:
@@ -37,7 +37,7 @@ class Bridge(SpaceTruss):
     springs: NDArray[np.int64]
 
 
-def box_bridge(seed: int = 0, sensors: int = SENSORS, spans: int = 1) -> Bridge:
+def box_bridge(seed: int = 0, sensors: int = SENSORS, spans: int = 1) -> BoxBridge:
     """Two trusses of 21 panels a span, braced to a box, fixed at one end and on springs elsewhere.
 
     Ten patterns of nodal loads, then two temperature fields: uniform, and from none below to one
@@ -66,7 +66,7 @@ def box_bridge(seed: int = 0, sensors: int = SENSORS, spans: int = 1) -> Bridge:
     fields = np.stack([np.ones(len(ends)), nodes[ends, 2].mean(axis=1) / HEIGHT])
     read = np.sort(draw.choice(free, sensors, replace=False))
     varied = np.sort(draw.choice(len(ends), MEMBERS_VARIED, replace=False))
-    return Bridge(
+    return BoxBridge(
         pinned(nodes, ends, area, STEEL, fixed, springs, np.full(len(springs), BEARING)),
         load_patterns(forces, EXPANSION * fields),
         displacements(read // 3, read % 3),
@@ -75,7 +75,7 @@ def box_bridge(seed: int = 0, sensors: int = SENSORS, spans: int = 1) -> Bridge:
     )
 
 
-def samples(bridge: Bridge, rows: int, seed: int = 0) -> tuple[FloatArray, FloatArray]:
+def samples(bridge: BoxBridge, rows: int, seed: int = 0) -> tuple[FloatArray, FloatArray]:
     """Samples in which everything varies: factors float[rows, m + s], coefficients float[rows, p].
 
     As `_core.Refactored.respond` takes them.

@@ -5,19 +5,19 @@ import numpy as np
 from rga import _core
 from rga.model.parameter import FloatArray
 from rga.simulation.paths.condensation import Condensation
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
 from rga_bench.solver.anew import Anew, whole_factors
 from rga_bench.solver.box_bridge import box_bridge
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
 
 #: rows that suit NumPy's batches of small solves best: temporary arrays stay in the cache
 PART = 4096
 
 
-def loads_vary(setting: Setting, roofs: Roofs) -> list[Figure]:
+def loads_vary(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """C1 beside NumPy's product of matrices, both into memory that is there."""
     bridge, nothing = box_bridge(setting.seed), np.zeros(0, np.int64)
     ours = Condensation(bridge.structure, bridge.loads, bridge.outputs, nothing, nothing)
@@ -32,12 +32,12 @@ def loads_vary(setting: Setting, roofs: Roofs) -> list[Figure]:
     )
     case, share = "C1, loads vary", 8 * sum(matrix.shape) * rows / own / roofs.copied
     return [
-        Figure(case, "samples", rows / own, "/s").beside("NumPy GEMM", rows / peer),
-        Figure(case, "share of the bandwidth of a copy", share),
+        Measurement(case, "samples", rows / own, "/s").beside("NumPy GEMM", rows / peer),
+        Measurement(case, "share of the bandwidth of a copy", share),
     ]
 
 
-def few_stiffnesses_vary(setting: Setting, roofs: Roofs) -> list[Figure]:
+def few_stiffnesses_vary(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """C2 beside Woodbury's identity in NumPy; and one sample alone."""
     bridge = box_bridge(setting.seed)
     ours = Condensation(
@@ -62,8 +62,8 @@ def few_stiffnesses_vary(setting: Setting, roofs: Roofs) -> list[Figure]:
     )
     case = f"C2, {len(ours.stiffness)} stiffnesses vary"
     return [
-        Figure(case, "samples", rows / own, "/s").beside("NumPy Woodbury", part / peer),
-        Figure(case, "one sample from Python, over the time inside", alone - some / 1024, "s"),
+        Measurement(case, "samples", rows / own, "/s").beside("NumPy Woodbury", part / peer),
+        Measurement(case, "one sample from Python, over the time inside", alone - some / 1024, "s"),
     ]
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga import _core
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver.box_bridge import box_bridge, samples
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
 
 #: of the product
@@ -18,7 +18,7 @@ SIZE = 1536
 LEAST = 0.9
 
 
-def two_cores(setting: Setting, roofs: Roofs) -> list[Figure]:
+def two_cores(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """C3 on two cores over one; nothing on a machine that has one."""
     if (os.cpu_count() or 1) < 2:
         return []
@@ -41,5 +41,5 @@ def two_cores(setting: Setting, roofs: Roofs) -> list[Figure]:
         ],
         4 * setting.seconds,
     )
-    figure = Figure("two cores over one", "C3", alone / ours, "times")
+    figure = Measurement("two cores over one", "C3", alone / ours, "times")
     return [figure.beside("NumPy GEMM", product_alone / theirs, LEAST)]

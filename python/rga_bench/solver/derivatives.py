@@ -7,11 +7,11 @@ import numpy as np
 from rga.model.parameter import FloatArray
 from rga.simulation.paths.condensation import Condensation
 from rga.simulation.paths.factorisation import Factorisation
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
 from rga_bench.solver.box_bridge import box_bridge
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
 
 #: sensors and contexts of the Jacobian
@@ -22,7 +22,7 @@ CHECKED = 16
 DIFFERENCED = 1e-7
 
 
-def derivatives(setting: Setting, roofs: Roofs) -> list[Figure]:
+def derivatives(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """84 sensors by 8 contexts: loads in six of them, and ten stiffnesses in two."""
     bridge = box_bridge(setting.seed, sensors=SENSORS)
     arrays = bridge.structure, bridge.loads, bridge.outputs, bridge.members, bridge.springs
@@ -56,7 +56,7 @@ def derivatives(setting: Setting, roofs: Roofs) -> list[Figure]:
             (f"Jacobian of {SENSORS} sensors by {DIRECTIONS} contexts", whole),
             ("gradient by all loads and stiffnesses, the adjoint", back),
         ):
-            figures.append(Figure("derivatives", f"{case}, {name}", taken / sample, "samples"))
+            figures.append(Measurement("derivatives", f"{case}, {name}", taken / sample, "samples"))
     return figures
 
 

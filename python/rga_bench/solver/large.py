@@ -9,14 +9,14 @@ import numpy as np
 from rga import _core
 from rga.model.parameter import FloatArray
 from rga_bench.installed import present
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
 from rga_bench.solver.anew import Anew
 from rga_bench.solver.double_layer_grid import double_layer_grid
 from rga_bench.solver.peers.cholmod import Cholmod
 from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
 
 #: orderings of CHOLMOD that are tried; supernodal is its best mode by far
@@ -31,7 +31,7 @@ WAYS = ("factorisation and solve", "from scratch")
 Solve = Callable[[], FloatArray]
 
 
-def grid(panels: int, setting: Setting, roofs: Roofs) -> list[Figure]:
+def grid(panels: int, setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """All displacements of a grid for one set of stiffnesses, beside CHOLMOD.
 
     CHOLMOD is handed its matrix where it begins from scratch; ours assembles it in its time.
@@ -56,12 +56,12 @@ def grid(panels: int, setting: Setting, roofs: Roofs) -> list[Figure]:
     case = f"double-layer grid, {system.size} DOFs"
     return [
         *(
-            Figure(case, way, own, "s").beside(peer, their, asked)
+            Measurement(case, way, own, "s").beside(peer, their, asked)
             for way, own, peer, their, asked in zip(
                 WAYS, taken[:2], known_as, their_times, (LEAST.get(panels), None), strict=True
             )
         ),
-        Figure(
+        Measurement(
             case,
             "residual of K u = f, relative",
             left[0],
@@ -69,7 +69,7 @@ def grid(panels: int, setting: Setting, roofs: Roofs) -> list[Figure]:
             known_as[0],
             left[2] if theirs else None,
         ),
-        Figure(case, "displacements apart, of the largest", apart),
+        Measurement(case, "displacements apart, of the largest", apart),
     ]
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 from matplotlib.figure import Figure as Canvas
 
 from rga_bench.measurement import digits
-from rga_bench.solver.run import Result
+from rga_bench.solver.run import SolverResult
 
 
-def plot(result: Result, path: Path) -> None:
+def plot(result: SolverResult, path: Path) -> None:
     """Write bars of the ratios, and what is asked of them, to a PNG file."""
     shown = [(one, one.ratio) for one in result.figures if one.ratio is not None]
     cases = list(dict.fromkeys(one.case for one, _ in shown))

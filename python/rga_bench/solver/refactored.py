@@ -5,10 +5,10 @@ from functools import partial
 
 from rga import _core
 from rga_bench.installed import present
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
 from rga_bench.solver.anew import Anew
-from rga_bench.solver.box_bridge import Bridge, box_bridge, samples
+from rga_bench.solver.box_bridge import BoxBridge, box_bridge, samples
 from rga_bench.solver.lanes import Lanes
 from rga_bench.solver.peers import Peer
 from rga_bench.solver.peers.cholmod import Cholmod, fastest_cholmod, least_operations
@@ -16,7 +16,7 @@ from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.peers.pynite import PyNite
 from rga_bench.solver.peers.superlu import SuperLU
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
 
 #: samples that are compared before anything is timed
@@ -26,7 +26,7 @@ LEAST = {"avx512": 17.0, "avx2": 9.0}
 LEAST_TEN_SPANS = 10.0
 
 
-def one_span(setting: Setting, roofs: Roofs) -> list[Figure]:
+def one_span(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """The bridge of 84 nodes, by instruction set; the best beside all peers and the roof."""
     bridge = box_bridge(setting.seed)
     system = LinearSystem(bridge)
@@ -45,12 +45,12 @@ def one_span(setting: Setting, roofs: Roofs) -> list[Figure]:
     )
     case = f"C3, every stiffness varies, {system.size} DOFs"
 
-    def ours(name: str) -> Figure:
-        return Figure(case, name, fast[name], "/s")
+    def ours(name: str) -> Measurement:
+        return Measurement(case, name, fast[name], "/s")
 
     figures = [ours(name).beside(known_as, fast.get(known_as), LEAST.get(name)) for name in lanes]
     figures.append(ours(best).beside("SciPy splu", fast["SciPy splu"]))
-    again = Figure(case, best, slow[best], "/s")
+    again = Measurement(case, best, slow[best], "/s")
     figures += [
         again.beside(peer, slow.get(peer)) for peer in ("PyNite", "rga, the structure anew")
     ]
@@ -61,11 +61,11 @@ def one_span(setting: Setting, roofs: Roofs) -> list[Figure]:
             (factor + solves, "and two triangular solves"),
         ):
             name = f"share of the dgemm roof, {told}: {work / 1e3:.1f} kflop"
-            figures.append(Figure(case, name, fast[best] * work / roofs.arithmetic))
+            figures.append(Measurement(case, name, fast[best] * work / roofs.arithmetic))
     return figures
 
 
-def ten_spans(setting: Setting, roofs: Roofs) -> list[Figure]:
+def ten_spans(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """Ten such spans one behind the other, as a continuous bridge."""
     bridge = box_bridge(setting.seed, spans=10)
     system = LinearSystem(bridge)
@@ -73,14 +73,16 @@ def ten_spans(setting: Setting, roofs: Roofs) -> list[Figure]:
     cholmod, known_as = _cholmod(system, setting)
     solvers = {best: Lanes(bridge, best, 256), known_as: cholmod, "SciPy splu": SuperLU(system)}
     found = rates(bridge, solvers, setting)
-    ours = Figure(f"C3, ten spans, {system.size} DOFs", best, found[best], "/s")
+    ours = Measurement(f"C3, ten spans, {system.size} DOFs", best, found[best], "/s")
     return [
         ours.beside(known_as, found.get(known_as), LEAST_TEN_SPANS),
         ours.beside("SciPy splu", found["SciPy splu"]),
     ]
 
 
-def rates(bridge: Bridge, solvers: Mapping[str, Peer | None], setting: Setting) -> dict[str, float]:
+def rates(
+    bridge: BoxBridge, solvers: Mapping[str, Peer | None], setting: SolverSetting
+) -> dict[str, float]:
     """Samples of each solver [1/s], but of those that are not installed.
 
     Raises:
@@ -97,7 +99,7 @@ def rates(bridge: Bridge, solvers: Mapping[str, Peer | None], setting: Setting) 
     return {name: solver.rows / time for (name, solver), time in taken}
 
 
-def _cholmod(system: LinearSystem, setting: Setting) -> tuple[Cholmod | None, str]:
+def _cholmod(system: LinearSystem, setting: SolverSetting) -> tuple[Cholmod | None, str]:
     """CHOLMOD at its best, with how it was set."""
     found = present(lambda: fastest_cholmod(system, setting.seconds / 8))
     return found, "CHOLMOD" if found is None else f"CHOLMOD ({', '.join(found.settings)})"

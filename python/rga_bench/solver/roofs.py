@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
 
 SIZES = (512, 768, 1024, 1536)
@@ -27,7 +27,7 @@ class Roofs:
     read: float
 
 
-def measure_roofs(setting: Setting) -> Roofs:
+def measure_roofs(setting: SolverSetting) -> Roofs:
     """The best that NumPy reaches."""
     source = np.ones(BYTES // 8)
     target = np.empty_like(source)
@@ -39,7 +39,7 @@ def measure_roofs(setting: Setting) -> Roofs:
     )
 
 
-def product_rate(size: int, setting: Setting) -> float:
+def product_rate(size: int, setting: SolverSetting) -> float:
     """Floating-point operations of a product of square matrices [1/s]."""
     one, other = setting.draw(size, size), setting.draw(size, size)
     result = np.empty_like(one)

@@ -9,16 +9,16 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from rga_bench.machine import machine, versions
-from rga_bench.measurement import Figure
+from rga_bench.measurement import Measurement
 from rga_bench.solver import condensed, cores, derivatives, large, refactored, whole
 from rga_bench.solver.roofs import Roofs, measure_roofs
-from rga_bench.solver.setting import Setting
+from rga_bench.solver.setting import SolverSetting
 
-Part = Callable[[Setting, Roofs], list[Figure]]
+Part = Callable[[SolverSetting, Roofs], list[Measurement]]
 
 
 @dataclass(frozen=True)
-class Result:
+class SolverResult:
     """What was measured, where and when.
 
     Attributes:
@@ -35,10 +35,12 @@ class Result:
     day: str
     seed: int
     roofs: Roofs
-    figures: list[Figure]
+    figures: list[Measurement]
 
 
-def measure(setting: Setting, progress: Callable[[float], None] | None = None) -> Result:
+def measure(
+    setting: SolverSetting, progress: Callable[[float], None] | None = None
+) -> SolverResult:
     """All figures, on one core unless they say otherwise, after all solvers agree.
 
     CHOLMOD keeps to one thread only where OMP_THREAD_LIMIT is 1 before OpenMP is loaded, as the
@@ -63,7 +65,7 @@ def measure(setting: Setting, progress: Callable[[float], None] | None = None) -
         whole.whole_model,
         whole.data_set,
     ]
-    figures: list[Figure] = []
+    figures: list[Measurement] = []
     with threadpool_limits(1):
         roofs = measure_roofs(setting)
         for number, part in enumerate(parts, start=1):
@@ -73,4 +75,4 @@ def measure(setting: Setting, progress: Callable[[float], None] | None = None) -
     if not setting.judged:
         figures = [replace(figure, least=None) for figure in figures]
     day = date.today().isoformat()
-    return Result(machine(), versions(), day, setting.seed, roofs, figures)
+    return SolverResult(machine(), versions(), day, setting.seed, roofs, figures)

@@ -8,7 +8,7 @@ from rga.model.parameter import FloatArray
 
 
 @dataclass(frozen=True)
-class Setting:
+class SolverSetting:
     """How much is measured, and on what.
 
     Attributes:
@@ -32,6 +32,6 @@ class Setting:
         return np.random.default_rng([self.seed, columns]).uniform(-1.0, 1.0, (rows, columns))
 
 
-def shorter(seed: int) -> Setting:
+def shorter(seed: int) -> SolverSetting:
     """What takes less than a minute: too short to judge by."""
-    return Setting(16_384, 1.0 / 16.0, (24,), 100_000, seed, judged=False)
+    return SolverSetting(16_384, 1.0 / 16.0, (24,), 100_000, seed, judged=False)

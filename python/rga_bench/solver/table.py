@@ -6,7 +6,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rga_bench.measurement import HEADINGS
-from rga_bench.solver.run import Result
+from rga_bench.solver.run import SolverResult
 
 NOTES = """\
 Times as good: of rates, ours over theirs; of times, theirs over ours.
@@ -19,7 +19,7 @@ Least factorisation: the squares of the entries in the columns of the factor, su
 of CHOLMOD's that makes the fewest. A kflop is a thousand floating-point operations."""
 
 
-def terminal(result: Result) -> Table:
+def terminal(result: SolverResult) -> Table:
     """For rich."""
     table = Table(*HEADINGS)
     for case, figures in groupby(result.figures, lambda one: one.case):
@@ -30,7 +30,7 @@ def terminal(result: Result) -> Table:
     return table
 
 
-def markdown(result: Result, command: str) -> str:
+def markdown(result: SolverResult, command: str) -> str:
     """A page: where and how it was measured, and the table."""
     lines = ["# What a simulated sample costs", ""]
     lines += [f"`{command}` on {result.day}, on one core"]
@@ -47,7 +47,7 @@ def markdown(result: Result, command: str) -> str:
     return "\n".join([*lines, "", NOTES, "", "![times as good as the peers](solver.png)", ""])
 
 
-def about(result: Result) -> list[str]:
+def about(result: SolverResult) -> list[str]:
     """The machine, its roofs, and what was measured, in lines."""
     machine, roofs = result.machine, result.roofs
     versions = [f"{name} {number or 'not installed'}" for name, number in result.versions.items()]

@@ -17,7 +17,13 @@ from rga_bench.synthetic.bridges.case_study import HEIGHT, PATCH, SIDES, SPAN, W
 from rga_bench.synthetic.bridges.full_case_study import PANELS, WEAKENED, full_case_study
 from rga_bench.synthetic.bridges.model_draft import ModelDict
 from rga_bench.synthetic.noise import autoregressive, stream
-from rga_bench.synthetic.physics.frame import Array, Frame, Spring, Stiffness, deformation_stiffness
+from rga_bench.synthetic.physics.frame import (
+    Array,
+    Frame,
+    FrameSpring,
+    Stiffness,
+    deformation_stiffness,
+)
 from rga_bench.synthetic.physics.world import World
 
 #: in what the physical twin differs from the model
@@ -34,7 +40,7 @@ _BEARING = 1e7  # [N/m] of the bearings in the frame that is condensed
 _MM = 1e3
 
 
-class Difference(NamedTuple):
+class TwinDifference(NamedTuple):
     """How the physical twin differs from the model.
 
     ``joint`` [N m/rad] of all truss members, 0 where they are pinned; ``bearing`` [N/m] upright,
@@ -78,7 +84,7 @@ class PhysicalTwin:
     """
 
     model: ModelDict
-    difference: Difference
+    difference: TwinDifference
     sd: Array
     phi: Array
     _frame: _Condensed
@@ -101,7 +107,7 @@ class PhysicalTwin:
         sunlit, deck = rng.uniform([0.3, 0.05], [0.7, 0.2])
         scatter, gain = rng.uniform([0.02, 0.005], [0.04, 0.015])
         every = gap == "all"
-        difference = Difference(
+        difference = TwinDifference(
             joint=joint if every or gap == "joint rigidity" else 0.0,
             bearing=bearing if every or gap == "flexible bearings" else np.full(4, np.inf),
             torsion=torsion if every or gap == "torsional stiffness" else 1.0,
@@ -173,7 +179,7 @@ class PhysicalTwin:
         return out
 
 
-def _twin(model: ModelDict, difference: Difference, sd: Array, phi: Array) -> PhysicalTwin:
+def _twin(model: ModelDict, difference: TwinDifference, sd: Array, phi: Array) -> PhysicalTwin:
     world = World.of(model)
     if difference.joint:
         pinned = ["bottom chord", "top chord", "end posts", "diagonals"]
@@ -187,7 +193,7 @@ def _twin(model: ModelDict, difference: Difference, sd: Array, phi: Array) -> Ph
         if np.isfinite(stiffness):
             dof = world.support_dof(corner, "uz")
             world.held.discard(dof)
-            world.springs.append(Spring(dof, None, stiffness))
+            world.springs.append(FrameSpring(dof, None, stiffness))
     worn = np.flatnonzero(world.members_of(group=WEAKENED))
     with threadpool_limits(1):
         frame = _condense(world, worn, difference.settlement)
@@ -196,7 +202,7 @@ def _twin(model: ModelDict, difference: Difference, sd: Array, phi: Array) -> Ph
 
 def _condense(world: World, worn: NDArray[np.int64], settlement: float) -> _Condensed:
     sliding = [world.support_dof(f"east {side}", "ux") for side in SIDES]
-    springs = [*world.springs, *(Spring(dof, None, _BEARING) for dof in sliding)]
+    springs = [*world.springs, *(FrameSpring(dof, None, _BEARING) for dof in sliding)]
     frame = Frame.build(world.geometry, world.section, world.held, springs)
     geometry, many = world.geometry, 6 * len(worn)
     varied = np.zeros((world.size, many + 2))

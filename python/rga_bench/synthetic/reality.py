@@ -12,7 +12,7 @@ from rga_bench.synthetic.bridges.model_draft import Bridge
 from rga_bench.synthetic.conditions import Conditions, heavier
 from rga_bench.synthetic.contexts import courses, errors
 from rga_bench.synthetic.gauges import observe, slopes
-from rga_bench.synthetic.hidden.effect import Setting
+from rga_bench.synthetic.hidden.effect import EffectSetting
 from rga_bench.synthetic.hidden.observability import Sight
 from rga_bench.synthetic.hidden.score import d_prime
 from rga_bench.synthetic.noise import long_run_variance, stream
@@ -43,12 +43,12 @@ class Reality(NamedTuple):
     size: Callable[[Array], float]
     facts: dict[str, Any]
 
-    def setting(self) -> Setting:
+    def setting(self) -> EffectSetting:
         """What an effect is drawn for."""
         sensors = zip(self.bridge.model["sensors"].items(), self.given, strict=True)
         noise = {name: float(sensor["noise"]) for (name, sensor), given in sensors if given}
         within = self.time[: self.rows]
-        return Setting(self.bridge, float(within[-1] - within[0]), noise, self.latent)
+        return EffectSetting(self.bridge, float(within[-1] - within[0]), noise, self.latent)
 
 
 def realise(seed: int, bridge: Bridge, stiff: bool, rows: int, conditions: Conditions) -> Reality:

@@ -14,7 +14,7 @@ from rga_bench.synthetic.bridges.model_draft import Bridge
 from rga_bench.synthetic.case import Case
 from rga_bench.synthetic.gauges import observe, slopes
 from rga_bench.synthetic.hidden.catalogue import HIDDEN, sized
-from rga_bench.synthetic.hidden.effect import Setting, Span
+from rga_bench.synthetic.hidden.effect import EffectSetting, Span
 from rga_bench.synthetic.hidden.observability import Sight
 from rga_bench.synthetic.noise import autoregressive, long_run_variance, missing, stream
 from rga_bench.synthetic.operation import event, ordinary
@@ -161,7 +161,7 @@ def _hide(kind: str, reality: _Reality, rng: np.random.Generator, truth: dict[st
         return sight.d_prime(made(span, value) - clean)
 
     noise = {name: float(sensor["noise"]) for name, sensor in bridge.model["sensors"].items()}
-    setting = Setting(bridge, float(time[-1]), noise)
+    setting = EffectSetting(bridge, float(time[-1]), noise)
     hidden = sized(kind, setting, rng, onset, aim, size, visible=aim)
     truth.update(
         place=hidden.span.place,

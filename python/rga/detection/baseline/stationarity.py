@@ -7,14 +7,14 @@ from scipy.stats import kstwobign, norm
 
 from rga.detection.baseline.baseline_model import Reference
 from rga.detection.statistic import STATISTICS
-from rga.detection.thresholds import Calibration
+from rga.detection.thresholds import TailModel
 from rga.model.parameter import FloatArray
 
 #: equal parts of a baseline that are held against each other
 PARTS = 16
 
 
-def changed(reference: Reference, baseline: FloatArray, simulated: Calibration) -> float:
+def changed(reference: Reference, baseline: FloatArray, simulated: TailModel) -> float:
     """Probability that chance makes a baseline as changeable as this one.
 
     It is looked at by the statistics, which find what comes suddenly; by how far sums of scores,

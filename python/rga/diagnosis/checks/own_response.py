@@ -10,7 +10,7 @@ from math import ceil
 
 import numpy as np
 
-from rga.diagnosis.preparation.single_channel import Fault
+from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.laplace import fit
 from rga.diagnosis.search.stepwise import NAMED, Found
 from rga.model.parameter import FloatArray
@@ -22,7 +22,7 @@ FREE = 0.3
 FEWEST = 4
 
 
-def own_response(found: Found) -> Fault | None:
+def own_response(found: Found) -> BrokenChannel | None:
     """A channel that is likelier to have a response of its own than causes are to act.
 
     Args:
@@ -51,7 +51,7 @@ def own_response(found: Found) -> Fault | None:
         "it answers the loads in a way of its own, which is likelier than causes that would move "
         "other channels too"
     )
-    return Fault(names[best], "erratic", why, ceil(odds / NAMED))
+    return BrokenChannel(names[best], "erratic", why, ceil(odds / NAMED))
 
 
 def _gained(

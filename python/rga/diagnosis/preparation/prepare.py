@@ -10,7 +10,7 @@ from rga.diagnosis.data.tare import Tare
 from rga.diagnosis.noise.row_covariance import BoolArray
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
 from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
-from rga.diagnosis.preparation.single_channel import Fault, lost_zeros, stuck_channels
+from rga.diagnosis.preparation.single_channel import BrokenChannel, lost_zeros, stuck_channels
 from rga.diagnosis.preparation.undeclared_zeros import with_own_zeros
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.linearised import load_basis
@@ -40,7 +40,7 @@ LINEAR = 4
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedRecord:
     """A record made ready.
 
     Attributes:
@@ -54,16 +54,16 @@ class Prepared:
     data: Data
     record: Record
     chosen: BoolArray
-    faults: list[Fault]
+    faults: list[BrokenChannel]
     warnings: list[str]
 
-    def leaving_out(self, fault: Fault, simulator: Simulator) -> "Prepared":
+    def leaving_out(self, fault: BrokenChannel, simulator: Simulator) -> "PreparedRecord":
         """The same without a further channel that does not work."""
         data = _without_faults(simulator, self.data, [fault])
         return replace(self, data=data, faults=[*self.faults, fault])
 
 
-def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> Prepared:
+def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> PreparedRecord:
     """Choose rows, reject channels that do not work, and guess the latent contexts.
 
     Raises:
@@ -114,10 +114,10 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
         of = ", ".join(np.array(data.sensors)[spikes.any(0)])
         warnings.append(f"{int(spikes.sum())} lone spikes of {of} were taken as missing readings")
         data = replace(data, observed=data.observed & ~spikes)
-    return Prepared(data, record.rows(chosen), chosen, list(found.values()), warnings)
+    return PreparedRecord(data, record.rows(chosen), chosen, list(found.values()), warnings)
 
 
-def _broken(simulator: Simulator, data: Data, record: Record) -> list[Fault]:
+def _broken(simulator: Simulator, data: Data, record: Record) -> list[BrokenChannel]:
     """Channels that do not work, of those that are left."""
     if not data.sensors:
         return []
@@ -237,7 +237,7 @@ def _data(model: Model, record: Record) -> Data:
     )
 
 
-def _without_faults(simulator: Simulator, data: Data, faults: list[Fault]) -> Data:
+def _without_faults(simulator: Simulator, data: Data, faults: list[BrokenChannel]) -> Data:
     """The data without faults, and their latent contexts without them."""
     data = _without(data, faults)
     if data.belief.latent and data.sensors:
@@ -246,7 +246,7 @@ def _without_faults(simulator: Simulator, data: Data, faults: list[Fault]) -> Da
     return data
 
 
-def _without(data: Data, faults: list[Fault]) -> Data:
+def _without(data: Data, faults: list[BrokenChannel]) -> Data:
     """The data without channels that never work, and without the readings behind their fault."""
     begun = {fault.sensor: fault.row for fault in faults}
     observed = data.observed.copy()

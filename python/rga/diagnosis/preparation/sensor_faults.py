@@ -22,7 +22,7 @@ from rga.diagnosis.preparation.channel_prediction import (
     robust_fit,
     root_mean_square,
 )
-from rga.diagnosis.preparation.single_channel import Fault, copied, dead, scaled, silent
+from rga.diagnosis.preparation.single_channel import BrokenChannel, copied, dead, scaled, silent
 from rga.model.effects.sensors import offset_scale
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
@@ -64,7 +64,7 @@ def broken_channels(
     basis: FloatArray,
     effects: Callable[[], Sequence[FloatArray]],
     onsets: bool,
-) -> list[Fault]:
+) -> list[BrokenChannel]:
     """Channels that do not work, by the simulation and by what the others predict of them.
 
     Args:
@@ -114,7 +114,7 @@ def broken_channels(
     return faults
 
 
-def _begun(fault: Fault, row: int) -> Fault:
+def _begun(fault: BrokenChannel, row: int) -> BrokenChannel:
     """A fault from the row on up to which its channel works."""
     if fault.mode not in PARTIAL or fault.row is not None or row == 0:
         return fault
@@ -169,13 +169,13 @@ def _erratic(
     simulated: FloatArray,
     number: int,
     onsets: bool,
-) -> Fault | None:
+) -> BrokenChannel | None:
     """A channel of its own ways over the record."""
     seen = observed[:, number]
     count = int(seen.sum())
     if not np.isfinite(parts.usual[number]):
         why = "neither the loads nor other channels explain how it varies"
-        return Fault(sensor, "erratic", why, count)
+        return BrokenChannel(sensor, "erratic", why, count)
     change = _changed(parts.left[seen, number], basis[seen], simulated[seen, number], onsets)
     left = parts.left.copy()
     left[seen, number] = change.rest
@@ -189,13 +189,13 @@ def _erratic(
         why = f"it jumps by {change.jump:.3g} {unit} in row {change.row + 1}"
         begun = change.row >= PARTS[0] * count
         row = int(np.flatnonzero(seen)[change.row]) if begun else None
-        return Fault(sensor, "erratic", why, count - change.row, row)
+        return BrokenChannel(sensor, "erratic", why, count - change.row, row)
     far = np.abs(rest) > 2 * BROKEN * usual
     if far.mean() < FEW and robust_deviation(rest[~far]) < BROKEN * usual:
         why = f"{far.mean():.1%} of its readings jump away from what loads and channels predict"
-        return Fault(sensor, "spiking", why, max(int(far.sum()), 1))
+        return BrokenChannel(sensor, "spiking", why, max(int(far.sum()), 1))
     why = f"it leaves what loads and other channels predict by {size:.1f} times its usual noise"
-    return Fault(sensor, "erratic", why, count)
+    return BrokenChannel(sensor, "erratic", why, count)
 
 
 def _working_until(

@@ -32,7 +32,7 @@ Mode = Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
 
 
 @dataclass(frozen=True)
-class Fault:
+class BrokenChannel:
     """A channel that does not work.
 
     Attributes:
@@ -52,7 +52,7 @@ class Fault:
 
 def stuck_channels(
     sensors: tuple[str, ...], readings: FloatArray, observed: BoolArray
-) -> list[Fault]:
+) -> list[BrokenChannel]:
     """Channels that stand still over most of the record, whatever the loads are.
 
     Args:
@@ -66,13 +66,13 @@ def stuck_channels(
         repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
         if repeats > REPEATS:
             why = f"{repeats:.0%} of its readings repeat the one before exactly"
-            faults.append(Fault(sensor, "stuck", why, int(repeats * len(column))))
+            faults.append(BrokenChannel(sensor, "stuck", why, int(repeats * len(column))))
     return faults
 
 
 def lost_zeros(
     sensors: tuple[str, ...], readings: FloatArray, observed: BoolArray, loaded: BoolArray
-) -> list[Fault]:
+) -> list[BrokenChannel]:
     """Channels that do not read the same behind a crossing as before it.
 
     Args:
@@ -100,11 +100,13 @@ def lost_zeros(
             why = (
                 f"behind the crossing it stays off by {off:.3g}, {abs(off) / peak:.0%} of its peak"
             )
-            faults.append(Fault(sensor, "erratic", why, int(behind.sum())))
+            faults.append(BrokenChannel(sensor, "erratic", why, int(behind.sum())))
     return faults
 
 
-def silent(sensor: str, column: FloatArray, seen: BoolArray, simulated: FloatArray) -> Fault | None:
+def silent(
+    sensor: str, column: FloatArray, seen: BoolArray, simulated: FloatArray
+) -> BrokenChannel | None:
     """A channel that repeats itself to the last reading, where it should move."""
     told, expected = column[seen], simulated[seen]
     changes = np.flatnonzero(np.diff(told) != 0)
@@ -119,7 +121,7 @@ def silent(sensor: str, column: FloatArray, seen: BoolArray, simulated: FloatArr
         return None
     row, value = int(np.flatnonzero(seen)[first]), told[first]
     why = f"it reads {value:.6g} exactly from row {row + 1} to the last"
-    return Fault(sensor, "dead" if value == 0 else "stuck", why, silent, row)
+    return BrokenChannel(sensor, "dead" if value == 0 else "stuck", why, silent, row)
 
 
 def copied(
@@ -128,7 +130,7 @@ def copied(
     observed: BoolArray,
     simulated: FloatArray,
     number: int,
-) -> Fault | None:
+) -> BrokenChannel | None:
     """A channel that holds the readings of another, and not its own."""
     for other in range(len(sensors)):
         both = observed[:, number] & observed[:, other]
@@ -143,7 +145,7 @@ def copied(
         if own > theirs:
             row = first if end == len(same) and first > 0 else None
             why = f"{end - first} readings in a row are exactly those of {sensors[other]}"
-            return Fault(sensors[number], "copy", why, end - first, row)
+            return BrokenChannel(sensors[number], "copy", why, end - first, row)
     return None
 
 
@@ -170,7 +172,7 @@ def scaled(
     observed: BoolArray,
     simulated: FloatArray,
     number: int,
-) -> Fault | None:
+) -> BrokenChannel | None:
     """A channel that answers as it should, many times too much or too little."""
     kind = model.sensors[sensors[number]].kind
     like = [k for k, name in enumerate(sensors) if model.sensors[name].kind == kind]
@@ -193,13 +195,13 @@ def scaled(
     beyond = abs(slopes[number]) * sizes[number] > SCALE * largest
     if (abs(factor) > SCALE and beyond) or abs(factor) < 1 / SCALE**2:
         why = f"it answers {factor:.3g} times as much as its like: check its unit and its range"
-        return Fault(sensors[number], "scale", why, int(observed[:, number].sum()))
+        return BrokenChannel(sensors[number], "scale", why, int(observed[:, number].sum()))
     return None
 
 
-def dead(sensor: str, column: FloatArray, simulated: FloatArray) -> Fault | None:
+def dead(sensor: str, column: FloatArray, simulated: FloatArray) -> BrokenChannel | None:
     spread, expected = float(column.std()), float(simulated.std())
     if spread >= DEAD * expected:
         return None
     why = f"it varies by {spread:.3g} where {expected:.3g} is expected"
-    return Fault(sensor, "dead", why, len(column))
+    return BrokenChannel(sensor, "dead", why, len(column))

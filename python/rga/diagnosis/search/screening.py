@@ -48,7 +48,7 @@ class Prospect:
 
 
 @dataclass(frozen=True)
-class Judged:
+class RankedSignatures:
     """Signatures with their sizes under the covariance of the first screening.
 
     The logger's zero takes a constant off each of them. One that begins after the zero keeps it:
@@ -75,7 +75,7 @@ class Judged:
     open_share: FloatArray
 
     @classmethod
-    def of(cls, block: Block, covariance: Covariance) -> "Judged":
+    def of(cls, block: Block, covariance: Covariance) -> "RankedSignatures":
         """Signatures, judged by a covariance."""
         reduced = whole = covariance.reduce(block.values, block.channels)
         size = whole_size = np.maximum(covariance.squares(reduced), 0.0)
@@ -124,10 +124,10 @@ class Judged:
         shares = self.open_share[:, None] - np.minimum(sizes / total, 1.0) * taken
         return sums, sizes * np.maximum(shares, 0.0)
 
-    def of_numbers(self, numbers: Collection[int]) -> "Judged":
+    def of_numbers(self, numbers: Collection[int]) -> "RankedSignatures":
         """The signatures of some of the candidates."""
         which = np.array([number in numbers for number, _, _ in self.block.members], dtype=bool)
-        return Judged(
+        return RankedSignatures(
             self.block.kept(which),
             self.size[which],
             self.whole_size[which],
@@ -165,10 +165,10 @@ class Screening:
         progress: Callable[[float], None] = lambda done: None,
     ) -> None:
         data, covariance = problem.data, problem.covariance
-        self._judged: list[Judged] = []
+        self._judged: list[RankedSignatures] = []
         done = 0
         for block in chunks(signatures(data, data.about(simulator), candidates)):
-            self._judged.append(Judged.of(block, covariance))
+            self._judged.append(RankedSignatures.of(block, covariance))
             done = max(done, *(number + 1 for number, _, _ in block.members))
             progress(done / len(candidates))
         self.first = self.again(problem, simulator, ())
@@ -254,7 +254,7 @@ def judged_anew(
 
 
 def _promises(
-    judged: Judged, weighted: FloatArray, data: Data, beginning: Hypothesis | None
+    judged: RankedSignatures, weighted: FloatArray, data: Data, beginning: Hypothesis | None
 ) -> list[Prospect]:
     """The prospects of every signature: from the start, and from its likeliest moment on."""
     block, time, tare = judged.block, data.time, data.tare

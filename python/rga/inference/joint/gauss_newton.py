@@ -59,7 +59,7 @@ class Beforehand(NamedTuple):
         return cls(mean, covariance, np.full(len(mean), CHANGE), first)
 
 
-class Linear(NamedTuple):
+class LinearisedRows(NamedTuple):
     """Rows as straight in contexts and parameters, each reading in units of its deviation.
 
     Attributes:
@@ -229,7 +229,7 @@ class Search:
         self.pull = pulls.T @ pulls
         return change, alone - (through @ change)
 
-    def _linear(self) -> Linear:
+    def _linear(self) -> LinearisedRows:
         unknowns, gains, offsets = self.split(self.value)
         plain, by_contexts, by_unknowns = self.unknowns.linearise(self.contexts, unknowns)
         weight = np.where(self.seen, 1.0 / np.sqrt(self.variance), 0.0)
@@ -239,7 +239,7 @@ class Search:
         slopes = np.concatenate([by_unknowns * gains[:, None], by_gains, by_offsets], axis=2)
         near = np.where(self.free[:, :, None], by_contexts * gains[:, None], 0.0)
         heavy = weight[:, :, None]
-        return Linear(off * weight, slopes * self.unit * heavy, near * self.scale * heavy)
+        return LinearisedRows(off * weight, slopes * self.unit * heavy, near * self.scale * heavy)
 
     def _see_population(self, inside: FloatArray, through: FloatArray, z: FloatArray) -> None:
         """Where contexts of measured rows lie, and of how many readings they take the freedom.

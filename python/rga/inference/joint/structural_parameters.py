@@ -33,7 +33,7 @@ SIDEWAYS = 0.5
 
 
 @dataclass(frozen=True)
-class Unknown:
+class StructuralParameter:
     """A parameter that the model does not have.
 
     Attributes:
@@ -211,7 +211,7 @@ class Unknowns:
     def _of_driven(self) -> Simulator:
         return self._driven([part for part in self.parts if not part.straight])
 
-    def _driven(self, parts: Sequence[Unknown]) -> Simulator:
+    def _driven(self, parts: Sequence[StructuralParameter]) -> Simulator:
         """The simulator in which each of some unknowns is a context of its own."""
         content = model_content(self._bending)
         for part in parts:
@@ -221,7 +221,7 @@ class Unknowns:
         return Simulator(read_model(content, "the model with its unknowns"))
 
 
-def _stretches(model: Model) -> Iterator[Unknown]:
+def _stretches(model: Model) -> Iterator[StructuralParameter]:
     """Stiffness of the members of each group, side by side and stretch by stretch."""
     points = np.array(list(model.nodes.values()))
     along = int(np.argmax(np.ptp(points[:, :2], axis=0)))
@@ -249,34 +249,34 @@ def _stretches(model: Model) -> Iterator[Unknown]:
                 yield _stiffness(f"stiffness of {group}{words}", {"member": names}, STRETCH)
 
 
-def _stiffness(name: str, place: dict[str, Any], spread: float) -> Unknown:
+def _stiffness(name: str, place: dict[str, Any], spread: float) -> StructuralParameter:
     effect = {"kind": "member_stiffness", **place}
-    return Unknown(name, effect, "factor", {"minus": -1.0}, 0.0, spread, (-0.6, 1.5))
+    return StructuralParameter(name, effect, "factor", {"minus": -1.0}, 0.0, spread, (-0.6, 1.5))
 
 
-def _joints(model: Model) -> Iterator[Unknown]:
+def _joints(model: Model) -> Iterator[StructuralParameter]:
     """Share of the bending of rigid joints that the joints of a group leave to its members."""
     for group in model.groups:
         if group.startswith("bending of "):
             effect = {"kind": "member_stiffness", "group": group}
-            yield Unknown(
+            yield StructuralParameter(
                 group, effect, "factor", {"log10": True}, FIXITY, FIXITY_SPREAD, (-2.0, 1.0)
             )
 
 
-def _bearings(model: Model) -> Iterator[Unknown]:
+def _bearings(model: Model) -> Iterator[StructuralParameter]:
     """Upright stiffness of supports that the model takes as rigid."""
     for name, place in _upright(model, "support_flexibility"):
         bounds = (BEARING - 3.0, BEARING + 3.0)
-        yield Unknown(
+        yield StructuralParameter(
             f"bearing {name}", place, "stiffness", {"log10": True}, BEARING, BEARING_SPREAD, bounds
         )
 
 
-def _settlements(model: Model) -> Iterator[Unknown]:
+def _settlements(model: Model) -> Iterator[StructuralParameter]:
     """Upright settlement of supports."""
     for name, place in _upright(model, "support_settlement"):
-        yield Unknown(
+        yield StructuralParameter(
             f"settlement of {name}", place, "displacement", {}, 0.0, SETTLEMENT, (-SUNK, SUNK),
             straight=True,
         )  # fmt: skip
@@ -295,7 +295,7 @@ def _upright(model: Model, kind: str) -> Iterator[tuple[str, dict[str, Any]]]:
             yield name, {"kind": kind, "support": name, "dof": "uz"}
 
 
-def _sides(model: Model) -> Iterator[Unknown]:
+def _sides(model: Model) -> Iterator[StructuralParameter]:
     """Warmth of one side beyond the other, in proportion to what warms."""
     points = np.array(list(model.nodes.values()))
     if np.ptp(points[:, 1]) == 0:
@@ -307,7 +307,7 @@ def _sides(model: Model) -> Iterator[Unknown]:
         for context in sorted(effect.drivers())
     }
     for context in warming:
-        yield Unknown(
+        yield StructuralParameter(
             f"warmth of one side with {context}",
             {"kind": "thermal_gradient", "axis": "lateral"},
             "difference",

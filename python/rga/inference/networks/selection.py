@@ -49,7 +49,7 @@ def unlabelled_gap(
 
 
 @dataclass(frozen=True)
-class Trial:
+class SelectionTrial:
     """What became of one candidate.
 
     Attributes:
@@ -72,7 +72,7 @@ def choose(
     simulator: Simulator,
     noise: FloatArray,
     seed: int,
-) -> list[Trial]:
+) -> list[SelectionTrial]:
     """Train with every candidate on four fifths of the rows, and judge on the rest.
 
     A candidate is allowed if its error on held-out simulated rows is at most `WORSE` times that of
@@ -106,14 +106,14 @@ def choose(
     noisy = unseen.readings + noise * wander
     judge = partial(unlabelled_gap, simulator=simulator, readings=held_out.readings, noise=noise)
 
-    def attempt(settings: TrainingSettings) -> Trial:
+    def attempt(settings: TrainingSettings) -> SelectionTrial:
         network = train(
             source, target, settings, variables=variables, noise=noise, seed=seed,
             physics=simulator if settings.physics == "exact" else None, held_out=judge,
         )  # fmt: skip
         found, _ = network.candidates(noisy, unseen.measured).mean()
         error = float(np.mean(12.0 * ((found - known) / variables.width) ** 2))
-        return Trial(settings, error, judge(network))
+        return SelectionTrial(settings, error, judge(network))
 
     alone = attempt(
         candidates[0].model_copy(update={"alpha": 0.0, "gamma": 0.0, "source_gamma": 0.0})

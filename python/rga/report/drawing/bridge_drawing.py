@@ -10,12 +10,12 @@ from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.report.drawing.labels import Label, marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Named, Spot, spots
-from rga.report.drawing.projection import View, views
+from rga.report.drawing.projection import Projection, views
 from rga.report.figures.figure_style import INK, MARKED, STEEL, inline, label, style
 
 WIDTH = 10.0  # inches; the page shows it about as wide as its text
@@ -54,7 +54,7 @@ class Layout:
         box: left, bottom, right, top of the drawing with its labels [inch].
     """
 
-    view: View
+    view: Projection
     here: list[Spot]
     labels: list[Label | None]
     unit: float
@@ -62,7 +62,7 @@ class Layout:
 
 
 def draw_at_sensors(
-    account: Account,
+    account: DiagnosisArrays,
     marked: Named,
     panels: Sequence[tuple[str, FloatArray]],
     shades: Shades,
@@ -114,7 +114,9 @@ def draw_at_sensors(
         return inline(figure, name, words)
 
 
-def _layouts(account: Account, drawn: list[View], room: float, longest: str) -> list[Layout]:
+def _layouts(
+    account: DiagnosisArrays, drawn: list[Projection], room: float, longest: str
+) -> list[Layout]:
     model, record = account.model, account.record
     taken: set[int] = set()
     found = []
@@ -153,18 +155,23 @@ def _layouts(account: Account, drawn: list[View], room: float, longest: str) -> 
     return found
 
 
-def _points(model: Model, view: View) -> FloatArray:
+def _points(model: Model, view: Projection) -> FloatArray:
     return np.array([model.nodes[node] for node in sorted(view.nodes)])[:, list(view.axes)]
 
 
-def height_over_width(model: Model, view: View) -> float:
+def height_over_width(model: Model, view: Projection) -> float:
     """Of what a view shows."""
     width, height = np.ptp(_points(model, view), axis=0)
     return float(height / width) if width > 0 else 1.2
 
 
 def _view(
-    axes: Axes, one: Layout, account: Account, marked: Named, shown: FloatArray, shades: Shades
+    axes: Axes,
+    one: Layout,
+    account: DiagnosisArrays,
+    marked: Named,
+    shown: FloatArray,
+    shades: Shades,
 ) -> None:
     model, view, unit = account.model, one.view, one.unit
     axes.set_axis_off()
@@ -192,7 +199,7 @@ def _mean(values: FloatArray) -> float:
     return float(values.mean()) if len(values) else float("nan")
 
 
-def draw_supports(axes: Axes, view: View, model: Model, marked: Named, unit: float) -> None:
+def draw_supports(axes: Axes, view: Projection, model: Model, marked: Named, unit: float) -> None:
     """Supports of a view drawn at so many metres an inch, those marked on a patch of colour."""
     for support in model.supports.values():
         if support.node not in view.nodes:
@@ -207,7 +214,7 @@ def draw_supports(axes: Axes, view: View, model: Model, marked: Named, unit: flo
         axes.plot(x, y - 0.075 * unit, shape, markersize=7, mfc="white", mec=INK, mew=0.9, zorder=4)
 
 
-def _lines(spot: Spot, account: Account, texts: Sequence[str], names: bool) -> list[str]:
+def _lines(spot: Spot, account: DiagnosisArrays, texts: Sequence[str], names: bool) -> list[str]:
     """Text of a label, from the texts of all sensors."""
     lines = []
     for column in spot.sensors:
@@ -219,8 +226,8 @@ def _lines(spot: Spot, account: Account, texts: Sequence[str], names: bool) -> l
 
 
 def _spot(
-    axes: Axes, one: Layout, spot: Spot, place: Label | None, account: Account, shown: FloatArray,
-    shades: Shades,
+    axes: Axes, one: Layout, spot: Spot, place: Label | None, account: DiagnosisArrays,
+    shown: FloatArray, shades: Shades,
 ) -> None:  # fmt: skip
     unit = one.unit
     y = spot.y + marker_offset(spot) * unit

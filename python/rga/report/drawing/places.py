@@ -8,7 +8,7 @@ import numpy as np
 
 from rga.model.effect import Effect
 from rga.model.schema import Model
-from rga.report.drawing.projection import View
+from rga.report.drawing.projection import Projection
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Spot:
     sensors: list[int]
 
 
-def spots(model: Model, view: View, sensors: dict[int, str]) -> list[Spot]:
+def spots(model: Model, view: Projection, sensors: dict[int, str]) -> list[Spot]:
     """Sensors of a view by place; sensors that share a place share a spot."""
     right, up = view.axes
     heights = [model.nodes[node][up] for node in view.nodes]

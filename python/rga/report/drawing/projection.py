@@ -12,7 +12,7 @@ MOST_VIEWS = 4
 
 
 @dataclass(frozen=True)
-class View:
+class Projection:
     """A drawing of part of the bridge.
 
     Attributes:
@@ -33,7 +33,7 @@ class View:
         return sensor.node in self.nodes
 
 
-def views(model: Model, also: set[str]) -> list[View]:
+def views(model: Model, also: set[str]) -> list[Projection]:
     """The views of a model.
 
     Args:
@@ -64,11 +64,11 @@ def views(model: Model, also: set[str]) -> list[View]:
     return trusses
 
 
-def _whole(model: Model, title: str, axes: tuple[int, int]) -> View:
-    return View(title, axes, tuple(model.members), frozenset(model.nodes))
+def _whole(model: Model, title: str, axes: tuple[int, int]) -> Projection:
+    return Projection(title, axes, tuple(model.members), frozenset(model.nodes))
 
 
-def _trusses(model: Model, right: int, depth: int, length: float, width: float) -> list[View]:
+def _trusses(model: Model, right: int, depth: int, length: float, width: float) -> list[Projection]:
     levels: dict[int, list[str]] = {}
     step = 0.01 * width
     for name, member in model.members.items():
@@ -82,7 +82,7 @@ def _trusses(model: Model, right: int, depth: int, length: float, width: float) 
         if len(members) >= 3 and reach >= 0.5 * length:
             place = model.nodes[nodes[0]][depth]
             title = f"elevation at {LETTERS[depth]} = {place:.4g} m".replace("-", MINUS)
-            view = View(title, (right, 2), tuple(members), frozenset(nodes))
+            view = Projection(title, (right, 2), tuple(members), frozenset(nodes))
             number = sum(view.holds(sensor) for sensor in model.sensors.values())
             found.append((number, len(members), level, view))
     best = sorted(found, key=lambda item: item[:2], reverse=True)[:MOST_VIEWS]

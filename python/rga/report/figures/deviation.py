@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.model.parameter import FloatArray
 
 
-def percent_off(account: Account, simulated: FloatArray) -> FloatArray:
+def percent_off(account: DiagnosisArrays, simulated: FloatArray) -> FloatArray:
     """Measured over simulated by sensor, as percent off.
 
     The ratio is the slope of the line through the origin that fits measured against simulated.
@@ -24,7 +24,7 @@ def percent_off(account: Account, simulated: FloatArray) -> FloatArray:
     return np.where(audible, 100 * (slope - 1), np.nan)
 
 
-def squares(account: Account, simulated: FloatArray) -> FloatArray:
+def squares(account: DiagnosisArrays, simulated: FloatArray) -> FloatArray:
     """Squared residual over noise variance, float[rows, sensors]; NaN where there is nothing."""
     present = np.isfinite(account.noise)
     energy = np.where(present, account.noise, 0.0) ** 2

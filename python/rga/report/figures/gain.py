@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Findings
 from rga.model.parameter import FloatArray
 from rga.report.figures.deviation import runs, squares
@@ -67,7 +67,7 @@ def draw_gain(findings: Findings) -> Markup | None:
         return inline(figure, "gain", words)
 
 
-def blocks(account: Account) -> list[tuple[int, int]]:
+def blocks(account: DiagnosisArrays) -> list[tuple[int, int]]:
     """Stretches of held-out rows, long ones split and many ones joined."""
     found = runs(account.held_out)
     if not found:
@@ -88,7 +88,9 @@ def _parts(items: list[T], count: int) -> list[list[T]]:
     return [items[a:b] for a, b in pairwise(edges)]
 
 
-def _blocks(axes: Axes, account: Account, split: list[tuple[int, int]], floor: float) -> None:
+def _blocks(
+    axes: Axes, account: DiagnosisArrays, split: list[tuple[int, int]], floor: float
+) -> None:
     both = [squares(account, simulated) for simulated in (account.before, account.after)]
     held = account.held_out
     values = np.array([[_mean(s[a : b + 1][held[a : b + 1]]) for s in both] for a, b in split])

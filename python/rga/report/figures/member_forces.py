@@ -13,7 +13,7 @@ from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.report.drawing.bridge_drawing import KEY, TITLE, WIDTH, Shades, draw_supports, paint_scale
 from rga.report.drawing.places import Named
-from rga.report.drawing.projection import View, views
+from rga.report.drawing.projection import Projection, views
 from rga.report.figures.bridge import EITHER_WAY
 from rga.report.figures.figure_style import STEEL, inline, label, style
 from rga.report.pages.cards import plain
@@ -134,7 +134,7 @@ def draw_forces(forces: Forces, model: Model) -> Markup | None:
 
 
 def _members(
-    axes: Axes, view: View, model: Model, forces: Forces, change: FloatArray, shades: Shades,
+    axes: Axes, view: Projection, model: Model, forces: Forces, change: FloatArray, shades: Shades,
     unit: float,
 ) -> None:  # fmt: skip
     ratio = dict(zip(forces.members, forces.ratio, strict=True))
@@ -166,14 +166,14 @@ def _ratio(value: float) -> str:
     return fixed(float(value), 2) if np.isfinite(value) else "new" if value > 0 else DASH
 
 
-def _box(model: Model, view: View) -> tuple[float, float, float, float]:
+def _box(model: Model, view: Projection) -> tuple[float, float, float, float]:
     """Left, bottom, width and height of a view [m]."""
     points = np.array([model.nodes[node] for node in sorted(view.nodes)])[:, list(view.axes)]
     low, size = points.min(axis=0), np.ptp(points, axis=0)
     return float(low[0]), float(low[1]), float(size[0]), float(size[1])
 
 
-def _unit(model: Model, view: View, room: float) -> float:
+def _unit(model: Model, view: Projection, room: float) -> float:
     """Metres in an inch."""
     _, _, wide, high = _box(model, view)
     return max(wide, high / 0.6, 1e-9) / room

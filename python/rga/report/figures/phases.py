@@ -11,7 +11,7 @@ from rga.model.parameter import FloatArray
 from rga.report.drawing.bridge_drawing import MARKERS
 from rga.report.drawing.labels import marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Spot, spots
-from rga.report.drawing.projection import View, views
+from rga.report.drawing.projection import Projection, views
 from rga.report.figures.figure_style import INK, STEEL, inline, label, style
 from rga.report.figures.gap_colours import GapColours, gap_colours
 from rga.report.figures.run_gap import Phase, mean, phases, standardised, usual
@@ -82,7 +82,9 @@ def _title(phase: Phase, gaps: FloatArray) -> str:
     return f"{phase.title}: gap {gap} over {rows} row{'s' if rows > 1 else ''}"
 
 
-def _with_sensors(history: History, drawn: Sequence[View]) -> list[tuple[View, list[Spot]]]:
+def _with_sensors(
+    history: History, drawn: Sequence[Projection]
+) -> list[tuple[Projection, list[Spot]]]:
     """Views with the spots of their sensors; each sensor in the first view that holds it."""
     model = history.model
     taken: set[int] = set()
@@ -99,24 +101,24 @@ def _with_sensors(history: History, drawn: Sequence[View]) -> list[tuple[View, l
     return found
 
 
-def _corner(history: History, view: View) -> tuple[FloatArray, FloatArray]:
+def _corner(history: History, view: Projection) -> tuple[FloatArray, FloatArray]:
     points = np.array([history.model.nodes[node] for node in sorted(view.nodes)])
     points = points[:, list(view.axes)]
     return points.min(axis=0), points.max(axis=0)
 
 
-def _extent(history: History, view: View) -> FloatArray:
+def _extent(history: History, view: Projection) -> FloatArray:
     low, high = _corner(history, view)
     return high - low
 
 
-def _unit(history: History, view: View, room: float) -> float:
+def _unit(history: History, view: Projection, room: float) -> float:
     wide, tall = _extent(history, view)
     return float(max(wide, tall / 0.5, 1e-9)) / (room - 0.7)
 
 
 def _bridge(
-    axes: Axes, history: History, view: View, here: list[Spot], gaps: FloatArray,
+    axes: Axes, history: History, view: Projection, here: list[Spot], gaps: FloatArray,
     colours: GapColours, unit: float,
 ) -> None:  # fmt: skip
     model, sensors = history.model, history.record.sensors

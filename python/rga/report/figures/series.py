@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Findings
 from rga.model.parameter import FloatArray
 from rga.report.figures.deviation import runs
@@ -73,7 +73,7 @@ def chosen(findings: Findings) -> list[int]:
     return sorted(best + worst)
 
 
-def runs_on(account: Account) -> bool:
+def runs_on(account: DiagnosisArrays) -> bool:
     """Whether the simulation is smooth from row to row (lag-one correlation, median of sensors)."""
     if len(account.record) < 8:
         return False
@@ -87,7 +87,7 @@ def runs_on(account: Account) -> bool:
     return bool(found) and float(np.median(found)) > 0.7
 
 
-def _unit(account: Account, column: int) -> tuple[float, str]:
+def _unit(account: DiagnosisArrays, column: int) -> tuple[float, str]:
     name = account.record.sensors[column]
     unit = account.model.sensors[name].unit if name in account.model.sensors else ""
     readings = np.abs(account.record.readings[:, column])
@@ -95,7 +95,7 @@ def _unit(account: Account, column: int) -> tuple[float, str]:
     return scale(unit, largest)
 
 
-def _time(account: Account) -> tuple[FloatArray, str]:
+def _time(account: DiagnosisArrays) -> tuple[FloatArray, str]:
     time = account.record.time - account.record.time[0]
     length, unit = duration(float(time[-1]))
     factor = length / float(time[-1]) if time[-1] > 0 else 1.0
@@ -116,7 +116,7 @@ def _thin(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return x[order], y[order]
 
 
-def _over_time(axes: Axes, account: Account, column: int) -> None:
+def _over_time(axes: Axes, account: DiagnosisArrays, column: int) -> None:
     factor, unit = _unit(account, column)
     time, _ = _time(account)
     stretches = runs(account.held_out)
@@ -138,7 +138,7 @@ def _over_time(axes: Axes, account: Account, column: int) -> None:
     axes.set_title(f"{label(account.record.sensors[column])} [{unit}]")
 
 
-def _against(axes: Axes, account: Account, column: int) -> None:
+def _against(axes: Axes, account: DiagnosisArrays, column: int) -> None:
     factor, unit = _unit(account, column)
     measured = account.record.readings[:, column] * factor
     thin = np.linspace(0, len(measured) - 1, min(len(measured), MOST_DOTS)).round().astype(int)
@@ -161,7 +161,7 @@ def _against(axes: Axes, account: Account, column: int) -> None:
     axes.set_ylabel(f"measured [{unit}]", labelpad=1.5)
 
 
-def _key(account: Account, smooth: bool) -> list[Line2D | Patch]:
+def _key(account: DiagnosisArrays, smooth: bool) -> list[Line2D | Patch]:
     if smooth:
         few = len(account.record) <= 400
         look = {"lw": 0, "marker": "."} if few else {"lw": 2.2, "alpha": 0.4}

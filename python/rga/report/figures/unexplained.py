@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rga.diagnosis.residuals.patterns import CORRELATED, Leftover, known_contexts, leftovers
 from rga.diagnosis.residuals.slopes import Bend, bends
 from rga.diagnosis.search.linearised import Problem
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.model.effect import Values
 from rga.model.parameter import FloatArray
 from rga.report.drawing.bridge_drawing import Shades, draw_at_sensors
@@ -27,7 +27,9 @@ RUNS_ON = 0.7
 EARLY_TO_LATE = LinearSegmentedColormap.from_list("time", ["#9ec9e6", "#0072b2", "#0b2a4a"])
 
 
-def draw_pattern(account: Account, found: list[Leftover], sensors: tuple[str, ...]) -> Markup:
+def draw_pattern(
+    account: DiagnosisArrays, found: list[Leftover], sensors: tuple[str, ...]
+) -> Markup:
     """Every pattern on the bridge: how far each sensor is off, in units of its noise.
 
     Args:
@@ -84,14 +86,14 @@ def draw_bends(found: list[Bend], problem: Problem, units: dict[str, str]) -> Ma
     )
 
 
-def strongest_rows(one: Leftover, account: Account, time: FloatArray) -> list[str]:
+def strongest_rows(one: Leftover, account: DiagnosisArrays, time: FloatArray) -> list[str]:
     """When a pattern is strongest: rows to look up in a log book."""
     order = np.argsort(-np.abs(one.amplitude), kind="stable")[:STRONGEST]
     label_of = account.record.time_label
     return [moment(label_of(float(time[row]) - account.record.origin)) for row in sorted(order)]
 
 
-def unexplained(account: Account) -> dict[str, object]:
+def unexplained(account: DiagnosisArrays) -> dict[str, object]:
     """Variables of the template: figures of what is left, and when it is strongest."""
     shown: dict[str, object] = {"pattern": None, "amplitudes": None, "bends": None, "rows": []}
     if account.found is None:

@@ -10,7 +10,7 @@ from rga.diagnosis.checks.detectability import Least, least_seen
 from rga.diagnosis.checks.leave_one_out import Hold, contrast, hold
 from rga.diagnosis.checks.profiles import onset_profile, profiles
 from rga.diagnosis.search.stepwise import NAMED, RIVAL, Found
-from rga.findings.arrays import Account
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words
 from rga.findings.schema import Cause, Findings
 from rga.model.effect import Effect
@@ -56,7 +56,7 @@ class Rivalry:
     figure: Markup
 
 
-def _profiles(account: Account, found: Found, place: int, cause: Cause) -> Markup:
+def _profiles(account: DiagnosisArrays, found: Found, place: int, cause: Cause) -> Markup:
     shown = profiles(found, place)
     units = [own_unit(one.unit, cause.effect, account.model) for one in shown]
     record = account.record
@@ -65,7 +65,7 @@ def _profiles(account: Account, found: Found, place: int, cause: Cause) -> Marku
     return draw_profiles(shown, units, onset, likeliest, f"profiles-{place}")
 
 
-def _rivalry(account: Account, found: Found, place: int) -> Rivalry | None:
+def _rivalry(account: DiagnosisArrays, found: Found, place: int) -> Rivalry | None:
     """The cause against its nearest rival; None where it has none."""
     against = contrast(found, place)
     if against is None:

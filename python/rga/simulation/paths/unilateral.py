@@ -35,7 +35,7 @@ REFINED = 2
 NONE = 1e-12
 
 
-class Linear(Protocol):
+class CondensedStructure(Protocol):
     """A structure condensed onto terms, as the attributes of `Condensation` tell."""
 
     @property
@@ -50,7 +50,9 @@ class Linear(Protocol):
     def unit(self) -> FloatArray: ...
 
 
-def respond_with_laws(structure: Structure, linear: Linear, coefficients: FloatArray) -> FloatArray:
+def respond_with_laws(
+    structure: Structure, linear: CondensedStructure, coefficients: FloatArray
+) -> FloatArray:
     """Sensors of rows, float[rows, sensors] in SI units.
 
     Args:

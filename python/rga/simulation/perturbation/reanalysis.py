@@ -63,7 +63,7 @@ class OnTerms:
 
 
 @dataclass(frozen=True)
-class Difference:
+class StiffnessDifference:
     """Where the stiffness of a structure differs: terms, and numbers of frame members."""
 
     terms: IntArray
@@ -124,7 +124,7 @@ class Reanalysis:
                 del self._known[next(iter(self._known))]
         return self._known[content]
 
-    def differing(self, other: Structure) -> Difference | None:
+    def differing(self, other: Structure) -> StiffnessDifference | None:
         """Where stiffnesses differ; None where more than few stiffnesses do."""
         if self._but_stiffness(other) != self._content:
             return None
@@ -142,9 +142,9 @@ class Reanalysis:
         frames = np.flatnonzero(np.any(differs, axis=0) & own["frame"])
         if len(frames) > FEW or (len(frames) and len(terms)):
             return None
-        return Difference(terms, frames)
+        return StiffnessDifference(terms, frames)
 
-    def changed(self, loaded: Loaded, other: Structure, where: Difference) -> FloatArray:
+    def changed(self, loaded: Loaded, other: Structure, where: StiffnessDifference) -> FloatArray:
         """Outputs of a structure near this one, float[patterns, outputs] in SI units.
 
         Args:

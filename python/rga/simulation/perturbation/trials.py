@@ -15,7 +15,7 @@ from rga.simulation.dispatch import APART, Request, coefficients, with_laws
 from rga.simulation.paths.response import patterns, respond
 from rga.simulation.paths.unilateral import respond_with_laws, terms_of
 from rga.simulation.perturbation.chebyshev import along_line
-from rga.simulation.perturbation.reanalysis import Difference, Loaded, Reanalysis
+from rga.simulation.perturbation.reanalysis import Loaded, Reanalysis, StiffnessDifference
 
 if TYPE_CHECKING:
     from rga.simulation.simulator import Response, Simulator
@@ -257,7 +257,7 @@ class Vicinity:
         quantities = along_line(request, solve)
         return None if quantities is None else quantities * self._centres[0].near.structure.per_si
 
-    def _nearest(self, structure: Structure) -> tuple[Centre, Difference | None]:
+    def _nearest(self, structure: Structure) -> tuple[Centre, StiffnessDifference | None]:
         """The centre that a structure is near, or any; and where they differ."""
         for centre in self._centres:
             where = centre.near.differing(structure)
@@ -282,7 +282,7 @@ def _loads(
 
 
 def _with_laws(
-    centre: Centre, structure: Structure, loads: list[Load], where: Difference
+    centre: Centre, structure: Structure, loads: list[Load], where: StiffnessDifference
 ) -> FloatArray | None:
     """A structure that differs from a centre by play or slack alone; None for any other."""
     if len(where.terms) or len(where.frames):

@@ -14,14 +14,14 @@ from rga.twin.calibration.expectation import against_expected, scatter_share
 from rga.twin.messages.hardware import Packet, Station
 from rga.twin.messages.queries import Q2, Q3, Q4, Q5, Box, sha256
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.row_buffer import Ledger
+from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
 from rga.twin.settings import Settings
 
 Progress = Callable[[str, float], None]
 
 
-class Calibration:
+class ContextCapture:
     """What is known of the contexts, and how it comes about.
 
     Args:
@@ -44,7 +44,9 @@ class Calibration:
         seed: int,
         progress: Progress,
     ) -> None:
-        self.ledger = Ledger.empty(len(station.channels), len(station.measured), len(model.context))
+        self.ledger = RowBuffer.empty(
+            len(station.channels), len(station.measured), len(model.context)
+        )
         self.learned: DataDrivenModel | None = None
         self.draws = 0
         self._exchange, self._archive, self._station = exchange, archive, station
@@ -59,7 +61,9 @@ class Calibration:
         """Take measured rows from the middleware."""
         self.ledger.append(packet)
 
-    def recall(self, ledger: Ledger, standing: Standing, learned: DataDrivenModel | None) -> None:
+    def recall(
+        self, ledger: RowBuffer, standing: Standing, learned: DataDrivenModel | None
+    ) -> None:
         """Go on where a run stood."""
         self.ledger, self.draws, self.learned = ledger, standing.draws, learned
         if standing.calibrated:

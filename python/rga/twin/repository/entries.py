@@ -42,7 +42,7 @@ class Identity:
 
 
 @dataclass(frozen=True)
-class Measured:
+class StoredReadings:
     """Rows of the record.
 
     Attributes:
@@ -59,7 +59,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Simulated:
+class StoredSimulations:
     """Simulations in the order in which they were stored.
 
     Attributes:
@@ -100,7 +100,7 @@ class Inferred:
 
 
 @dataclass(frozen=True)
-class Gaps:
+class StoredGaps:
     """Reality gaps of rows of the record.
 
     Attributes:
@@ -117,7 +117,7 @@ class Gaps:
 
 
 @dataclass(frozen=True)
-class Message:
+class StoredMessage:
     """A query or a response.
 
     Attributes:
@@ -162,7 +162,7 @@ class ModelVersion:
 
 
 @dataclass(frozen=True)
-class Findings:
+class StoredFindings:
     """Findings of a diagnosis, as JSON text, and the row of the record that it ended with."""
 
     row: int

@@ -13,7 +13,7 @@ from rga.twin.repository.entries import Origin, Time
 from rga.twin.repository.packets import packets
 
 
-class Step:
+class Transaction:
     """What one transaction stores; `Run.step` begins and ends it.
 
     Where a method takes `row`, it is the row of the record at which something was decided; where

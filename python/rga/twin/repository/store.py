@@ -14,11 +14,11 @@ from rga.twin.repository.database import Database, database
 from rga.twin.repository.entries import Identity
 from rga.twin.repository.faults import told
 from rga.twin.repository.source import Source
-from rga.twin.repository.step import Step, now
-from rga.twin.repository.view import View
+from rga.twin.repository.step import Transaction, now
+from rga.twin.repository.view import RunView
 
 
-class Run(View):
+class Run(RunView):
     """A run that this process writes; the lock is held until `close`.
 
     Its readers see what an open step has stored so far.
@@ -31,14 +31,14 @@ class Run(View):
         self._held = held
 
     @contextmanager
-    def step(self) -> Iterator[Step]:
+    def step(self) -> Iterator[Transaction]:
         """Store all that the `with` block writes, acknowledged at its end, or nothing of it.
 
         Raises:
             InputError: the disk is full, the server is lost, or the like.
         """
         with told(self._where), self._transaction():
-            step = Step(self._connection, self._source.run_id)
+            step = Transaction(self._connection, self._source.run_id)
             yield step
             step.end()
 
@@ -123,11 +123,11 @@ class Repository:
         self._held.callback(run.close)
         return run
 
-    def runs(self) -> tuple[View, ...]:
+    def runs(self) -> tuple[RunView, ...]:
         """All runs, in the order in which they were begun."""
         with self._reading() as connection:
             entries = connection.execute(select(tables.run).order_by(tables.run.c.id)).all()
-        return tuple(View(Source(self._reading, entry.id), *_of(entry)) for entry in entries)
+        return tuple(RunView(Source(self._reading, entry.id), *_of(entry)) for entry in entries)
 
     def close(self) -> None:
         """Close all connections; the lock of a run goes with them."""

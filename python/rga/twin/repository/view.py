@@ -14,22 +14,22 @@ from rga.model.parameter import FloatArray
 from rga.twin.history import Event
 from rga.twin.repository import tables
 from rga.twin.repository.entries import (
-    Findings,
-    Gaps,
     Identity,
     Inferred,
-    Measured,
-    Message,
     ModelVersion,
     Origin,
-    Simulated,
+    StoredFindings,
+    StoredGaps,
+    StoredMessage,
+    StoredReadings,
+    StoredSimulations,
 )
 from rga.twin.repository.source import Source, joined
 
 Box = tuple[ArrayLike, ArrayLike]
 
 
-class View:
+class RunView:
     """A run of a repository, for reading.
 
     Rows are rows of the record; a range of them is that of a slice, from `first` to before `end`.
@@ -47,7 +47,7 @@ class View:
         self.begun_at = begun_at
         self._source = source
 
-    def as_of(self, row: int | None = None, *, time: float | None = None) -> "View":
+    def as_of(self, row: int | None = None, *, time: float | None = None) -> "RunView":
         """The run as it stood when the record had reached a row, or a time [s].
 
         Seen is what was acknowledged in steps about rows up to this one: a step that took in
@@ -64,7 +64,7 @@ class View:
         else:
             raise TypeError("as_of takes either a row or a time")
         source = replace(self._source, until=self._source.step_at(reached))
-        return View(source, self.identity, self.begun_at)
+        return RunView(source, self.identity, self.begun_at)
 
     @property
     def steps(self) -> int:
@@ -83,12 +83,12 @@ class View:
         row = self._source.scalar(tables.step, func.max(tables.step.c.row))
         return -1 if row is None else int(row)
 
-    def measured(self, first: int = 0, end: int | None = None) -> Measured:
+    def measured(self, first: int = 0, end: int | None = None) -> StoredReadings:
         """Rows of the record."""
         names = ("time", "readings", "contexts")
         rows, arrays, _ = self._source.rows(tables.measured, names, first, end, None)
         time, readings, contexts = arrays
-        return Measured(rows, time.reshape(-1), readings, contexts)
+        return StoredReadings(rows, time.reshape(-1), readings, contexts)
 
     def inferred(
         self,
@@ -111,25 +111,25 @@ class View:
         end: int | None = None,
         version: int | None = None,
         at_the_time: bool = False,
-    ) -> Gaps:
+    ) -> StoredGaps:
         """What was simulated for rows, and their gaps: as stored last, or first (`at_the_time`)."""
         names = ("simulated", "gaps")
         rows, arrays, packets = self._source.rows(
             tables.gap, names, first, end, version, at_the_time
         )
         simulated, gaps = arrays
-        return Gaps(rows, simulated, gaps, _versions(packets))
+        return StoredGaps(rows, simulated, gaps, _versions(packets))
 
     def simulated(
         self, version: int | None = None, origin: Origin | None = None, within: Box | None = None
-    ) -> Simulated:
+    ) -> StoredSimulations:
         """Simulations, of a version, of an origin, with contexts in a box (low, high) float[k]."""
         packets = self._source.entries(tables.simulated, where=_conditions(version, origin))
         contexts = joined(packets, "contexts")
         inside = _inside(contexts, within)
         owner = np.repeat(np.arange(len(packets)), [packet.length for packet in packets])[inside]
         owners = [packets[index] for index in owner]
-        return Simulated(
+        return StoredSimulations(
             _versions(owners),
             np.array([packet.origin for packet in owners], dtype=np.str_),
             np.array([packet.row for packet in owners], dtype=np.int64),
@@ -168,10 +168,10 @@ class View:
         entries = self._source.entries(tables.in_force)
         return tuple((entry.row, entry.version) for entry in entries)
 
-    def findings(self) -> tuple[Findings, ...]:
+    def findings(self) -> tuple[StoredFindings, ...]:
         """Findings of diagnoses."""
         entries = self._source.entries(tables.findings)
-        return tuple(Findings(entry.row, entry.findings) for entry in entries)
+        return tuple(StoredFindings(entry.row, entry.findings) for entry in entries)
 
     def events(self) -> tuple[Event, ...]:
         """What happened to the twin."""
@@ -188,11 +188,11 @@ class View:
             for entry in self._source.entries(tables.event)
         )
 
-    def messages(self, kind: str | None = None) -> tuple[Message, ...]:
+    def messages(self, kind: str | None = None) -> tuple[StoredMessage, ...]:
         """The log of queries and responses, or of one kind."""
         entries = self._source.entries(tables.message)
         return tuple(
-            Message(
+            StoredMessage(
                 sequence,
                 entry.kind,
                 entry.row,
@@ -204,11 +204,11 @@ class View:
             if kind in (None, entry.kind)
         )
 
-    def story(self) -> tuple[Message | Event, ...]:
+    def story(self) -> tuple[StoredMessage | Event, ...]:
         """Messages and events together, in the order in which they were stored."""
         told = zip(self._source.entries(tables.message), self.messages(), strict=True)
         happened = zip(self._source.entries(tables.event), self.events(), strict=True)
-        both: list[tuple[Row[Any], Message | Event]] = [*told, *happened]
+        both: list[tuple[Row[Any], StoredMessage | Event]] = [*told, *happened]
         return tuple(what for entry, what in sorted(both, key=lambda one: _place(one[0])))
 
     def kept(self, name: str) -> bytes | None:

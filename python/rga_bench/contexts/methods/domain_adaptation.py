@@ -14,7 +14,7 @@ from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.posterior_mode import standard
 from rga.inference.networks.determinism import one_thread
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Estimate, Method, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
 from rga_bench.installed import NotInstalledError
 
 #: units of a layer, passes over the rows, rows of a batch, weight of the adaptation, rate
@@ -33,7 +33,7 @@ class Adapted:
         learn: what learned this from the problem.
     """
 
-    problem: Problem
+    problem: LearningProblem
     twin: TwinOnArrays
     regress: Callable[[FloatArray], FloatArray]
     usual: FloatArray
@@ -56,7 +56,7 @@ class Adapted:
         return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
 
 
-def skada_coral(problem: Problem) -> Calibrated:
+def skada_coral(problem: LearningProblem) -> Calibrated:
     """`skada`'s `CORALAdapter` (Sun, Feng and Saenko, 2017), then a perceptron of scikit-learn.
 
     `skada`'s own pipeline takes one target a row at most, so that the adapter is used by itself.
@@ -84,7 +84,7 @@ def skada_coral(problem: Problem) -> Calibrated:
     return _adapted(problem, lambda given: perceptron.predict((given - center) / size), skada_coral)
 
 
-def skada_dann(problem: Problem) -> Calibrated:
+def skada_dann(problem: LearningProblem) -> Calibrated:
     """`skada`'s `DANN` (Ganin et al., JMLR 17, 2016).
 
     It knows classes only: labels are the numbers of source rows, and the criterion looks up the
@@ -159,7 +159,7 @@ class _OfRows(nn.Module):
         return nn.functional.mse_loss(found, self.contexts[numbers.long()])
 
 
-def _rows(problem: Problem) -> tuple[FloatArray, Any, FloatArray]:
+def _rows(problem: LearningProblem) -> tuple[FloatArray, Any, FloatArray]:
     """Noisy source rows, then measured ones, over their noise; their domain; source contexts."""
     middle, scale = standard(problem.ranges)
     rng = np.random.default_rng(problem.seed)
@@ -175,7 +175,7 @@ def _filled(readings: FloatArray, usual: FloatArray) -> FloatArray:
 
 
 def _adapted(
-    problem: Problem, regress: Callable[[FloatArray], FloatArray], learn: Method
+    problem: LearningProblem, regress: Callable[[FloatArray], FloatArray], learn: Method
 ) -> Adapted:
     usual = problem.source.readings.mean(axis=0)
     return Adapted(problem, TwinOnArrays(problem.simulator), regress, usual, learn)

@@ -5,7 +5,7 @@ import numpy as np
 from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.posterior_mode import standard
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 from rga_bench.contexts.methods.stream import Filtered, filtered
 
@@ -13,7 +13,7 @@ from rga_bench.contexts.methods.stream import Filtered, filtered
 MEMBERS, PARTS = 100, 4
 
 
-def ensemble_kalman(problem: Problem) -> Filtered:
+def ensemble_kalman(problem: LearningProblem) -> Filtered:
     """Members with perturbed readings (Evensen, J. Geophys. Res. 99, 1994).
 
     A row is assimilated in parts, each with the variance of the noise times their number, as the

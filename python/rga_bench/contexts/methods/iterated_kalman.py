@@ -4,7 +4,7 @@ import numpy as np
 
 from rga.inference.map.posterior_mode import standard
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
 from rga_bench.contexts.methods.modes import Modes
 from rga_bench.contexts.methods.stream import Filtered, filtered, recursion
@@ -13,7 +13,7 @@ from rga_bench.contexts.methods.stream import Filtered, filtered, recursion
 PASSES = 5
 
 
-def iterated_kalman(problem: Problem) -> Filtered:
+def iterated_kalman(problem: LearningProblem) -> Filtered:
     """Readings are linearised where the filter itself puts each row (Bell and Cathey, IEEE Trans.
     Automatic Control 38, 1993). All rows are linearised anew together, pass after pass: a row
     still follows from itself and those before.

@@ -10,7 +10,7 @@ from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga.model import Model
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Problem
+from rga_bench.contexts.method import Calibrated, LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 
 
@@ -48,13 +48,13 @@ def unknowns_of(model: Model) -> Unknowns:
     return _KNOWN[content]
 
 
-def joint_posterior(problem: Problem) -> Calibrated:
+def joint_posterior(problem: LearningProblem) -> Calibrated:
     """Contexts and unknowns in one posterior."""
     return _learned(problem)
 
 
 def _learned(
-    problem: Problem, *, start: Joint | None = None, prior: Joint | None = None
+    problem: LearningProblem, *, start: Joint | None = None, prior: Joint | None = None
 ) -> JointModes:
     found = infer_jointly(
         unknowns_of(problem.model),

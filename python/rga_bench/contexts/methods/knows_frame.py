@@ -8,7 +8,7 @@ from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 from rga_bench.synthetic.physical_twin import PhysicalTwin
 
@@ -42,7 +42,7 @@ class TrueFrame(TwinOnArrays):
         return np.asarray(((ahead - behind) / (2.0 * step[:, None])).transpose(0, 2, 1))
 
 
-def knows_the_frame(problem: Problem, truth: PhysicalTwin) -> Modes:
+def knows_the_frame(problem: LearningProblem, truth: PhysicalTwin) -> Modes:
     """MAP with the physical twin itself."""
     twin = TrueFrame(problem.simulator, truth)
     contexts = problem.source.contexts

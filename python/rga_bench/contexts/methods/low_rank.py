@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior
 
@@ -13,7 +13,7 @@ from rga_bench.contexts.methods.modes import Modes, maximum_posterior
 RANKS, STEPS, ROUNDS = (0, 1, 2, 4, 8, 16), 15, 3
 
 
-def low_rank_discrepancy(problem: Problem) -> Modes:
+def low_rank_discrepancy(problem: LearningProblem) -> Modes:
     """y = S(c) + B x + noise, with x standard normal and B found by EM.
 
     Factor analysis (Rubin and Thayer, Psychometrika 47, 1982) whose contexts are integrated along

@@ -8,7 +8,7 @@ from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import Mode, posterior_mode
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Estimate, Method, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Modes:
         learn: what learned this from the problem; None where rows without contexts teach nothing.
     """
 
-    problem: Problem
+    problem: LearningProblem
     twin: TwinOnArrays
     covariance: FloatArray
     guess: QuadraticGuess
@@ -56,7 +56,7 @@ class Modes:
         return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
 
 
-def maximum_posterior(problem: Problem) -> Modes:
+def maximum_posterior(problem: LearningProblem) -> Modes:
     """MAP: the simulator is taken as true, and readings differ from it by their noise alone."""
     twin = TwinOnArrays(problem.simulator)
     guess = QuadraticGuess(problem.source, problem.noise, twin.ranges, problem.seed)

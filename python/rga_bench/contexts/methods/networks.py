@@ -22,7 +22,7 @@ from rga.inference.map.laplace import covering_factor
 from rga.inference.networks.design_samples import design
 from rga.inference.networks.selection import unlabelled_gap
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Estimate, Method, Problem
+from rga_bench.contexts.method import Estimate, LearningProblem, Method
 
 #: simulated rows, drawn anew, on which intervals are stretched
 UNSEEN = 200
@@ -41,7 +41,7 @@ class LearnedNetwork:
         factor: on the spread of each context, float[contexts].
     """
 
-    problem: Problem
+    problem: LearningProblem
     settings: TrainingSettings
     network: ContextNetwork
     factor: FloatArray
@@ -68,7 +68,7 @@ class LearnedNetwork:
 
 
 def learn(
-    settings: TrainingSettings, problem: Problem, start: ContextNetwork | None = None
+    settings: TrainingSettings, problem: LearningProblem, start: ContextNetwork | None = None
 ) -> LearnedNetwork:
     """Train a network, or fine-tune an earlier one.
 

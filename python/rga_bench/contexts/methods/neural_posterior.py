@@ -12,7 +12,7 @@ from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.posterior_mode import standard
 from rga.inference.networks.determinism import one_thread
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.installed import NotInstalledError
 
 #: simulated rows beside the source; passes over all of them at most; samples of a posterior
@@ -30,7 +30,7 @@ class NeuralPosterior:
         usual: what stands in for a missing reading, float[sensors].
     """
 
-    problem: Problem
+    problem: LearningProblem
     twin: TwinOnArrays
     density: Any
     usual: FloatArray
@@ -57,7 +57,7 @@ class NeuralPosterior:
         return self
 
 
-def neural_posterior(problem: Problem) -> Calibrated:
+def neural_posterior(problem: LearningProblem) -> Calibrated:
     """A masked autoregressive flow (Papamakarios and Murray, NeurIPS 2016), with `sbi`'s defaults.
 
     Raises:

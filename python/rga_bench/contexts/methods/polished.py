@@ -7,7 +7,7 @@ import numpy as np
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Estimate, Method, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
 from rga_bench.contexts.methods.networks import source_only
 
 STEPS = 4
@@ -22,7 +22,7 @@ class Polished:
         network: that points at the contexts.
     """
 
-    problem: Problem
+    problem: LearningProblem
     network: Calibrated
 
     def infer(self, readings: FloatArray) -> Estimate:
@@ -44,6 +44,6 @@ class Polished:
         return self if network is self.network else Polished(self.problem, network)
 
 
-def polished_network(problem: Problem, learn: Method = source_only) -> Calibrated:
+def polished_network(problem: LearningProblem, learn: Method = source_only) -> Calibrated:
     """A network that has learned, and what follows it."""
     return Polished(problem, learn(problem))

@@ -7,11 +7,11 @@ import numpy as np
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import standard
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 
 
 @dataclass(frozen=True)
-class Prior:
+class PriorMean:
     """The middle of every range, with the standard deviation of contexts spread evenly over it."""
 
     twin: TwinOnArrays
@@ -31,6 +31,6 @@ class Prior:
         return self
 
 
-def prior_mean(problem: Problem) -> Calibrated:
+def prior_mean(problem: LearningProblem) -> Calibrated:
     """The mean of the prior: Error 1 by definition."""
-    return Prior(TwinOnArrays(problem.simulator))
+    return PriorMean(TwinOnArrays(problem.simulator))

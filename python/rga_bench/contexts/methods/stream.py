@@ -8,7 +8,7 @@ import numpy as np
 from rga.inference.map.bounded_newton import box_step
 from rga.inference.map.posterior_mode import Mode, standard
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Calibrated, Estimate, Problem
+from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior
 
 #: rows apart at which memory is measured: sensors' noise has forgotten itself by then
@@ -53,7 +53,7 @@ class Filtered:
         return relearned(self.modes, recent, self.filter)
 
 
-def filtered(problem: Problem, by: Filter) -> Filtered:
+def filtered(problem: LearningProblem, by: Filter) -> Filtered:
     """A filter for the model, with the memory of the measured rows of a problem."""
     return relearned(maximum_posterior(problem), problem.real, by)
 

@@ -5,7 +5,7 @@ import numpy as np
 from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.posterior_mode import standard
 from rga.model.parameter import FloatArray
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 from rga_bench.contexts.methods.stream import Filtered, filtered, recursion
 
@@ -15,7 +15,7 @@ LEAST = 1e-9
 PASSES = 4
 
 
-def unscented_kalman(problem: Problem) -> Filtered:
+def unscented_kalman(problem: LearningProblem) -> Filtered:
     """Sigma points (Julier and Uhlmann, Proc. IEEE 92, 2004), two to each context.
 
     The simulation bends within what is expected of a row without order, and so the points stand

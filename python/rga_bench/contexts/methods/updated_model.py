@@ -13,9 +13,9 @@ from rga.model import Model
 from rga.model.parameter import FloatArray
 from rga.model.schema import ContextVariable
 from rga.simulation import Simulator
-from rga_bench.contexts.method import Problem
+from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior
-from rga_bench.contexts.methods.updated_parameters import Unknown, unknowns
+from rga_bench.contexts.methods.updated_parameters import UpdatedParameter, unknowns
 
 #: parameters are looked at within this many standard deviations of their priors
 FAR = 4.0
@@ -23,7 +23,7 @@ FAR = 4.0
 MOST = 12
 
 
-def updated_model(problem: Problem) -> Modes:
+def updated_model(problem: LearningProblem) -> Modes:
     """Least squares with priors on the load tests, whose contexts were recorded (Friswell and
     Mottershead, Finite element model updating in structural dynamics, 1995).
 
@@ -43,7 +43,9 @@ def updated_model(problem: Problem) -> Modes:
     return replace(plain, twin=twin, guess=guess, covariance=factor * plain.covariance)
 
 
-def fit(problem: Problem, model: Model, sought: dict[str, Unknown]) -> tuple[FloatArray, float]:
+def fit(
+    problem: LearningProblem, model: Model, sought: dict[str, UpdatedParameter]
+) -> tuple[FloatArray, float]:
     """Parameters in standard deviations of their priors, float[unknowns], and what is left.
 
     The second is the mean square of what the fit leaves, in variances of the noise, not below 1.

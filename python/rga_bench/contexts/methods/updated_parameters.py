@@ -18,7 +18,7 @@ FIXITY = (0.3, 1.5)
 
 
 @dataclass(frozen=True)
-class Unknown:
+class UpdatedParameter:
     """A parameter that is updated: log-normal beforehand.
 
     Attributes:
@@ -44,7 +44,7 @@ class Unknown:
         )
 
 
-def unknowns(model: Model) -> Iterator[Unknown]:
+def unknowns(model: Model) -> Iterator[UpdatedParameter]:
     """Elastic modulus and thermal expansion of materials, stiffness of the group that a member
     names first, and upright flexibility of each support.
     """
@@ -64,7 +64,9 @@ def unknowns(model: Model) -> Iterator[Unknown]:
             raise TypeError(f"the prior of {parameter} is not log-normal")
         median = prior.value(0.0)
         effect = kind.model_validate({**place, parameter: median})
-        yield Unknown(effect, parameter, median, prior.spread)
+        yield UpdatedParameter(effect, parameter, median, prior.spread)
     if BENDING in model.groups:
         fixity, spread = FIXITY
-        yield Unknown(MemberStiffness(group=BENDING, factor=fixity), "factor", fixity, spread)
+        yield UpdatedParameter(
+            MemberStiffness(group=BENDING, factor=fixity), "factor", fixity, spread
+        )

@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rga_bench.contexts.floors import FLOORS
-from rga_bench.contexts.play import Outcome
+from rga_bench.contexts.play import TaskOutcome
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import DRIFTING
-from rga_bench.contexts.stream_results import Played
+from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.spread import Mean
 
 #: a number of each split
@@ -18,7 +18,7 @@ HIDES = " †"
 
 
 def scores(
-    outcomes: Sequence[Outcome],
+    outcomes: Sequence[TaskOutcome],
     row: str,
     gap: str,
     manner: str,
@@ -31,8 +31,8 @@ def scores(
 
 
 def lives(
-    outcomes: Sequence[Outcome], row: str, drifts: Sequence[str], level: str
-) -> Mapping[int, list[Played]]:
+    outcomes: Sequence[TaskOutcome], row: str, drifts: Sequence[str], level: str
+) -> Mapping[int, list[StreamResult]]:
     """What a row lived through at a level, by split; empty where it did not."""
     found = {
         one.split: [p for p in one.played if p.level == level and p.drift in drifts]
@@ -43,7 +43,7 @@ def lives(
 
 
 def mean_lives(
-    lived: Mapping[int, Sequence[Played]], of: Callable[[Played], float | None]
+    lived: Mapping[int, Sequence[StreamResult]], of: Callable[[StreamResult], float | None]
 ) -> Values:
     """The mean over drifts of a number of what was lived through."""
     found = {split: [of(one) for one in played] for split, played in lived.items()}
@@ -61,10 +61,10 @@ def paired(values: Values, than: Values) -> Mean | None:
     return mean({split: values[split] - than[split] for split in values if split in than})
 
 
-def whole(of: Callable[[Score], float | None]) -> Callable[[Played], float | None]:
+def whole(of: Callable[[Score], float | None]) -> Callable[[StreamResult], float | None]:
     """The mean of both halves of the test rows."""
 
-    def told(played: Played) -> float | None:
+    def told(played: StreamResult) -> float | None:
         ordinary, drifted = of(played.ordinary), of(played.drifted)
         return None if ordinary is None or drifted is None else (ordinary + drifted) / 2.0
 

@@ -8,12 +8,12 @@ from matplotlib.figure import Figure as Canvas
 from rga_bench.contexts.floors import FLOORS
 from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import ORACLE
-from rga_bench.contexts.run import Result
+from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.tables.aggregate import lives, mean, mean_lives, scores
 from rga_bench.contexts.tables.sheets_levels import NULL
 
 
-def plot(result: Result, folder: Path) -> None:
+def plot(result: ContextsResult, folder: Path) -> None:
     """Write `methods.png`, and `levels.png` where there were drifts, to a folder."""
     drawn = {"methods.png": methods(result)}
     if result.setting.drifts:
@@ -22,7 +22,7 @@ def plot(result: Result, folder: Path) -> None:
         canvas.savefig(folder / name, format="png", dpi=110)
 
 
-def methods(result: Result) -> Canvas:
+def methods(result: ContextsResult) -> Canvas:
     """Error and RG of each method under the full gap, level A, with 90 % intervals."""
     gap, manner = result.setting.gaps[-1], result.setting.manners[0]
     errors = {
@@ -64,7 +64,7 @@ def methods(result: Result) -> Canvas:
     return canvas
 
 
-def levels(result: Result) -> Canvas:
+def levels(result: ContextsResult) -> Canvas:
     """Error on drifted rows by level, a panel for each drift."""
     drifts = result.setting.drifts
     columns = min(3, len(drifts))

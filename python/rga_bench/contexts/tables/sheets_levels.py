@@ -7,9 +7,9 @@ import numpy as np
 from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
 from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import PAPERS
-from rga_bench.contexts.run import Result
+from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.stream_results import Played
+from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.aggregate import gap_told, lives, mean, mean_lives, paired, whole
 from rga_bench.measurement import digits
 from rga_bench.sheet import Sheet
@@ -35,7 +35,7 @@ def published() -> Sheet:
     return Sheet("The paper's own numbers, of its own bridge, not to be mixed", headings, rows)
 
 
-def order(result: Result) -> str:
+def order(result: ContextsResult) -> str:
     """Whether methods are in the paper's order."""
     drifts = _drifts(result)
     missing = [PAPERS[one] for one in ORDER if PAPERS[one] not in result.rows]
@@ -58,7 +58,7 @@ def order(result: Result) -> str:
     return f"The paper's order ({methods}) does not appear here as a whole: {other}."
 
 
-def papers(result: Result) -> list[Sheet]:
+def papers(result: ContextsResult) -> list[Sheet]:
     """The paper's table: pooled over drifts, and of each drift."""
     drifts = _drifts(result)
     if not drifts:
@@ -67,7 +67,7 @@ def papers(result: Result) -> list[Sheet]:
     return sheets + [_levels(result, f"Drift: {one}", [one]) for one in result.setting.drifts]
 
 
-def worth(result: Result) -> list[Sheet]:
+def worth(result: ContextsResult) -> list[Sheet]:
     """What recalibration changes, drift by drift, and that it forgets."""
     parts = {
         "once": [one for one in _drifts(result) if one != RECURRING],
@@ -77,7 +77,7 @@ def worth(result: Result) -> list[Sheet]:
     return [_worth(result, name, drifts) for name, drifts in parts.items() if drifts]
 
 
-def _levels(result: Result, title: str, drifts: Sequence[str]) -> Sheet:
+def _levels(result: ContextsResult, title: str, drifts: Sequence[str]) -> Sheet:
     headings = ["method"]
     for level in LEVELS:
         headings += [f"{level}: Error", "RG [mm²]", *([] if level == "A" else ["AD (seen)"])]
@@ -97,7 +97,7 @@ def _levels(result: Result, title: str, drifts: Sequence[str]) -> Sheet:
     return Sheet(title, [*headings, "ARL"], rows)
 
 
-def _worth(result: Result, name: str, drifts: Sequence[str]) -> Sheet:
+def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> Sheet:
     headings = [
         "method", "Error, drifted: A", "B - A", "C - B", "ordinary: B - A", "C - A",
         "recalibrations: B", "C", "C - B", "taken back: B", "recalled: C",
@@ -129,12 +129,12 @@ def _worth(result: Result, name: str, drifts: Sequence[str]) -> Sheet:
     return Sheet(title, headings, rows)
 
 
-def _streamed(result: Result) -> list[str]:
+def _streamed(result: ContextsResult) -> list[str]:
     """Rows that lived through streams."""
     return [row for row in result.rows if lives(result.outcomes, row, result.setting.drifts, "A")]
 
 
-def _delay(played: Sequence[Played]) -> str:
+def _delay(played: Sequence[StreamResult]) -> str:
     """Mean delay of the changes that were seen, and the share of them."""
     told = [one for several in played for one in several.delays]
     seen = [one for one in told if one is not None]
@@ -143,7 +143,7 @@ def _delay(played: Sequence[Played]) -> str:
     return f"{digits(float(np.mean(seen))) if seen else '-'} ({len(seen) / len(told):.0%})"
 
 
-def _arl(played: Sequence[Played]) -> str:
+def _arl(played: Sequence[StreamResult]) -> str:
     """Rows watched over false alarms."""
     watched, alarms = sum(one.watched for one in played), sum(one.false_alarm for one in played)
     if not watched:
@@ -151,7 +151,7 @@ def _arl(played: Sequence[Played]) -> str:
     return digits(watched / alarms) if alarms else f"> {digits(watched)}"
 
 
-def _drifts(result: Result) -> list[str]:
+def _drifts(result: ContextsResult) -> list[str]:
     return [one for one in result.setting.drifts if one != NULL]
 
 

@@ -10,7 +10,7 @@ from rga.model import read_model
 from rga.simulation import Simulator
 from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
 from rga_bench.contexts.rows import ORACLE
-from rga_bench.contexts.run import Result
+from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.tables.aggregate import Values, coverage, gap_told, mean, scores
 from rga_bench.measurement import digits
@@ -21,7 +21,7 @@ from rga_bench.synthetic.bridges.full_case_study import full_case_study
 LOOKED_AT = 512
 
 
-def by_place(result: Result) -> list[Sheet]:
+def by_place(result: ContextsResult) -> list[Sheet]:
     """Error, share of what there is to gain, RG and coverage, by gap and manner of contexts."""
     setting = result.setting
     full, first = setting.gaps[-1], setting.manners[0]
@@ -66,7 +66,7 @@ def by_place(result: Result) -> list[Sheet]:
     return [one for one in sheets if one.rows]
 
 
-def by_context(result: Result) -> Sheet:
+def by_context(result: ContextsResult) -> Sheet:
     """Error and coverage of each context, under the full gap."""
     contexts = full_case_study()["context"]
     headings = [f"{name} [{variable['unit']}]" for name, variable in contexts.items()]
@@ -105,7 +105,7 @@ def _seen() -> list[str]:
     ]
 
 
-def cost(result: Result) -> Sheet:
+def cost(result: ContextsResult) -> Sheet:
     """Seconds of learning and of inference."""
     times: Mapping[str, list[tuple[float, float]]] = {
         row: [

@@ -2,7 +2,7 @@
 
 from rich.console import Group
 
-from rga_bench.contexts.run import Result
+from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.tables.sheets_levels import order, papers, published, worth
 from rga_bench.contexts.tables.sheets_methods import by_context, by_place, cost
 from rga_bench.contexts.tables.targets import asked
@@ -32,7 +32,7 @@ wrong. Floors: the noise alone; the model at the true contexts; the model at the
 leave the least gap."""
 
 
-def about(result: Result) -> list[str]:
+def about(result: ContextsResult) -> list[str]:
     """Where it was measured, how much, and what was left out."""
     place, setting, sizes = result.machine, result.setting, result.setting.sizes
     named = [f"{name} {number}" for name, number in result.versions.items() if number]
@@ -50,12 +50,12 @@ def about(result: Result) -> list[str]:
     return lines
 
 
-def terminal(result: Result) -> Group:
+def terminal(result: ContextsResult) -> Group:
     """For rich."""
     return Group(*(one.terminal() for one in sheets(result)), order(result), "", NOTES)
 
 
-def markdown(result: Result, command: str) -> str:
+def markdown(result: ContextsResult, command: str) -> str:
     """A page with all tables and the figures."""
     lines = ["# Levels of integration, with every rival beside them", "", f"`{command}`", ""]
     lines += [*(f"- {line}" for line in about(result)), "", order(result), ""]
@@ -67,7 +67,7 @@ def markdown(result: Result, command: str) -> str:
     return "\n".join([*lines, NOTES, "", *figures])
 
 
-def sheets(result: Result) -> list[Sheet]:
+def sheets(result: ContextsResult) -> list[Sheet]:
     """All tables."""
     levels = papers(result)
     if levels:

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from rga_bench.contexts.floors import FLOORS
 from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import METHODS, ORACLE, PAPERS
-from rga_bench.contexts.run import Result
+from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.stream_results import Played
+from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.aggregate import (
     Values,
     coverage,
@@ -27,7 +27,7 @@ ASKED = {
 }
 
 
-def asked(result: Result) -> Sheet:
+def asked(result: ContextsResult) -> Sheet:
     """Figures under the full gap, those of methods of the best one of its sort.
 
     The best is that of the least Error at level A, on the very rows that it is judged by.
@@ -58,11 +58,11 @@ def asked(result: Result) -> Sheet:
     return Sheet("What is asked", ["figure", "found", "at least; aim"], [r for r in rows if r[1]])
 
 
-def _levels(result: Result, row: str) -> list[list[str]]:
+def _levels(result: ContextsResult, row: str) -> list[list[str]]:
     """What recalibration is worth to a method."""
     once = [one for one in result.setting.drifts if one not in (NULL, RECURRING)]
 
-    def of(drifts: list[str], level: str, number: Callable[[Played], float | None]) -> Values:
+    def of(drifts: list[str], level: str, number: Callable[[StreamResult], float | None]) -> Values:
         return mean_lives(lives(result.outcomes, row, drifts, level), number)
 
     a, b, c = LEVELS
@@ -85,7 +85,7 @@ def _levels(result: Result, row: str) -> list[list[str]]:
     ]
 
 
-def _best(result: Result, load_tests: int) -> str | None:
+def _best(result: ContextsResult, load_tests: int) -> str | None:
     errors = {
         row: found.value
         for row in result.rows
@@ -97,7 +97,7 @@ def _best(result: Result, load_tests: int) -> str | None:
     return min(errors, key=lambda row: errors[row], default=None)
 
 
-def _first(result: Result, row: str, of: Callable[[Score], float | None]) -> Values:
+def _first(result: ContextsResult, row: str, of: Callable[[Score], float | None]) -> Values:
     """A number of a row at level A, under the full gap and the first manner of contexts."""
     return scores(result.outcomes, row, result.setting.gaps[-1], result.setting.manners[0], of)
 
@@ -120,13 +120,13 @@ def _rg(score: Score) -> float:
     return score.rg
 
 
-def _drifted(played: Played) -> float | None:
+def _drifted(played: StreamResult) -> float | None:
     return played.drifted.error
 
 
-def _ordinary(played: Played) -> float | None:
+def _ordinary(played: StreamResult) -> float | None:
     return played.ordinary.error
 
 
-def _learned(played: Played) -> float:
+def _learned(played: StreamResult) -> float:
     return played.recalibrations

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rga_bench.synthetic.bridges.model_draft import Bridge
-from rga_bench.synthetic.hidden.effect import Kind, Setting, Span
+from rga_bench.synthetic.hidden.effect import EffectSetting, Kind, Span
 from rga_bench.synthetic.hidden.gauge import GAUGE
 from rga_bench.synthetic.hidden.load import HYSTERESIS, LOAD
 from rga_bench.synthetic.hidden.structure import PLAY, STRUCTURE
@@ -42,7 +42,7 @@ def fits(kind: str, bridge: Bridge) -> bool:
 
 def draw_hidden(
     kind: str,
-    setting: Setting,
+    setting: EffectSetting,
     rng: np.random.Generator,
     time: np.ndarray,
     size_of: Callable[[Span, float | None, float | None], float],
@@ -64,7 +64,7 @@ def draw_hidden(
 
 def sized(
     kind: str,
-    setting: Setting,
+    setting: EffectSetting,
     rng: np.random.Generator,
     onset: float | None,
     aim: float,

@@ -15,7 +15,7 @@ Place = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Setting:
+class EffectSetting:
     """What an effect is drawn for.
 
     The bridge, its time span [s], the noise of the sensors that are read in their units, and the
@@ -60,7 +60,7 @@ class Kind(NamedTuple):
     """
 
     parameter: str
-    draw: Callable[[Setting, np.random.Generator], Span]
+    draw: Callable[[EffectSetting, np.random.Generator], Span]
     act: Callable[[World, Span, float], None]
     onset: float = 0.0
     neutral: float | None = None

@@ -6,38 +6,38 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rga_bench.synthetic.hidden.effect import Kind, Setting, Span, either, pick, signed
+from rga_bench.synthetic.hidden.effect import EffectSetting, Kind, Span, either, pick, signed
 from rga_bench.synthetic.physics.world import World
 
 Rng = np.random.Generator
 _DAY = 86400.0
 
 
-def _sensor(s: Setting, rng: Rng) -> str:
+def _sensor(s: EffectSetting, rng: Rng) -> str:
     return str(pick(rng, list(s.noise)))
 
 
-def _biased(s: Setting, rng: Rng) -> Span:
+def _biased(s: EffectSetting, rng: Rng) -> Span:
     name = _sensor(s, rng)
     mild, severe = signed(rng, 0.5, 12.0)
     return Span({"sensor": name}, mild * s.noise[name], severe * s.noise[name])
 
 
-def _scaled(s: Setting, rng: Rng) -> Span:
+def _scaled(s: EffectSetting, rng: Rng) -> Span:
     name = _sensor(s, rng)
     if rng.random() < 0.15:
         return Span({"sensor": name}, -1.0, -1.0)
     return Span({"sensor": name}, *either(rng, (0.92, 0.3), (1.08, 2.0)))
 
 
-def _drifting(s: Setting, rng: Rng) -> Span:
+def _drifting(s: EffectSetting, rng: Rng) -> Span:
     name = _sensor(s, rng)
     mild, severe = signed(rng, 1.0, 20.0)
     unit = s.noise[name] / (s.duration / _DAY)
     return Span({"sensor": name}, mild * unit, severe * unit)
 
 
-def _warming(s: Setting, rng: Rng) -> Span:
+def _warming(s: EffectSetting, rng: Rng) -> Span:
     name = _sensor(s, rng)
     mild, severe = signed(rng, 0.03, 1.5)
     return Span({"sensor": name}, mild * s.noise[name], severe * s.noise[name])
@@ -50,7 +50,7 @@ def _on_sensor(op: str) -> Callable[[World, Span, float], None]:
     return act
 
 
-def _swapped(s: Setting, rng: Rng) -> Span:
+def _swapped(s: EffectSetting, rng: Rng) -> Span:
     sensors = s.bridge.model["sensors"]
     alike: list[str] = []
     while not alike:
@@ -64,7 +64,7 @@ def _swap(w: World, span: Span, value: float) -> None:
     w.sensor_ops.append(("swap", tuple(span.place["sensors"])))
 
 
-def _broken(s: Setting, rng: Rng) -> Span:
+def _broken(s: EffectSetting, rng: Rng) -> Span:
     return Span({"sensor": _sensor(s, rng)}, fixed={"mode": pick(rng, ["dead", "stuck"])})
 
 
@@ -73,11 +73,11 @@ def _break(w: World, span: Span, value: float) -> None:
     w.sensor_ops.append((span.fixed["mode"], (span.place["sensor"], value)))
 
 
-def _measured(s: Setting, role: str) -> bool:
+def _measured(s: EffectSetting, role: str) -> bool:
     return role in s.bridge.roles and s.bridge.roles[role] not in s.latent
 
 
-def _misread(s: Setting, rng: Rng) -> Span:
+def _misread(s: EffectSetting, rng: Rng) -> Span:
     roles = s.bridge.roles
     role = pick(rng, [r for r in ("temperature", "area", "position") if _measured(s, r)])
     if role == "temperature":
@@ -87,7 +87,7 @@ def _misread(s: Setting, rng: Rng) -> Span:
     return Span({"context": roles[role]}, 0.01 * s.bridge.peaks[role], 0.3 * s.bridge.peaks[role])
 
 
-def _misscaled(s: Setting, rng: Rng) -> Span:
+def _misscaled(s: EffectSetting, rng: Rng) -> Span:
     roles = s.bridge.roles
     role = pick(rng, [r for r in ("temperature", "area", "weight") if _measured(s, r)])
     return Span({"context": roles[role]}, *either(rng, (0.96, 0.5), (1.04, 1.8)))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rga_bench.synthetic.hidden.effect import Kind, Setting, Span, either, pick, signed
+from rga_bench.synthetic.hidden.effect import EffectSetting, Kind, Span, either, pick, signed
 from rga_bench.synthetic.physics.world import Curiosity, World
 
 Rng = np.random.Generator
 
 
-def _expansion(s: Setting, rng: Rng) -> Span:
+def _expansion(s: EffectSetting, rng: Rng) -> Span:
     mild, severe = either(rng, (0.95, 0.6), (1.05, 1.5))
     return Span({"material": pick(rng, list(s.bridge.model["materials"]))}, mild, severe)
 
@@ -19,7 +19,7 @@ def _expand(w: World, span: Span, value: float) -> None:
     w.alpha = np.where(w.members_of(material=span.place["material"]), value * w.alpha, w.alpha)
 
 
-def _gradient(s: Setting, rng: Rng) -> Span:
+def _gradient(s: EffectSetting, rng: Rng) -> Span:
     flat = s.bridge.model.get("plane") == "xz"
     axis = "vertical" if flat or rng.random() < 0.8 else "lateral"
     if rng.random() < 0.8:
@@ -32,14 +32,14 @@ def _shade(w: World, span: Span, value: float) -> None:
     w.gradient[span.place["axis"]] = both
 
 
-def _loads(s: Setting, rng: Rng) -> list[str] | str:
+def _loads(s: EffectSetting, rng: Rng) -> list[str] | str:
     """The distributed load, or both sides of the cart."""
     if s.bridge.carts and rng.random() < 0.5:
         return list(s.bridge.carts)
     return s.bridge.area_load
 
 
-def _scaled(s: Setting, rng: Rng) -> Span:
+def _scaled(s: EffectSetting, rng: Rng) -> Span:
     mild, severe = either(rng, (0.96, 0.5), (1.04, 1.8))
     return Span({"effect": _loads(s, rng)}, mild, severe)
 
@@ -53,7 +53,7 @@ def _scale(w: World, span: Span, value: float) -> None:
     w.load_factor.update(dict.fromkeys(_named(span), value))
 
 
-def _shifted(s: Setting, rng: Rng) -> Span:
+def _shifted(s: EffectSetting, rng: Rng) -> Span:
     return Span({"effect": list(s.bridge.carts)}, *signed(rng, 0.05, 4.0))
 
 
@@ -61,7 +61,7 @@ def _shift(w: World, span: Span, value: float) -> None:
     w.load_shift.update(dict.fromkeys(_named(span), value))
 
 
-def _leaning(s: Setting, rng: Rng) -> Span:
+def _leaning(s: EffectSetting, rng: Rng) -> Span:
     return Span({"effect": _loads(s, rng)}, *signed(rng, 0.01, 0.45))
 
 
@@ -69,7 +69,7 @@ def _lean(w: World, span: Span, value: float) -> None:
     w.load_share.update(dict.fromkeys(_named(span), value))
 
 
-def _weather(s: Setting, rng: Rng) -> Span:
+def _weather(s: EffectSetting, rng: Rng) -> Span:
     members = s.bridge.model["members"].values()
     sides = sorted({g for m in members for g in m["groups"][1:]})
     group = s.bridge.floor[0] if s.bridge.push[2] else pick(rng, sides)
@@ -92,18 +92,18 @@ def _blow(w: World, span: Span, value: float) -> None:
     w.added_load.append((span.place["context"], force))
 
 
-def _strange(s: Setting, rng: Rng) -> Span:
+def _strange(s: EffectSetting, rng: Rng) -> Span:
     variant = pick(rng, ["softening", "squared temperature", "tide"])
     if variant == "softening":
         return Span({}, *signed(rng, 0.03, 0.6), fixed={"variant": variant})
     return _pushing(s, rng, variant)
 
 
-def _slow(s: Setting, rng: Rng) -> Span:
+def _slow(s: EffectSetting, rng: Rng) -> Span:
     return _pushing(s, rng, "hysteresis")
 
 
-def _pushing(s: Setting, rng: Rng, variant: str) -> Span:
+def _pushing(s: EffectSetting, rng: Rng, variant: str) -> Span:
     nodes = [k for k, xyz in enumerate(s.bridge.model["nodes"].values()) if xyz[2] == 0.0]
     few = [nodes[i] for i in rng.choice(len(nodes), 4, replace=False)]
     # Unequal forces on a few nodes make a shape that no load of the model has.

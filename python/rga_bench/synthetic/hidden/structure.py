@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rga_bench.synthetic.hidden.effect import Kind, Setting, Span, either, pick
-from rga_bench.synthetic.physics.frame import Array, Spring
+from rga_bench.synthetic.hidden.effect import EffectSetting, Kind, Span, either, pick
+from rga_bench.synthetic.physics.frame import Array, FrameSpring
 from rga_bench.synthetic.physics.world import Friction, Stop, StrandBar, World
 
 Rng = np.random.Generator
@@ -15,7 +15,7 @@ def _masked(mask: Array, factor: float) -> Array:
     return np.where(mask, factor, 1.0)
 
 
-def _modulus(s: Setting, rng: Rng) -> Span:
+def _modulus(s: EffectSetting, rng: Rng) -> Span:
     mild, severe = either(rng, (0.96, 0.72), (1.04, 1.4))
     return Span({"material": pick(rng, list(s.bridge.model["materials"]))}, mild, severe)
 
@@ -24,7 +24,7 @@ def _soften_material(w: World, span: Span, value: float) -> None:
     w.scale_stiffness(_masked(w.members_of(material=span.place["material"]), value))
 
 
-def _member(s: Setting, rng: Rng) -> Span:
+def _member(s: EffectSetting, rng: Rng) -> Span:
     if rng.random() < 0.25:
         return Span({"group": pick(rng, s.bridge.jointed)}, 0.94, 0.5)
     members = s.bridge.model["members"].items()
@@ -36,7 +36,7 @@ def _soften_member(w: World, span: Span, value: float) -> None:
     w.scale_stiffness(_masked(w.members_of(**span.place), value))
 
 
-def _bearings(s: Setting, rng: Rng) -> dict[str, object]:
+def _bearings(s: EffectSetting, rng: Rng) -> dict[str, object]:
     """One expansion bearing, or all that share the end of the first."""
     names = [name for name, _ in s.bridge.bearings]
     first = pick(rng, names)
@@ -54,15 +54,15 @@ def _dofs(w: World, span: Span, name: str = "") -> list[int]:
     return [w.support_dof(one, name or span.place["dof"]) for one in supports]
 
 
-def _restraint(s: Setting, rng: Rng) -> Span:
+def _restraint(s: EffectSetting, rng: Rng) -> Span:
     return Span(_bearings(s, rng), 1e5, 2e9, log=True)
 
 
 def _restrain(w: World, span: Span, value: float) -> None:
-    w.springs += [Spring(dof, None, value) for dof in _dofs(w, span)]
+    w.springs += [FrameSpring(dof, None, value) for dof in _dofs(w, span)]
 
 
-def _seat(s: Setting, rng: Rng) -> Span:
+def _seat(s: EffectSetting, rng: Rng) -> Span:
     supports = s.bridge.model["supports"]
     return Span({"support": pick(rng, list(supports)), "dof": "uz"}, 3e9, 1e7, log=True)
 
@@ -72,7 +72,7 @@ def _loosen(w: World, span: Span, value: float) -> None:
     _restrain(w, span, value)
 
 
-def _sinking(s: Setting, rng: Rng) -> Span:
+def _sinking(s: EffectSetting, rng: Rng) -> Span:
     sign = -1.0 if rng.random() < 0.85 else 1.0
     place = {"support": pick(rng, list(s.bridge.model["supports"])), "dof": "uz"}
     return Span(place, sign * 2e-4, sign * 0.02, log=True)
@@ -82,13 +82,13 @@ def _settle(w: World, span: Span, value: float) -> None:
     w.settlement.update(dict.fromkeys(_dofs(w, span), value))
 
 
-def _deck(s: Setting, rng: Rng) -> Span:
+def _deck(s: EffectSetting, rng: Rng) -> Span:
     group = pick(rng, s.bridge.floor)
     area = _group_area(s, group)
     return Span({"group": group}, 0.03 * area, 1.5 * area, log=True)
 
 
-def _group_area(s: Setting, group: str) -> float:
+def _group_area(s: EffectSetting, group: str) -> float:
     model = s.bridge.model
     first = next(m for m in model["members"].values() if group in m["groups"])
     return float(model["sections"][first["section"]]["A"])
@@ -100,7 +100,7 @@ def _add_area(w: World, span: Span, value: float) -> None:
     w.section = w.section._replace(ea=w.section.ea + added)
 
 
-def _stringers(s: Setting, rng: Rng) -> Span:
+def _stringers(s: EffectSetting, rng: Rng) -> Span:
     group = pick(rng, s.bridge.floor)
     tie = float(np.exp(rng.uniform(np.log(1e8), np.log(2e9))))
     area = _group_area(s, group)
@@ -117,14 +117,14 @@ def _add_strands(w: World, span: Span, value: float) -> None:
                 beside[node] = w.size
                 w.extra += 1
                 tie = span.fixed["connector_stiffness"]
-                w.springs.append(Spring(6 * int(node), beside[node], tie))
+                w.springs.append(FrameSpring(6 * int(node), beside[node], tie))
         i, j = sorted(w.geometry.ends[m], key=lambda n: float(w.geometry.xyz[n, 0]))
         e = w.model["materials"][members[m]["material"]]["E"]
         bar = StrandBar(beside[i], beside[j], int(m), e * value / float(w.geometry.length[m]))
         w.strands.append(bar)
 
 
-def _joints(s: Setting, rng: Rng) -> Span:
+def _joints(s: EffectSetting, rng: Rng) -> Span:
     severe = float(10.0 ** rng.uniform(7.7, 9.0))
     return Span({"group": list(s.bridge.jointed)}, 3e4, severe, log=True)
 
@@ -133,7 +133,7 @@ def _join(w: World, span: Span, value: float) -> None:
     w.join(span.place["group"], value)
 
 
-def _sticking(s: Setting, rng: Rng) -> Span:
+def _sticking(s: EffectSetting, rng: Rng) -> Span:
     fixed = {"permanent_force": float(np.round(rng.uniform(2e4, 1e5), -3))}
     return Span(_bearings(s, rng), 0.01, 0.4, log=True, fixed=fixed)
 
@@ -144,7 +144,7 @@ def _stick(w: World, span: Span, value: float) -> None:
     )
 
 
-def _loose_bolts(s: Setting, rng: Rng) -> Span:
+def _loose_bolts(s: EffectSetting, rng: Rng) -> Span:
     if rng.random() < 0.3:
         return Span({"group": pick(rng, s.bridge.jointed)}, 1e-5, 4e-3, log=True)
     members = s.bridge.model["members"].items()
@@ -156,7 +156,7 @@ def _slip(w: World, span: Span, value: float) -> None:
     w.slip = np.where(w.members_of(**span.place), value, 0.0)
 
 
-def _stopped(s: Setting, rng: Rng) -> Span:
+def _stopped(s: EffectSetting, rng: Rng) -> Span:
     fixed = {"gap": float(np.round(rng.uniform(5e-4, 4e-3), 5))}
     return Span(_bearings(s, rng), 1e5, 2e9, log=True, fixed=fixed)
 

@@ -21,7 +21,7 @@ DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 _BEAM_FLEXIBILITY = np.array([[1.0 / 3.0, -1.0 / 6.0], [-1.0 / 6.0, 1.0 / 3.0]])
 
 
-class Spring(NamedTuple):
+class FrameSpring(NamedTuple):
     """Linear spring between two degrees of freedom, or to the ground where ``b`` is None."""
 
     a: int
@@ -127,7 +127,7 @@ class Frame:
         geometry: Geometry,
         section: Stiffness,
         held: set[int],
-        springs: list[Spring] | None = None,
+        springs: list[FrameSpring] | None = None,
         extra: int = 0,
     ) -> Frame:
         """Assemble; rotations that nothing stiffens are held as well."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rga_bench.synthetic.physics.frame import DOFS, Array, Frame, Solution, Spring
+from rga_bench.synthetic.physics.frame import DOFS, Array, Frame, FrameSpring, Solution
 from rga_bench.synthetic.physics.friction import slide
 from rga_bench.synthetic.physics.play import slips, stops
 from rga_bench.synthetic.physics.world import World
@@ -23,7 +23,7 @@ _FLOW = 43200.0  # [s]
 
 
 @dataclass(frozen=True)
-class Pattern:
+class LoadPattern:
     """A load case of unit size: who drives it, nodal forces [d], member dT [m], settlement [d].
 
     ``course`` [n] is its size in every row.
@@ -115,14 +115,14 @@ def _played(
 
 
 def _assemble(world: World) -> Frame:
-    springs = [*world.springs, *(Spring(b.a, b.b, b.stiffness) for b in world.strands)]
+    springs = [*world.springs, *(FrameSpring(b.a, b.b, b.stiffness) for b in world.strands)]
     return Frame.build(world.geometry, world.section, world.held, springs, world.extra)
 
 
-def _patterns(world: World, contexts: Contexts, time: Array) -> list[Pattern]:
+def _patterns(world: World, contexts: Contexts, time: Array) -> list[LoadPattern]:
     rows, size, bars = len(time), world.size, len(world.alpha)
     none, cold, fast = np.zeros(size), np.zeros(bars), np.zeros(size)
-    out: list[Pattern] = []
+    out: list[LoadPattern] = []
     for name, effect in world.model["effects"].items():
         if effect["kind"] == "temperature":
             out.extend(_warmth(world, effect, contexts, rows))
@@ -134,7 +134,7 @@ def _patterns(world: World, contexts: Contexts, time: Array) -> list[Pattern]:
                 first = world.dof(node, "ux")
                 force[first : first + len(push)] += _lean(world, name, node) * np.array(push)
             course = world.load_factor.get(name, 1.0) * value(effect["factor"], contexts, rows)
-            load = [Pattern(effect["factor"]["context"], force, cold, fast, course)]
+            load = [LoadPattern(effect["factor"]["context"], force, cold, fast, course)]
             out.extend(_leaning(world, name, load, contexts, rows))
         elif effect["kind"] == "axle_load":
             load = _axle(world, name, effect, contexts, rows)
@@ -143,10 +143,12 @@ def _patterns(world: World, contexts: Contexts, time: Array) -> list[Pattern]:
         moved = np.zeros(size)
         for dof, way in world.settlement.items():
             moved[dof] = way
-        out.append(Pattern("settlement", none, cold, moved, np.ones(rows)))
+        out.append(LoadPattern("settlement", none, cold, moved, np.ones(rows)))
     for context, force in world.added_load:
         out.append(
-            Pattern(context, np.pad(force, (0, size - len(force))), cold, fast, contexts[context])
+            LoadPattern(
+                context, np.pad(force, (0, size - len(force))), cold, fast, contexts[context]
+            )
         )
     strange = world.curiosity
     if strange and strange.variant != "softening":
@@ -156,7 +158,7 @@ def _patterns(world: World, contexts: Contexts, time: Array) -> list[Pattern]:
         elif strange.variant == "hysteresis":
             course = _crept(temperature_change(world, contexts) / 10.0, time)
         force = strange.amount * np.pad(strange.force, (0, size - len(strange.force)))
-        out.append(Pattern("strange", force, cold, fast, course))
+        out.append(LoadPattern("strange", force, cold, fast, course))
     return out
 
 
@@ -171,26 +173,26 @@ def _crept(warm: Array, time: Array) -> Array:
     return out
 
 
-def _warmth(world: World, effect: Any, contexts: Contexts, rows: int) -> list[Pattern]:
+def _warmth(world: World, effect: Any, contexts: Contexts, rows: int) -> list[LoadPattern]:
     none = np.zeros(world.size)
     delta = value(effect["delta"], contexts, rows)
     driver = effect["delta"]["context"]
     uniform = np.zeros(len(world.alpha))
     for group, factor in effect["groups"].items():
         uniform[world.members_of(group=group)] = factor
-    out = [Pattern(driver, none, uniform, none, delta)]
+    out = [LoadPattern(driver, none, uniform, none, delta)]
     for axis, (ratio, difference) in world.gradient.items():
         shape = _slope(world, axis)
-        out.append(Pattern(driver, none, shape, none, ratio * delta + difference))
+        out.append(LoadPattern(driver, none, shape, none, ratio * delta + difference))
     return out
 
 
-def _gradient(world: World, effect: Any, contexts: Contexts, rows: int) -> Pattern:
+def _gradient(world: World, effect: Any, contexts: Contexts, rows: int) -> LoadPattern:
     """A gradient that the model has, driven by a context."""
     none = np.zeros(world.size)
     course = value(effect["difference"], contexts, rows)
     shape = _slope(world, effect["axis"])
-    return Pattern(effect["difference"]["context"], none, shape, none, course)
+    return LoadPattern(effect["difference"]["context"], none, shape, none, course)
 
 
 def _slope(world: World, axis: str) -> Array:
@@ -201,8 +203,8 @@ def _slope(world: World, axis: str) -> Array:
 
 
 def _leaning(
-    world: World, load: str, upright: list[Pattern], contexts: Contexts, rows: int
-) -> list[Pattern]:
+    world: World, load: str, upright: list[LoadPattern], contexts: Contexts, rows: int
+) -> list[LoadPattern]:
     """The patterns of a load, and those that eccentricities in the model add to them."""
     out = list(upright)
     for effect in world.model["effects"].values():
@@ -231,7 +233,7 @@ def _side(world: World, node: str) -> float:
     return float(np.sign(offset))
 
 
-def _axle(world: World, name: str, effect: Any, contexts: Contexts, rows: int) -> list[Pattern]:
+def _axle(world: World, name: str, effect: Any, contexts: Contexts, rows: int) -> list[LoadPattern]:
     path = effect["path"]
     points = np.array([world.model["nodes"][n] for n in path])
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
@@ -247,11 +249,11 @@ def _axle(world: World, name: str, effect: Any, contexts: Contexts, rows: int) -
             course += force * np.interp(at, arc, hat, left=0.0, right=0.0)
         down = idle.copy()
         down[world.dof(node, "uz")] = -_lean(world, name, node)
-        out.append(Pattern(effect["factor"]["context"], down, cold, idle, course * weight))
+        out.append(LoadPattern(effect["factor"]["context"], down, cold, idle, course * weight))
     return out
 
 
-def _softening(world: World, patterns: list[Pattern]) -> Array:
+def _softening(world: World, patterns: list[LoadPattern]) -> Array:
     """Factor on each pattern's course [n, p]: joints that yield more the heavier the load."""
     factor = np.ones((len(patterns[0].course), len(patterns)))
     strange = world.curiosity

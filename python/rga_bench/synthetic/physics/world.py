@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rga_bench.synthetic.bridges.model_draft import ModelDict
-from rga_bench.synthetic.physics.frame import DOFS, Array, Geometry, Spring, Stiffness
+from rga_bench.synthetic.physics.frame import DOFS, Array, FrameSpring, Geometry, Stiffness
 
 
 @dataclass
@@ -66,7 +66,7 @@ class World:
     section: Stiffness
     alpha: Array
     held: set[int]
-    springs: list[Spring] = field(default_factory=list)
+    springs: list[FrameSpring] = field(default_factory=list)
     strands: list[StrandBar] = field(default_factory=list)
     extra: int = 0
     gradient: dict[str, tuple[float, float]] = field(default_factory=dict)  # axis: ratio, diff.
