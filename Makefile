@@ -21,6 +21,7 @@ test: wheel  ## build and install rga in a fresh environment, and run every chec
 	$(TEST)/ruff check
 	$(TEST)/ruff format --check
 	$(TEST)/mypy --strict python
+	$(TEST)/lint-imports --no-cache
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace

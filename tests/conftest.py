@@ -10,7 +10,8 @@ import polars as pl
 import pytest
 
 from rga.cli import main
-from rga.diagnosis import Findings, diagnose
+from rga.diagnosis import diagnose
+from rga.findings import Findings
 from rga.model import Model, load_model, read_effect, read_model
 from rga.records import Record, load_record
 from rga.simulation import Simulator

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.contexts.drift import DRIFTS
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.setting import DRIFTING, ContextsTask, Sizes

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga.arrays import FloatArray
 from rga.model import read_effect, read_model
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 from rga.simulation.perturbation.chebyshev import FEWEST, MOST, between, positions
 from rga_bench.synthetic import draw_case

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model, read_model
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 LENGTH, E, BENDS, HALF_DEPTH, AXLE = 12.0, 2e11, 1e-4, 0.1, 1e5

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rga import Simulator, diagnose, load_model, load_record
-from rga.diagnosis import Findings
+from rga.findings import Findings
 from rga_bench.synthetic import draw_case
 
 SEED = 1028

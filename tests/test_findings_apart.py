@@ -12,8 +12,8 @@ import polars as pl
 import pytest
 
 from rga import diagnose, diagnose_many, load_findings, load_model
-from rga.diagnosis import Findings
 from rga.errors import InputError, ReportError
+from rga.findings import Findings
 from rga.model import Model, model_content, read_model
 from rga.records import Record
 from rga.twin.history import History

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.diagnosis import Findings
+from rga.findings import Findings
 from rga.model import read_model
 from rga.simulation import Simulator
 from rga_bench.synthetic import Case, draw_case

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference import Rows, Unknowns, infer_jointly
 from rga.inference.map.identifiability import BLIND, unseen_share
 from rga.inference.map.posterior_mode import posterior_mode, standard
 from rga.model import Model, read_model, write_model
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from loi_tasks import RANGES, SIZES, nearest, task
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.context_regime import BEYOND, PART, Contexts
 from rga_bench.contexts.data import LOAD_TESTS, calibration_of, stream_of
 from rga_bench.contexts.drift import DRIFTS, ONE_IN, MeasuredRows, when

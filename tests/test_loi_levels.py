@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from loi_tasks import SIZES, Nearest, nearest, task
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.contexts.data import DriftStream, calibration_of, stream_of
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.levels import CalibratedMethod, Learned, live, most_likely

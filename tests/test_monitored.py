@@ -12,8 +12,9 @@ import rga
 from rga.twin import Settings
 from rga.twin.history import History
 from rga.twin.runner import taken_up
+from rga.twin.sync.detector import synchrony
 from rga.twin.sync.monitor import Monitored
-from rga.twin.sync.protocol import OutOfSync, synchrony
+from rga.twin.sync.protocol import OutOfSync
 from rga.twin.sync.window_rule import WindowRule
 
 CHANNELS = ("D1", "D2", "dead", "stuck", "S1")

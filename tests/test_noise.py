@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rga.diagnosis import Findings, diagnose
-from rga.diagnosis.noise.row_covariance import BoolArray, Noise, RowCovariance
+from rga.arrays import BoolArray, FloatArray
+from rga.diagnosis import diagnose
+from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise
+from rga.findings import Findings
 from rga.model import load_model
-from rga.model.parameter import FloatArray
 from rga.records import load_record
 from rga_bench.diagnosis.design import Draw
 

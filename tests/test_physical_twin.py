@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rga.arrays import FloatArray
 from rga.model import Model, read_model
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 from rga_bench.synthetic.bridges.full_case_study import WEAKENED, full_case_study
 from rga_bench.synthetic.physical_twin import GAPS, PhysicalTwin

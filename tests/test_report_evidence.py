@@ -15,7 +15,7 @@ from rga.diagnosis.checks.profiles import onset_profile, profiles
 from rga.diagnosis.member_forces import member_forces
 from rga.diagnosis.residuals.patterns import known_contexts, leftovers
 from rga.diagnosis.search.laplace import extended
-from rga.findings.schema import Findings
+from rga.findings import Findings
 from rga.model import Effect, Model, read_model
 from rga.model.effect import seconds
 from rga.records import Record

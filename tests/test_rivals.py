@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from rga import diagnose, load_findings, plan
-from rga.diagnosis import Findings
 from rga.diagnosis.assemble import MOST_RIVALS, causes, effects_of
 from rga.diagnosis.checks.leave_one_out import hold
 from rga.diagnosis.member_forces import member_forces
@@ -20,6 +19,7 @@ from rga.diagnosis.search.stepwise import FITTED, HOPELESS, RIVAL, Alternative, 
 from rga.errors import InputError
 from rga.experiments.defaults import strain_share, usual_truck
 from rga.experiments.truck import lane_of
+from rga.findings import Findings
 from rga.findings.phrases import effect_words
 from rga.model import Effect, Model, read_effect, read_model
 from rga.model.schema import Sensor

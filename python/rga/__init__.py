@@ -5,22 +5,25 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rga.diagnosis import Findings, diagnose
+    from rga.diagnosis import diagnose
+    from rga.findings import Findings
     from rga.findings.io import load_findings
     from rga.jobs.batch import diagnose_many
+    from rga.jobs.run import run
     from rga.model import Effect, Model, load_model
+    from rga.outputs import write_findings
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, load_record
     from rga.simulation import Simulator
-    from rga.twin import Twin, run
+    from rga.twin import Twin
 
 __version__ = version("rga")
 
 # The doors open on first use, so that the command line starts without the heavy parts.
 _DOORS = {
     "Effect": "rga.model",
-    "Findings": "rga.diagnosis",
+    "Findings": "rga.findings",
     "Model": "rga.model",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
@@ -28,11 +31,12 @@ _DOORS = {
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
-    "load_findings": "rga.findings.io",
+    "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
-    "run": "rga.twin",
+    "run": "rga.jobs.run",
+    "write_findings": "rga.outputs",
 }
 
 __all__ = [
@@ -51,6 +55,7 @@ __all__ = [
     "load_record",
     "plan",
     "run",
+    "write_findings",
 ]
 
 

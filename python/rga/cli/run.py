@@ -62,7 +62,7 @@ def run(
     for warning in measured.warnings:
         typer.echo(f"warning: {warning}", err=True)
     # Not needed before the input is known to be good, and slow to import.
-    from rga.twin import run as run_twin
+    from rga.jobs.run import run as run_twin
 
     quiet = json == "-"
     with shown_progress() as progress, _interruption_told():

@@ -31,7 +31,7 @@ def schema(
 
         content = record_schema()
     else:
-        from rga.findings.schema import Findings
+        from rga.findings import Findings
 
         content = Findings.model_json_schema()
     write_json(content, json or "-")

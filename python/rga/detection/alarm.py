@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import expit, logsumexp, softmax
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 Kind = Literal["step", "drift", "variance"]
 

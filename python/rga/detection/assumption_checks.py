@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.detection.baseline.baseline_model import Reference, after_prediction
 from rga.detection.baseline.decorrelation import repeating
 from rga.detection.baseline.stationarity import changed
 from rga.detection.thresholds import MEMORIES, WITHIN, TailModel, memory_of
-from rga.model.parameter import FloatArray
 
 #: a baseline that chance makes so changeable less often is doubted
 DOUBTED = 0.01

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rga import _core
+from rga.arrays import FloatArray
 from rga.detection.alarm import Alarm, explain
 from rga.detection.assumption_checks import doubts
 from rga.detection.baseline.baseline_model import Reference, unwatched
@@ -16,7 +17,6 @@ from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
 from rga.detection.thresholds import TailModel, calibration, memory_of, simulated_memory
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 
 #: latest rows that an alarm is explained by
 ROWS_KEPT = 2048

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 
 #: numbers beyond this are taken for faults of their source
 LARGEST = 1e60

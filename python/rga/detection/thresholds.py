@@ -12,9 +12,9 @@ from functools import lru_cache
 import numpy as np
 from scipy.signal import lfilter
 
+from rga.arrays import FloatArray
 from rga.detection.baseline.baseline_model import Reference
 from rga.detection.statistic import STATISTICS
-from rga.model.parameter import FloatArray
 
 #: streams, and rows of each at least and at most
 STREAMS = 128

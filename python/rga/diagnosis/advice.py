@@ -4,6 +4,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
@@ -22,7 +23,6 @@ from rga.experiments.separation import (
     with_one_more,
 )
 from rga.experiments.truck import lane_of
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 
 #: rows of the record that stand for operation, and places at which a truck may stand

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.advice import Advice
 from rga.diagnosis.checks.explanations import Tried
 from rga.diagnosis.data.held_out import Gain
@@ -31,7 +32,7 @@ from rga.findings.schema import (
 )
 from rga.model.effect import Effect
 from rga.model.effects.sensors import SensorFault, SensorGain
-from rga.model.parameter import Estimated, FloatArray
+from rga.model.parameter import Estimated
 from rga.model.schema import Model
 from rga.records import Record
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.effect import Effect, Values
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model, Sensor
 from rga.simulation import Simulator
 

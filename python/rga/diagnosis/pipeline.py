@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rga.arrays import FloatArray
 from rga.diagnosis import assemble
 from rga.diagnosis.checks.explanations import Tried, compare, sensor_groups
 from rga.diagnosis.checks.own_response import own_response
@@ -37,9 +38,8 @@ from rga.diagnosis.search.stepwise import (
     without_needless,
 )
 from rga.diagnosis.verdict import doubts_of, verdict
+from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
-from rga.findings.schema import Findings
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 from rga.simulation import Simulator

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.experiments.candidates import rest
 from rga.experiments.truck import FACTOR, POSITION, Lane, Truck
 from rga.model.effect import Values
 from rga.model.effects.loading import LOAD_KINDS
-from rga.model.parameter import FloatArray
 from rga.model.schema import ContextVariable, Model, Sensor
 from rga.simulation import Simulator
 

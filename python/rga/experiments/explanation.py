@@ -6,9 +6,10 @@ from math import isfinite
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.effect import Effect
-from rga.model.parameter import Estimated, FloatArray, Normal, Prior
+from rga.model.parameter import Estimated, Normal, Prior
 from rga.model.schema import Model
 
 #: half width of a 90 % interval in standard deviations

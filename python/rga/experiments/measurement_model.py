@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.experiments.candidates import Added, LoadTest, context_noise, rest, sensor_noise
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.truck import FACTOR, POSITION, Lane, Truck
 from rga.model.effect import Effect, Values
 from rga.model.effects.stiffness import MemberStiffness
-from rga.model.parameter import FloatArray
 from rga.model.schema import ContextVariable, Model
 from rga.simulation import Simulator
 from rga.simulation.perturbation.trials import Vicinity

@@ -14,9 +14,9 @@ from math import erf, sqrt
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
+from rga.arrays import FloatArray
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import Errors, MeasurementModel
-from rga.model.parameter import FloatArray
 
 #: chance of a clear success from which on two explanations count as told apart
 LIKELY = 0.9

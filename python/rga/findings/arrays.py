@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.arrays import BoolArray, FloatArray
 from rga.model.effect import Values
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 

@@ -2,13 +2,11 @@
 
 import json
 from collections.abc import Callable
-from html import escape
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 
-from rga.errors import ReportError, in_short
 from rga.findings.arrays import DiagnosisArrays
 
 Interval = tuple[float, float]
@@ -181,32 +179,11 @@ class Findings(FindingsPart):
             ReportError: the report could not be drawn. Findings and model are there, and a line
                 that says so in the place of the report.
         """
-        from rga.model import write_model
+        # The writer stands above the findings: it is reached through the front of the package.
+        import rga
 
-        directory, extended = Path(directory), self.account.extended
-        directory.mkdir(parents=True, exist_ok=True)
-        path = directory / "findings.json"
-        temporary = path.with_name("findings.json.partial")
-        temporary.write_text(self.to_json() + "\n", encoding="utf-8")
-        write_model(extended, directory / "model.json")
-        temporary.replace(path)
-        shown = directory / "report.html"
-        try:
-            return (report or _write_report)(self, shown)
-        except Exception as error:  # of any kind: the findings do not hang on their report
-            fault = ReportError(in_short(error), directory)
-            # A report that stood here is of other findings.
-            said = f"The report could not be drawn: {fault.reason}."
-            shown.write_text(f"<!doctype html><title>No report</title><p>{escape(said)}</p>\n")
-            raise fault from error
+        return rga.write_findings(self, Path(directory), report)
 
     def to_json(self) -> str:
         """The content of findings.json."""
         return json.dumps(self.model_dump(mode="json"), indent=1, allow_nan=False)
-
-
-def _write_report(findings: Findings, path: Path) -> Path:
-    # What draws is loaded when it is needed, and may be what fails.
-    from rga.report import write_report
-
-    return write_report(findings, path)

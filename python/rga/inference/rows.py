@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 
 

@@ -9,8 +9,8 @@ import polars as pl
 
 from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
+from rga.findings import Findings
 from rga.findings.phrases import effect_words
-from rga.findings.schema import Findings
 from rga.model import Model, load_model
 from rga.parallel import finished
 from rga.records import Record, load_record

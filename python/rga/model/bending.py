@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.axes import member_axes
-from rga.model.parameter import FloatArray
 from rga.model.schema import DOFS, Model
 from rga.model.structure import HELD_BY_PLANE
 

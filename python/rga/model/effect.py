@@ -8,16 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import BaseModel, ConfigDict, field_validator, model_validator
 
-from rga.model.parameter import (
-    Driven,
-    Estimated,
-    FloatArray,
-    Parameter,
-    Place,
-    Prior,
-    marks,
-    resolve,
-)
+from rga.arrays import FloatArray
+from rga.model.parameter import Driven, Estimated, Parameter, Place, Prior, marks, resolve
 
 if TYPE_CHECKING:
     from rga.model.readings import Readings

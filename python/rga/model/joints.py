@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.model.schema import Model
 
 #: sine of the angle between two members below which one runs on as the other

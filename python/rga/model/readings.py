@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.model.parameter import FloatArray, listed
+from rga.arrays import FloatArray
+from rga.model.parameter import listed
 
 
 @dataclass

@@ -7,12 +7,12 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray, listed
+from rga.arrays import FloatArray, IntArray
+from rga.model.parameter import listed
 from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
 
 T = TypeVar("T")
-IntArray = NDArray[np.int64]
 #: a load along a member: its number, local axis, from, to [m], start, end
 Spread = tuple[int, int, float, float, float, float]
 #: what a structure remembers of effects

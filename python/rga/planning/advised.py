@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from rga.experiments.candidates import Added, LoadTest
 from rga.experiments.truck import Truck
-from rga.findings.schema import Findings
+from rga.findings import Findings
 
 
 def advised(

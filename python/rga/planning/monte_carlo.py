@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import MeasurementModel
 from rga.experiments.separation import covariance
-from rga.model.parameter import FloatArray
 
 #: draws with either explanation true
 DRAWS = 50

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rga.arrays import FloatArray
 from rga.diagnosis.assemble import versions
 from rga.diagnosis.noise import random_effects
 from rga.diagnosis.search.stepwise import RIVAL
@@ -17,10 +18,9 @@ from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import LIKELY, Pair, paired, success
 from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
+from rga.findings import Findings
 from rga.findings.io import findings_sha256
-from rga.findings.schema import Findings
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.experiments.candidates import LoadTest
 from rga.experiments.explanation import HALF_WIDTH
 from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Pair
-from rga.model.parameter import FloatArray
 from rga.planning.result import PlannedSensor, PlannedTest, Says, Telling
 from rga.planning.selection import Choice
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Known, Pair, known, nothing, whitened, with_one_more
-from rga.model.parameter import FloatArray
 
 #: separation beyond which no more is bought: 97 % win by 4.6 log-odds
 ENOUGH = 5.5

@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 import polars as pl
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.records.mapping import TimeColumns
 from rga.records.read import Table
-from rga.records.record import FloatArray
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.model.effect import seconds
 from rga.records.clock import read_clock
 from rga.records.mapping import TimeColumns
 from rga.records.read import read_table
-from rga.records.record import FloatArray
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.records.record import FloatArray
 
 BLOCKS = 200
 #: blocks at the beginning that are taken as quiet, and over which a level is taken

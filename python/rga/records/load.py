@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.model.units import UNITS, per_si
@@ -11,7 +12,7 @@ from rga.records.clock import read_clock
 from rga.records.lead_in import find_lead_in
 from rga.records.mapping import Channel, RecordMapping, find_mapping, read_mapping
 from rga.records.read import Table, read_table
-from rga.records.record import FloatArray, Record
+from rga.records.record import Record
 
 #: deviations of the noise of a context, by which a value lies outside its range by chance
 CHANCE = 4.0

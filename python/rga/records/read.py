@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.records.record import FloatArray
 
 #: what no unit of any sensor reaches
 LARGEST = 1e30

@@ -8,9 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.model.effect import seconds
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

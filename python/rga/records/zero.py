@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.model.effect import seconds
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records.record import Record
 

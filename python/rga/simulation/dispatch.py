@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 
 from rga import _core
+from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray, Load, Structure
+from rga.model.structure import Load, Structure
 from rga.simulation.paths.condensation import Condensation, DependentTerms
 from rga.simulation.paths.factorisation import Factorisation
 from rga.simulation.paths.friction import respond_with_friction

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.model.effect import Effect, Values, seconds
-from rga.model.parameter import FloatArray
 from rga.model.readings import Readings
 from rga.model.schema import Model
-from rga.model.structure import IntArray, Load, Structure, build_structure
+from rga.model.structure import Load, Structure, build_structure
 from rga.simulation.derivatives.forward import jacobian, pull_back
 from rga.simulation.dispatch import CondensedPaths, Request, ResponsePlan, answer
 

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Effect, Model, read_effect
-from rga.model.parameter import Estimated, FloatArray
+from rga.model.parameter import Estimated
 from rga.simulation.simulator import Simulator
 
 #: draws behind an interval, and the half width of a 90 % interval in standard deviations

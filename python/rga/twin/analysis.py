@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from rga.diagnosis import Findings
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
+from rga.findings import Findings
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.history import Event, Kind
@@ -21,8 +21,8 @@ from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.novelty import novel, spacing
 from rga.twin.run_state import Standing
 from rga.twin.settings import Pace, Settings
+from rga.twin.sync.detector import synchrony
 from rga.twin.sync.policy import Policy
-from rga.twin.sync.protocol import synchrony
 
 Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version

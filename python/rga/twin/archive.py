@@ -7,8 +7,8 @@ from dataclasses import asdict
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga.twin.history import Event
 from rga.twin.messages.hardware import Packet
 from rga.twin.messages.queries import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256

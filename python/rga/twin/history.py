@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 

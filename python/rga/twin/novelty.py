@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: share of the neighbours' distances in the design phase that counts as known ground
 KNOWN_GROUND = 0.95

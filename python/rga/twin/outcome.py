@@ -1,19 +1,9 @@
-"""A run of the twin on a record, from its beginning to what it ended with."""
+"""What a run of the twin on a record ended with."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
-from rga.diagnosis import Findings
-from rga.diagnosis.preparation.prepare import check_length
-from rga.errors import InputError
-from rga.model import Model
-from rga.records import Record
+from rga.findings import Findings
 from rga.twin.history import History
-from rga.twin.runner import Progress, Running, taken_up
-from rga.twin.settings import Settings
-
-FILE = "twin.sqlite"
 
 
 @dataclass(frozen=True)
@@ -27,90 +17,3 @@ class Outcome:
 
     findings: Findings
     history: History
-
-    def write(self, directory: Path) -> Path:
-        """Write findings.json, model.json and report.html; the path of the report.
-
-        Raises:
-            ReportError: the report could not be drawn; findings and model are there.
-        """
-        return self.findings.write(directory, self._write_report)
-
-    def _write_report(self, findings: Findings, path: Path) -> Path:
-        # What draws is loaded when it is needed, and may be what fails.
-        from rga.report import write_run_report
-
-        return write_run_report(self.history, findings, path)
-
-
-def run(
-    model: Model,
-    record: Record,
-    directory: str | Path,
-    *,
-    settings: Settings | None = None,
-    seed: int = 0,
-    repository: str | None = None,
-    progress: Progress | None = None,
-    watch: Callable[[Running], None] | None = None,
-) -> Outcome:
-    """Calibrate a twin on a record, watch its gap, recalibrate, diagnose, and report.
-
-    The repository in the directory keeps everything: a run that was interrupted goes on from it
-    and ends in the same findings, and one that had ended is not done again.
-
-    Args:
-        model: the structure with its effects and sensors.
-        record: measured data.
-        directory: for `findings.json`, `model.json`, `report.html` and the repository.
-        settings: level of integration and the rest.
-        seed: of everything random.
-        repository: URL of a PostgreSQL database, instead of the file in the directory.
-        progress: told a stage and the share of it that is done.
-        watch: told after every step where the run stands.
-
-    Returns:
-        The findings of the closing diagnosis, and the history; both are in the directory too.
-
-    Raises:
-        InputError: the model cannot represent what the calibration needs, the record is too
-            short, or the repository cannot be used.
-        ReportError: the report could not be drawn; findings and model are there, and the same
-            call goes on with the report.
-    """
-    check_length(record)
-    directory = made(Path(directory))
-    if repository is not None and "://" not in repository:
-        raise InputError(
-            f"{repository!r} is no URL of a database",
-            "the repository",
-            "write postgresql://user@host/database, or leave it out",
-        )
-    place = repository or directory / FILE
-    with taken_up(model, record, place, settings or Settings(), seed, progress) as running:
-        if running.stage == "done" and running.is_written(directory):
-            return Outcome(running.stored_findings(), running.history())
-        while running.stage not in ("report", "done"):
-            running.step()
-            if watch is not None:
-                watch(running)
-        outcome = Outcome(running.findings(), running.history())
-        outcome.write(directory)
-        running.end()
-    return outcome
-
-
-def made(directory: Path) -> Path:
-    """The directory, made where it is missing.
-
-    Raises:
-        InputError: it cannot be.
-    """
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = "it is a file" if directory.is_file() else (error.strerror or "refused").lower()
-        raise InputError(
-            f"the output cannot be written, {reason}", str(directory), "give another directory"
-        ) from None
-    return directory

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis import Findings, diagnose
+from rga.diagnosis import diagnose
 from rga.errors import InputError
+from rga.findings import Findings
 from rga.model import Model
 from rga.records import Record
 from rga.twin.analysis import RealityGapAnalysis

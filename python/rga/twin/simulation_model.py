@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.inference.networks.design_samples import design
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q3, Q5, R3, R5, sha256

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 from scipy.special import ndtr
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 
 #: that a method is calibrated under
 MANNERS = ("same", "shifted", "held out", "smooth")

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.context_regime import Contexts
 from rga_bench.synthetic.physical_twin import PhysicalTwin
 

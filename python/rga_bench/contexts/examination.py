@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.levels import CalibratedMethod, most_likely
 from rga_bench.contexts.method import Calibrated, Estimate

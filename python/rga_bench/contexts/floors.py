@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.spatial import KDTree
 
+from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.score import Score, gap

@@ -15,8 +15,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.stats import t, ttest_ind
 
+from rga.arrays import FloatArray
 from rga.detection import SyncMonitor
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.setting import Sizes
 

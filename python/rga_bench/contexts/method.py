@@ -6,9 +6,9 @@ from typing import Protocol
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.rows import Rows
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.rows import Rows
-from rga.model.parameter import FloatArray
 from rga.twin.novelty import novel, spacing
 from rga.twin.settings import Settings
 from rga_bench.contexts.context_regime import BEYOND

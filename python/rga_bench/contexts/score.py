@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.method import Estimate
 

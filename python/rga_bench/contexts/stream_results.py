@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.contexts.data import CalibrationData, DriftStream, stream_of
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.levels import (

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 class Detector(Protocol):

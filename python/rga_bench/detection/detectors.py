@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 from scipy.signal import lfilter
 
+from rga.arrays import FloatArray
 from rga.detection import SyncMonitor
-from rga.model.parameter import FloatArray
 from rga_bench.detection.charts import Chart, Method, detecting
 
 WINDOW_RULE, MEWMA, MONITOR = "window rule", "MEWMA", "monitor"

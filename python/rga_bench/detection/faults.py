@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: share of the rows of a spiking sensor that hold a spike
 SPIKES = 0.02

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 @dataclass(frozen=True)

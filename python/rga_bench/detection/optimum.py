@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.detection.charts import Method
 from rga_bench.detection.faults import Drift, Spread, Step, StreamChange
 from rga_bench.detection.watch import Course

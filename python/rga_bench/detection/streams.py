@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.detection.faults import StreamChange
 from rga_bench.detection.noise import NoiseSource, StationaryNoise
 

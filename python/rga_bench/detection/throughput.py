@@ -11,11 +11,11 @@ from itertools import cycle
 import numpy as np
 from scipy.signal import lfilter
 
+from rga.arrays import FloatArray
 from rga.detection import GaussianWindow
 from rga.detection.baseline.baseline_model import Reference
 from rga.detection.monitor import ROWS_KEPT
 from rga.detection.statistic import STATISTICS
-from rga.model.parameter import FloatArray
 from rga_bench.detection.windows import Bottleneck, River
 from rga_bench.installed import present
 from rga_bench.measurement import Measurement

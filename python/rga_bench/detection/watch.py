@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.detection.charts import Chart, Method
 from rga_bench.detection.faults import StreamChange
 from rga_bench.detection.noise import WHITE, NoiseSource, StationaryNoise

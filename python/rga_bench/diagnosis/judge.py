@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.diagnosis import Findings, diagnose
+from rga.diagnosis import diagnose
+from rga.findings import Findings
 from rga.findings.schema import Cause
 from rga.model import load_model
 from rga.model.effect import Effect

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rga.diagnosis import Findings
+from rga.findings import Findings
 from rga_bench.diagnosis.hidden import stiff_joints
 from rga_bench.synthetic import Case
 

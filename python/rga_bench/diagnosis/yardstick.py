@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.prepare import prepare
@@ -18,7 +19,6 @@ from rga.diagnosis.search.laplace import FARTHEST, extended, fit
 from rga.diagnosis.search.linearised import Problem, pose, relaxed
 from rga.diagnosis.search.screening import Screening
 from rga.diagnosis.search.stepwise import settled
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 from rga.simulation import Simulator

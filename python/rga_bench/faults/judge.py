@@ -4,7 +4,8 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-from rga.diagnosis import Findings, diagnose
+from rga.diagnosis import diagnose
+from rga.findings import Findings
 from rga_bench.diagnosis.hidden import Truth
 from rga_bench.diagnosis.judge import FEW_RIVALS, kind_and_place
 from rga_bench.faults.base import load

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.solver.box_bridge import BoxBridge
 from rga_bench.solver.space_truss import Arrays, SpaceTruss
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.solver.space_truss import SpaceTruss, displacements, load_patterns, pinned
 
 PANELS, PANEL, HEIGHT, WIDTH = 21, 3.0, 5.0, 6.0

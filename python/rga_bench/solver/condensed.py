@@ -3,7 +3,7 @@
 import numpy as np
 
 from rga import _core
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.simulation.paths.condensation import Condensation
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree

@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.simulation.paths.condensation import Condensation
 from rga.simulation.paths.factorisation import Factorisation
 from rga_bench.measurement import Measurement

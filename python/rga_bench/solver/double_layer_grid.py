@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.solver.space_truss import SpaceTruss, displacements, load_patterns, pinned
 
 #: all members have this length [m]: half-octahedra

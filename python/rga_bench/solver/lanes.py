@@ -1,7 +1,7 @@
 """C3 by the instructions of the processor that it may use."""
 
 from rga import _core
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.solver.space_truss import SpaceTruss
 
 

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from rga import _core
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.installed import present
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree

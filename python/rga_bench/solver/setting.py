@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 @dataclass(frozen=True)

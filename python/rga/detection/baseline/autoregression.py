@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.stats import norm, rankdata
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: of an autoregression, at most
 ORDER = 4

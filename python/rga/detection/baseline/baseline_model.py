@@ -6,9 +6,9 @@ import numpy as np
 from scipy.stats import norm
 
 from rga import _core
+from rga.arrays import FloatArray
 from rga.detection.baseline.autoregression import predictors
 from rga.detection.baseline.decorrelation import independence
-from rga.model.parameter import FloatArray
 
 #: rows that a sensor must have been read in
 FEWEST = 30

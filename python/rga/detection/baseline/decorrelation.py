@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: variance of a sum of sensors below which they repeat each other, and their least part in it
 REPEATED, PART = 0.02, 0.1

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import kstwobign, norm
 
+from rga.arrays import FloatArray
 from rga.detection.baseline.baseline_model import Reference
 from rga.detection.statistic import STATISTICS
 from rga.detection.thresholds import TailModel
-from rga.model.parameter import FloatArray
 
 #: equal parts of a baseline that are held against each other
 PARTS = 16

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.noise.covariance import Covariance, Reduced
 from rga.diagnosis.search.laplace import FARTHEST, extended
 from rga.diagnosis.search.linearised import pose
 from rga.diagnosis.search.stepwise import NAMED, Found
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 
 HALVINGS, STEP = 16, 1e-3
 

@@ -10,6 +10,7 @@ from itertools import product
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.noise.covariance import Covariance
 from rga.diagnosis.noise.row_covariance import RowCovariance
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
@@ -17,7 +18,6 @@ from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.screening import Prospect, Screening
 from rga.diagnosis.search.stepwise import Found, evidence
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.simulation import Simulator
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.checks.explanations import hiding, sensor_groups, variance
-from rga.diagnosis.noise.row_covariance import BoolArray
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.stepwise import Found, without_cause
-from rga.model.parameter import FloatArray, listed
+from rga.model.parameter import listed
 
 #: channels that are left out one by one, at most: those that the cause changes most
 MOST_LEFT_OUT = 12

@@ -10,11 +10,10 @@ from math import ceil
 
 import numpy as np
 
+from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.laplace import fit
 from rga.diagnosis.search.stepwise import NAMED, Found
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
 
 #: spread of the response of a channel to a load pattern, where it is free [its own size]
 FREE = 0.3

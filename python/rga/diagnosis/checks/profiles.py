@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.noise.covariance import Reduced
 from rga.diagnosis.search.change_point import beginnings
 from rga.diagnosis.search.laplace import extended
 from rga.diagnosis.search.stepwise import Found
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 
 #: standard deviations about the estimate at which the model is simulated
 AWAY = np.array([-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5, 2.25, 3.0])

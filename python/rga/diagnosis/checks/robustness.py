@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import RIVAL, Alternative, Found, without_cause
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: log-odds up to which a lead may hang on one channel

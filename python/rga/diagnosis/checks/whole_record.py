@@ -5,14 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.checks.explanations import variance
 from rga.diagnosis.data.held_out import Gain, gain
 from rga.diagnosis.data.observations import Data
-from rga.diagnosis.noise.row_covariance import BoolArray
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.linearised import Problem, pose, relaxed, resimulated
 from rga.diagnosis.search.stepwise import ROUNDS, UNMOVED
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import bootstrap, norm, t
 
-from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.arrays import BoolArray, FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 
 BLOCKS = 50
 EVERY = 5

@@ -5,12 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.data.tare import Tare
-from rga.diagnosis.noise.row_covariance import BoolArray
 from rga.model.effect import Effect, Values
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
-from rga.model.structure import IntArray
 from rga.simulation import Simulator
 from rga.simulation.perturbation.trials import Vicinity
 from rga.simulation.simulator import Response

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray, IntArray
 from rga.model.effect import Values
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
 from rga.records import Record
 from rga.records.zero import Interval, rows_within
 

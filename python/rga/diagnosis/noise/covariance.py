@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_solve, lapack
 
+from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.noise.row_covariance import RowCovariance
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
 
 #: courses of as many sensors at a time are put on the contexts' errors
 TOGETHER = 1024

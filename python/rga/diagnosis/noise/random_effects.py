@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.covariance import Covariance, RandomEffects
 from rga.model.effects.stiffness import MemberStiffness
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3

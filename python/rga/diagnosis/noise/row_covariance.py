@@ -9,13 +9,9 @@ channels that each of them touches, int[k, channels]: what changes one sensor co
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cholesky_banded, lapack
 
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
-
-BoolArray = NDArray[np.bool_]
+from rga.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from scipy.linalg import lstsq
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln
 
-from rga.diagnosis.noise.row_covariance import BoolArray, Noise, RowCovariance
-from rga.model.parameter import FloatArray
+from rga.arrays import BoolArray, FloatArray
+from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 
 ITERATIONS = 12
 LARGEST_MEMORY = 0.995

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.row_covariance import Noise
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3

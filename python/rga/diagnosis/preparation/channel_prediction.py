@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.diagnosis.noise.row_covariance import BoolArray
-from rga.model.parameter import FloatArray
+from rga.arrays import BoolArray, FloatArray
 from rga.model.schema import Model
 
 #: robust deviations at which a reading is drawn in before it predicts other channels

@@ -14,9 +14,8 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data
-from rga.diagnosis.noise.row_covariance import BoolArray
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 ROWS = 240

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data, first_belief
 from rga.diagnosis.data.tare import Tare
-from rga.diagnosis.noise.row_covariance import BoolArray
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
 from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
 from rga.diagnosis.preparation.single_channel import BrokenChannel, lost_zeros, stuck_channels
@@ -16,7 +16,6 @@ from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.linearised import load_basis
 from rga.diagnosis.search.signatures import signatures
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 from rga.records.zero import zeros_of

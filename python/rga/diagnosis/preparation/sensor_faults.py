@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.preparation.channel_prediction import (
     ROWS_PER_COURSE,
     OwnParts,
@@ -24,7 +24,6 @@ from rga.diagnosis.preparation.channel_prediction import (
 )
 from rga.diagnosis.preparation.single_channel import BrokenChannel, copied, dead, scaled, silent
 from rga.model.effects.sensors import offset_scale
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 
 #: own part of a channel, in its usual size, from which on it is broken. Most sound ones of blind

@@ -5,8 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from rga.diagnosis.noise.row_covariance import BoolArray
-from rga.model.parameter import FloatArray
+from rga.arrays import BoolArray, FloatArray
 from rga.model.schema import Model
 
 #: share of rows that repeat the last one exactly, beyond which a channel is stuck

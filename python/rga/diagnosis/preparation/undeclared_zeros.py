@@ -11,11 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data
-from rga.diagnosis.noise.row_covariance import BoolArray
 from rga.diagnosis.search.hypothesis import hypotheses
 from rga.diagnosis.search.signatures import signatures
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 from rga.simulation import Simulator

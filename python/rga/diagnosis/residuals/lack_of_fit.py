@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.noise.random_effects import MEDIANS, lines
 from rga.diagnosis.search.linearised import Problem
-from rga.model.parameter import FloatArray
 
 #: spread of EA of members, of gains of channels, and of what a linear structure does otherwise [-]:
 #: JCSS Probabilistic Model Code, part 3.2 (steel): modulus 3 % and area of a section 4 %, together

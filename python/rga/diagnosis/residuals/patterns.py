@@ -11,13 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import spearmanr
 
-from rga.diagnosis.noise.row_covariance import BoolArray
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.sensor_noise import unexplainable
 from rga.diagnosis.residuals.curvature import curves
 from rga.diagnosis.residuals.slopes import bends
 from rga.diagnosis.search.linearised import Problem, load_basis, pose
 from rga.model.effect import Values
-from rga.model.parameter import FloatArray
 
 MOST = 3
 MARGIN = 1.25

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.search.linearised import Calibration, Problem, pose
-from rga.model.parameter import FloatArray
 
 #: standard deviations beyond which a bend is no chance
 BENT = 7.0

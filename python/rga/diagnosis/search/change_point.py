@@ -9,12 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.search.hypothesis import Hypothesis, Profile
 from rga.diagnosis.search.laplace import Fit, extended
 from rga.diagnosis.search.linearised import Problem
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
 from rga.simulation import Simulator
 
 #: pieces of the record whose sums are worked out, and rows about the best that stand alone

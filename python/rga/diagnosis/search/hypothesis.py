@@ -6,8 +6,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.effect import Effect
-from rga.model.parameter import FloatArray, Prior
+from rga.model.parameter import Prior
 from rga.model.schema import Model
 
 #: onsets that are told apart when the prior is spread over time

@@ -15,12 +15,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.noise.covariance import Reduced
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.linearised import Problem
 from rga.errors import InputError
 from rga.model.effect import Effect
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Belief, Data
 from rga.diagnosis.noise.covariance import Covariance
 from rga.diagnosis.noise.random_effects import (
@@ -18,7 +19,6 @@ from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise, unexplainable
 from rga.diagnosis.noise.zero_errors import slopes_at_zero, zero_errors
 from rga.model.effect import Values
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 STEP = 1e-3

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.covariance import Covariance
 from rga.diagnosis.search.hypothesis import LATE, Hypothesis, Profile
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.signatures import Block, chunks, signature, signatures
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: prospects that are judged anew, by signatures about the simulation as it stands

@@ -7,11 +7,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.errors import InputError
-from rga.model.parameter import FloatArray, Normal
-from rga.model.structure import IntArray
+from rga.model.parameter import Normal
 from rga.simulation.perturbation.trials import Vicinity
 
 #: channels that a signature may name; one that touches more is written on all

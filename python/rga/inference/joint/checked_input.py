@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.rows import Rows
-from rga.model.parameter import FloatArray
 
 #: a reading may be so many times the widest range of a sensor, and spreads of its noise, away from
 #: what the model simulates

@@ -4,13 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import posterior_mode, standard
 from rga.inference.rows import Rows
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: prior spread of the gain of a sensor [-], and of its offset [standard deviations of its noise]

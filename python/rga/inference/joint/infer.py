@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.joint.checked_input import (
     PLACE,
@@ -23,7 +24,6 @@ from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import Mode, posterior_mode
 from rga.inference.rows import Rows
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: rounds in which rows are given another chance to leave a wrong mode, steps of each; steps from an

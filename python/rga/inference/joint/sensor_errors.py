@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
-from rga.model.parameter import FloatArray
 
 
 @dataclass(frozen=True)

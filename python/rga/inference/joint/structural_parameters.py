@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.joint.joint_stiffness_surrogate import BENDING, with_bending
 from rga.model import Model, model_content, read_model
-from rga.model.parameter import FloatArray, listed
+from rga.model.parameter import listed
 from rga.simulation import Simulator
 
 #: spread of the stiffness of a whole group of members: decks, joints; and of a stretch of it [-]

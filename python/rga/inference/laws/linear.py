@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: degrees of freedom of the errors: a gross error pulls no more than a small one
 FREEDOM = 2.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: candidates within so many spreads of each other belong to one peak
 REACH = 3.0

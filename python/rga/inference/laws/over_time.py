@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from rga.arrays import FloatArray
 from rga.inference.laws.linear import fit_line
 from rga.inference.laws.mixture import Candidates
-from rga.model.parameter import FloatArray
 from rga.model.schema import ContextVariable
 
 #: rows whose data say less than this share of what the range says are passed over

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import least_squares
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: the neighbourhood of a start that is scanned, to each side in shares of the range, and its steps
 NEAR, SCANNED = 0.025, 11

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: half the width of a range whose uniform law has unit variance: the box in standard units
 EDGE = float(np.sqrt(3.0))

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.posterior_mode import standard
 from rga.inference.rows import Rows
-from rga.model.parameter import FloatArray
 
 #: weight of the ridge, as rows
 RIDGE = 10.0

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 LEVEL = 0.9

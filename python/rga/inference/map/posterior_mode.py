@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.inference.map.bounded_newton import EDGE, box_step
 from rga.inference.map.whitening import Whitening
-from rga.model.parameter import FloatArray
 
 #: damping at first, and what it falls to at most after a step, as a share
 DAMPING, FALL = 1e-2, 0.2

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 class Whitening:

@@ -7,12 +7,12 @@ import torch
 from safetensors.torch import load, save
 from torch import Tensor, nn
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.laws.mixture import Candidates
 from rga.inference.networks.determinism import one_thread
 from rga.inference.networks.layers import ContextPredictor, Encoder, Mixture
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 
 FORMAT = "rga context network 1"
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.networks.dataset import Samples
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.simulation import Simulator
 

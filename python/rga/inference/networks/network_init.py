@@ -3,13 +3,13 @@
 import torch
 from torch import Tensor, nn
 
+from rga.arrays import FloatArray
 from rga.inference.networks.augmentation import Corruption
 from rga.inference.networks.context_network import ContextNetwork
 from rga.inference.networks.dataset import Samples
 from rga.inference.networks.layers import initialise, start_from_line, telling_directions
 from rga.inference.networks.settings import TrainingSettings
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 
 #: a channel fades out beyond this many times the largest value simulated, within these bounds
 BEYOND, LIMITS = 1.5, (4.0, 40.0)

@@ -3,6 +3,7 @@
 import torch
 from torch import Tensor, nn
 
+from rga.arrays import FloatArray
 from rga.inference.networks.augmentation import Corruption
 from rga.inference.networks.context_network import ContextNetwork
 from rga.inference.networks.dataset import Samples
@@ -12,7 +13,6 @@ from rga.inference.networks.losses import REACH, context_loss, excess, physics_l
 from rga.inference.networks.physics_guidance import Guide
 from rga.inference.networks.schedule import reversal_strength
 from rga.inference.networks.settings import TrainingSettings
-from rga.model.parameter import FloatArray
 
 #: physics and target are looked at every so many steps, with that much more weight: they cost most
 EVERY = 2

@@ -6,8 +6,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from rga.arrays import FloatArray
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: contexts in physical units, float[n, contexts] in the order of the model -> readings,

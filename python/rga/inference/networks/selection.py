@@ -12,13 +12,13 @@ from functools import partial
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.networks.context_network import ContextNetwork
 from rga.inference.networks.dataset import Samples
 from rga.inference.networks.settings import TrainingSettings
 from rga.inference.networks.training import train
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: one row in so many is held out, of the source and of the target

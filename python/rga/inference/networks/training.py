@@ -6,6 +6,7 @@ import numpy as np
 import torch
 from torch import nn
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.networks.augmentation import Corruption
 from rga.inference.networks.context_network import ContextNetwork
@@ -19,7 +20,6 @@ from rga.inference.networks.settings import TrainingSettings
 from rga.inference.networks.stopping import Stopping
 from rga.inference.networks.surrogate import pretrain
 from rga.inference.variables import Variables
-from rga.model.parameter import FloatArray
 from rga.simulation import Simulator
 
 #: share of a first training that sees the source alone: real rows say little to a network that

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from rga.arrays import FloatArray
 from rga.model.axes import local_axes
 from rga.model.effect import Effect, Values
-from rga.model.parameter import FloatArray, Number, Parameter, Value
+from rga.model.parameter import Number, Parameter, Value
 from rga.model.structure import Load, Spread, Structure, check_direction, unit_vector
 
 if TYPE_CHECKING:

@@ -5,9 +5,10 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.effect import Effect, Values, seconds
 from rga.model.effects.loading import LOAD_KINDS
-from rga.model.parameter import FloatArray, Parameter, Positive, Prior, Value
+from rga.model.parameter import Parameter, Positive, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure
 

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.effect import Effect, Values
 from rga.model.parameter import (
     Driven,
     Factor,
-    FloatArray,
     Normal,
     Number,
     Parameter,

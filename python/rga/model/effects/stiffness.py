@@ -5,20 +5,11 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.effect import Effect, Values
 from rga.model.effects.temperature import Temperature
-from rga.model.parameter import (
-    Driven,
-    Factor,
-    FloatArray,
-    Normal,
-    Parameter,
-    Place,
-    Prior,
-    Value,
-    listed,
-)
+from rga.model.parameter import Driven, Factor, Normal, Parameter, Place, Prior, Value, listed
 from rga.model.schema import Model
 from rga.model.structure import Structure
 

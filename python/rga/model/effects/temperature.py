@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.effect import Effect, Values
-from rga.model.parameter import Driven, FloatArray, Number, Parameter, Value
+from rga.model.parameter import Driven, Number, Parameter, Value
 from rga.model.structure import Load, Structure
 
 if TYPE_CHECKING:

@@ -5,9 +5,10 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.effect import Effect, Values
 from rga.model.effects.temperature import Temperature
-from rga.model.parameter import Factor, FloatArray, Normal, Parameter, Place, Positive, Prior, Value
+from rga.model.parameter import Factor, Normal, Parameter, Place, Positive, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure
 

@@ -10,8 +10,8 @@ from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rga.arrays import FloatArray
 from rga.findings.arrays import DiagnosisArrays
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.report.drawing.labels import Label, marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Named, Spot, spots

@@ -4,8 +4,8 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from rga.findings.schema import Findings
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
+from rga.findings import Findings
 from rga.report.drawing.bridge_drawing import Shades, draw_at_sensors
 from rga.report.drawing.places import named_parts
 from rga.report.figures.deviation import percent_off, squares

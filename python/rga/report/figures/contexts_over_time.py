@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.report.figures.figure_style import AFTER, BEFORE, FAINT, grid, inline, label, style
 from rga.report.figures.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.report.text.quantities import scale

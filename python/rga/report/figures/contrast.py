@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Contrast
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.report.figures.figure_style import (
     AFTER,

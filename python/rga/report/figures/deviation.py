@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.findings.arrays import DiagnosisArrays
-from rga.model.parameter import FloatArray
 
 
 def percent_off(account: DiagnosisArrays, simulated: FloatArray) -> FloatArray:

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
+from rga.arrays import FloatArray
+from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
-from rga.findings.schema import Findings
-from rga.model.parameter import FloatArray
 from rga.report.figures.deviation import runs, squares
 from rga.report.figures.figure_style import (
     AFTER,

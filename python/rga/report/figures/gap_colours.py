@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.patches import Rectangle
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.report.figures.figure_style import STEEL
 from rga.report.figures.run_gap import mean
 from rga.report.text.quantities import short

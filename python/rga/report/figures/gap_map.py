@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path as Outline
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.report.figures.figure_style import FAINT, INK, inline, label, style
 from rga.report.figures.gap_colours import HATCH, LEVELS, GapColours, gap_colours
 from rga.report.figures.run_gap import row_of, standardised

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from rga.arrays import FloatArray
 from rga.diagnosis.member_forces import IDLE, NOT_CREDITED, Forces
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.report.drawing.bridge_drawing import KEY, TITLE, WIDTH, Shades, draw_supports, paint_scale
 from rga.report.drawing.places import Named

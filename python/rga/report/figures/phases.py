@@ -7,7 +7,7 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.report.drawing.bridge_drawing import MARKERS
 from rga.report.drawing.labels import marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Spot, spots

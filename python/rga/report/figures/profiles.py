@@ -5,8 +5,8 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rga.arrays import FloatArray
 from rga.diagnosis.checks.profiles import Onset, Profile
-from rga.model.parameter import FloatArray
 from rga.report.figures.figure_style import AFTER, FAINT, INK, STEEL, grid, inline, label, style
 from rga.report.pages.cards import plain
 from rga.report.text.quantities import duration, scale

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.report.figures.time_axis import when
 from rga.twin.history import Event, History
 

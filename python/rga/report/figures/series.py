@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from rga.arrays import FloatArray
+from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
-from rga.findings.schema import Findings
-from rga.model.parameter import FloatArray
 from rga.report.figures.deviation import runs
 from rga.report.figures.figure_style import (
     AFTER,

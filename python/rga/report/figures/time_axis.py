@@ -9,7 +9,7 @@ from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.records import Record
 from rga.report.pages.cards import moment
 from rga.report.text.quantities import MINUS, duration, short

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.report.drawing.labels import LETTER
 from rga.report.figures.figure_style import (
     AFTER,

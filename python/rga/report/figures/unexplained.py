@@ -6,12 +6,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
+from rga.arrays import FloatArray
 from rga.diagnosis.residuals.patterns import CORRELATED, Leftover, known_contexts, leftovers
 from rga.diagnosis.residuals.slopes import Bend, bends
 from rga.diagnosis.search.linearised import Problem
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.effect import Values
-from rga.model.parameter import FloatArray
 from rga.report.drawing.bridge_drawing import Shades, draw_at_sensors
 from rga.report.drawing.places import Named
 from rga.report.figures.bridge import EITHER_WAY

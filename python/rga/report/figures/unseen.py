@@ -5,8 +5,8 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Unseen
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.report.figures.figure_style import AFTER, BEFORE, MEASURED, grid, inline, label, style
 from rga.report.text.quantities import scale

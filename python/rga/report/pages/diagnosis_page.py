@@ -7,8 +7,8 @@ import numpy as np
 
 from rga.diagnosis.checks.leave_one_out import unseen_groups
 from rga.diagnosis.member_forces import member_forces
+from rga.findings import Findings
 from rga.findings.phrases import effect_words
-from rga.findings.schema import Findings
 from rga.report.figures.bridge import draw_bridge, draw_residuals
 from rga.report.figures.deviation import percent_off, runs
 from rga.report.figures.explanations import draw_explanations, kept, ranked

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from rga.findings.schema import Findings
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
+from rga.findings import Findings
 from rga.report.figures.contexts_over_time import draw_contexts, drawn_contexts, out_of_range
 from rga.report.figures.gap_map import draw_gap_map
 from rga.report.figures.growth import draw_growth

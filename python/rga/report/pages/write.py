@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from rga.findings.schema import Findings
+from rga.findings import Findings
 from rga.report.pages.diagnosis_page import page
 from rga.report.pages.fault_tolerant_parts import Lost
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
+from rga.arrays import FloatArray, IntArray
 
 
 def along(rates: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from rga.errors import InputError
 
 if TYPE_CHECKING:
-    from rga.model.parameter import FloatArray
+    from rga.arrays import FloatArray
     from rga.simulation.simulator import Simulator
 
 

@@ -5,8 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from rga import _core
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
+from rga.arrays import FloatArray, IntArray
 from rga.simulation.derivatives.directions import along
 from rga.simulation.paths.pseudo_forces import (
     at_rest,

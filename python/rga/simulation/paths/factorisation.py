@@ -3,8 +3,7 @@
 import numpy as np
 
 from rga import _core
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
+from rga.arrays import FloatArray, IntArray
 from rga.simulation.derivatives.directions import along
 from rga.simulation.paths.rank_one_terms import Arrays
 

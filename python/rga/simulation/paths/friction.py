@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
+from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.response import respond
 

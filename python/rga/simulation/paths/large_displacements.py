@@ -3,10 +3,10 @@
 import numpy as np
 
 from rga import _core
+from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError, UnstableStructureError
-from rga.model.parameter import FloatArray
 from rga.model.schema import DOFS
-from rga.model.structure import IntArray, Load, Structure
+from rga.model.structure import Load, Structure
 from rga.simulation.paths.response import node_name, patterns, refused
 
 

@@ -5,7 +5,7 @@ Nodal forces stand for them, and elongations follow from displacements of the no
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.simulation.paths.rank_one_terms import Arrays, Terms
 
 DISPLACEMENT, ROTATION, FORCE, REACTION_FORCE, REACTION_MOMENT, END_FORCE = 0, 1, 3, 4, 5, 6

@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray, IntArray
 from rga.model.axes import local_axes
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray
 
 Arrays = dict[str, NDArray[Any]]
 STRAIN = 2

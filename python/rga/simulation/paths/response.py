@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
+from rga.arrays import FloatArray
 from rga.errors import InputError, UnstableStructureError
-from rga.model.parameter import FloatArray
 from rga.model.schema import DOFS
 from rga.model.structure import Load, Structure
 

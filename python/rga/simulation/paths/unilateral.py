@@ -14,9 +14,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray, Law, Structure
+from rga.model.structure import Law, Structure
 from rga.simulation.paths.rank_one_terms import STRAIN
 
 #: Newton steps before a row is given up

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray, Structure
+from rga.arrays import FloatArray, IntArray
+from rga.model.structure import Structure
 from rga.simulation.paths.rank_one_terms import Arrays, stiffness_terms
 
 #: rows at which straightness is checked, beside the ends of each parameter

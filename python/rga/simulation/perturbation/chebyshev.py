@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray, Structure
+from rga.arrays import FloatArray, IntArray
+from rga.model.structure import Structure
 
 if TYPE_CHECKING:
     from rga.simulation.dispatch import Request

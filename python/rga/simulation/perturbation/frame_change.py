@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
-from rga.model.parameter import FloatArray
-from rga.model.structure import OUTPUT_KIND, IntArray, Structure
+from rga.arrays import FloatArray, IntArray
+from rga.model.structure import OUTPUT_KIND, Structure
 from rga.simulation.paths.response import patterns
 
 Arrays = dict[str, NDArray[Any]]

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray, Load, Structure
+from rga.arrays import FloatArray, IntArray
+from rga.model.structure import Load, Structure
 from rga.simulation.paths.pseudo_forces import (
     at_rest,
     own_readings,

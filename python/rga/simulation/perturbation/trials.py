@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rga.arrays import FloatArray, IntArray
 from rga.model.effect import Effect, Values
-from rga.model.parameter import FloatArray
-from rga.model.structure import IntArray, Load, Structure
+from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import APART, Request, coefficients, with_laws
 from rga.simulation.paths.response import patterns, respond
 from rga.simulation.paths.unilateral import respond_with_laws, terms_of

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga.twin.archive import Archive
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.data_driven import DataDrivenModel

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 def noise_of(stated: list[float | None], readings: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from rga.arrays import FloatArray
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
 from rga.inference.laws.mixture import Candidates, joined
 from rga.inference.laws.over_time import follow_law
@@ -15,7 +16,6 @@ from rga.inference.laws.refine import polish_line
 from rga.inference.laws.travel_direction import EitherWay
 from rga.inference.map.laplace import birge_ratio, covering_factor, laplace_spread
 from rga.model import ContextVariable, Model
-from rga.model.parameter import FloatArray
 from rga.twin.messages.queries import R4
 from rga.twin.simulation_model import SimulationModel, broken
 

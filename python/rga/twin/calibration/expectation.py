@@ -8,7 +8,7 @@ rows.
 import numpy as np
 from scipy.optimize import brentq
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 #: largest share by which a calibrated model is taken to be off
 LARGEST = 0.05

@@ -8,9 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.effect import seconds
-from rga.model.parameter import FloatArray
 from rga.model.schema import Model
 from rga.records import Record
 from rga.records.zero import rows_within, zeros_of

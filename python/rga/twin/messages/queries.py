@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, model_validator
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 Rows = Annotated[int, Field(ge=0)]
 Flags = NDArray[np.bool_]

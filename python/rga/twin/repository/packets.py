@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 # Reading a few rows of a long series then loads little else.
 LONGEST = 1024

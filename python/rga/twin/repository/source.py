@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, select
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.twin.repository import tables
 from rga.twin.repository.entries import Rows
 from rga.twin.repository.packets import LONGEST, unpack

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sqlalchemy import ColumnElement, Row, func
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga.twin.history import Event
 from rga.twin.repository import tables
 from rga.twin.repository.entries import (

@@ -3,9 +3,9 @@
 import json
 from collections.abc import Sequence
 
+from rga.arrays import FloatArray
 from rga.detection import SyncMonitor
 from rga.detection.baseline.baseline_model import unwatched
-from rga.model.parameter import FloatArray
 from rga.twin.settings import Settings
 from rga.twin.sync.protocol import OutOfSync, listed
 

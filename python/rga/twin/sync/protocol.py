@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from rga.model.parameter import FloatArray
-from rga.twin.settings import Settings
+from rga.arrays import FloatArray
 
 SHOWN = 4
 
@@ -55,20 +54,6 @@ class Synchrony(Protocol):
 
     def restore(self, state: bytes) -> None:
         """Go on where another stood."""
-
-
-def synchrony(channels: Sequence[str], settings: Settings) -> Synchrony:
-    """The detector that settings ask for.
-
-    Args:
-        channels: names of the sensors.
-        settings: of the run.
-    """
-    from rga.twin.sync.monitor import Monitored
-    from rga.twin.sync.window_rule import WindowRule
-
-    kind = Monitored if settings.detector == "monitor" else WindowRule
-    return kind(channels, settings)
 
 
 def listed(sensors: Sequence[str]) -> str:

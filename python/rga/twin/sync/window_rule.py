@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.detection import GaussianWindow
-from rga.model.parameter import FloatArray
 from rga.twin.settings import Settings
 from rga.twin.sync.protocol import OutOfSync, listed
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize
 
+from rga.arrays import FloatArray
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.posterior_mode import standard
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
 from rga_bench.contexts.methods.modes import Modes

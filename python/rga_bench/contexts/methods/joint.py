@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.joint.infer import Joint, infer_jointly
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import Calibrated, LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 

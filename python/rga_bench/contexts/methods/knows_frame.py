@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 from rga_bench.synthetic.physical_twin import PhysicalTwin

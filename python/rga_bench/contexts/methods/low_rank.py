@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior

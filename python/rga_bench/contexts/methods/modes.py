@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import Mode, posterior_mode
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
 
 

@@ -17,11 +17,11 @@ from functools import partial
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
 from rga.inference.map.laplace import covering_factor
 from rga.inference.networks.design_samples import design
 from rga.inference.networks.selection import unlabelled_gap
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import Estimate, LearningProblem, Method
 
 #: simulated rows, drawn anew, on which intervals are stretched

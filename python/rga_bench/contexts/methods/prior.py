@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import standard
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.inference.map.bounded_newton import box_step
 from rga.inference.map.posterior_mode import Mode, standard
-from rga.model.parameter import FloatArray
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import least_squares
 
+from rga.arrays import FloatArray
 from rga.inference.joint.joint_stiffness_surrogate import with_bending
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga.model import Model
-from rga.model.parameter import FloatArray
 from rga.model.schema import ContextVariable
 from rga.simulation import Simulator
 from rga_bench.contexts.method import LearningProblem

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 
 
 class Peer(Protocol):

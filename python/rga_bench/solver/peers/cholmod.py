@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 from scipy import sparse
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.installed import NotInstalledError
 from rga_bench.solver.peers.linear_system import BATCH, LinearSystem
 from rga_bench.timing import shortest

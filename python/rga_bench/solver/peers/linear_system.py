@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.solver.space_truss import SpaceTruss
 
 #: samples whose matrices are filled at once: their values stay in the cache

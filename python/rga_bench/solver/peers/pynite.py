@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.installed import NotInstalledError
 from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.space_truss import SpaceTruss

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from rga.model.parameter import FloatArray
+from rga.arrays import FloatArray
 from rga_bench.solver.peers.linear_system import BATCH, LinearSystem
 
 #: symmetric positive definite: the diagonal serves as pivots; small blocks suit bridges best

@@ -1,0 +1,88 @@
+"""A run of the twin on a record, from its beginning to its report."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from rga.diagnosis.preparation.prepare import check_length
+from rga.errors import InputError
+from rga.model import Model
+from rga.outputs import write_run
+from rga.records import Record
+from rga.twin.outcome import Outcome
+from rga.twin.runner import Progress, Running, taken_up
+from rga.twin.settings import Settings
+
+FILE = "twin.sqlite"
+
+
+def run(
+    model: Model,
+    record: Record,
+    directory: str | Path,
+    *,
+    settings: Settings | None = None,
+    seed: int = 0,
+    repository: str | None = None,
+    progress: Progress | None = None,
+    watch: Callable[[Running], None] | None = None,
+) -> Outcome:
+    """Calibrate a twin on a record, watch its gap, recalibrate, diagnose, and report.
+
+    The repository in the directory keeps everything: a run that was interrupted goes on from it
+    and ends in the same findings, and one that had ended is not done again.
+
+    Args:
+        model: the structure with its effects and sensors.
+        record: measured data.
+        directory: for `findings.json`, `model.json`, `report.html` and the repository.
+        settings: level of integration and the rest.
+        seed: of everything random.
+        repository: URL of a PostgreSQL database, instead of the file in the directory.
+        progress: told a stage and the share of it that is done.
+        watch: told after every step where the run stands.
+
+    Returns:
+        The findings of the closing diagnosis, and the history; both are in the directory too.
+
+    Raises:
+        InputError: the model cannot represent what the calibration needs, the record is too
+            short, or the repository cannot be used.
+        ReportError: the report could not be drawn; findings and model are there, and the same
+            call goes on with the report.
+    """
+    check_length(record)
+    directory = made(Path(directory))
+    if repository is not None and "://" not in repository:
+        raise InputError(
+            f"{repository!r} is no URL of a database",
+            "the repository",
+            "write postgresql://user@host/database, or leave it out",
+        )
+    place = repository or directory / FILE
+    with taken_up(model, record, place, settings or Settings(), seed, progress) as running:
+        if running.stage == "done" and running.is_written(directory):
+            return Outcome(running.stored_findings(), running.history())
+        while running.stage not in ("report", "done"):
+            running.step()
+            if watch is not None:
+                watch(running)
+        outcome = Outcome(running.findings(), running.history())
+        write_run(outcome, directory)
+        running.end()
+    return outcome
+
+
+def made(directory: Path) -> Path:
+    """The directory, made where it is missing.
+
+    Raises:
+        InputError: it cannot be.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = "it is a file" if directory.is_file() else (error.strerror or "refused").lower()
+        raise InputError(
+            f"the output cannot be written, {reason}", str(directory), "give another directory"
+        ) from None
+    return directory
