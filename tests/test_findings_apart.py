@@ -15,6 +15,7 @@ from rga import diagnose, diagnose_many, load_findings, load_model
 from rga.errors import InputError, ReportError
 from rga.findings import Findings
 from rga.model import Model, model_content, read_model
+from rga.outputs import write_run
 from rga.records import Record
 from rga.twin.history import History
 from rga.twin.outcome import Outcome
@@ -142,7 +143,7 @@ def test_a_run_loses_no_findings(
 ) -> None:
     monkeypatch.setattr("rga.report.write_run_report", fails)
     with pytest.raises(ReportError, match="Singular matrix"):
-        Outcome(cracked, History.__new__(History)).write(tmp_path)
+        write_run(Outcome(cracked, History.__new__(History)), tmp_path)
     assert whole(tmp_path, cracked)
 
 
