@@ -193,7 +193,7 @@ def test_of_many_bridges_no_findings_are_lost(files: Path, monkeypatch: pytest.M
             np.linalg.LinAlgError("Singular matrix"),
         ),
         (
-            "rga.diagnosis.assemble.Advice",
+            "rga.diagnosis.assemble.causes.Advice",
             "what would tell the causes from their rivals",
             InputError("the structure can move", "node L1, uz", "hold it"),
         ),
@@ -226,7 +226,7 @@ def test_a_stage_after_the_search_loses_no_findings(
     assert cause.effect == sound.effect
     assert (findings.verdict, findings.gap) == (cracked.verdict, cracked.gap)
     assert (findings.explanations == []) == (stage == "rga.diagnosis.pipeline.compare")
-    assert (cause.separated_by == "") == (stage == "rga.diagnosis.assemble.Advice")
+    assert (cause.separated_by == "") == (stage == "rga.diagnosis.assemble.causes.Advice")
     html = findings.write(tmp_path).read_text(encoding="utf-8")
     assert LOST not in html
     assert told in html

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from rga import diagnose, load_findings, plan
-from rga.diagnosis.assemble import MOST_RIVALS, causes, effects_of
+from rga.diagnosis.assemble.causes import MOST_RIVALS, causes
+from rga.diagnosis.assemble.effects import effects_of
 from rga.diagnosis.checks.leave_one_out import hold
 from rga.diagnosis.member_forces import member_forces
 from rga.diagnosis.search.hypothesis import hypotheses

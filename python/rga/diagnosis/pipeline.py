@@ -7,7 +7,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga.arrays import FloatArray
-from rga.diagnosis import assemble
+from rga.diagnosis.assemble.causes import causes, fault_cause
+from rga.diagnosis.assemble.contexts import contexts
+from rga.diagnosis.assemble.effects import cause_name, effects_of, fault_effect
+from rga.diagnosis.assemble.explanations import explanations, unidentifiable
+from rga.diagnosis.assemble.gaps import gap, groups
 from rga.diagnosis.checks.explanations import Tried, compare, sensor_groups
 from rga.diagnosis.checks.own_response import own_response
 from rga.diagnosis.checks.robustness import (
@@ -41,6 +45,7 @@ from rga.diagnosis.verdict import doubts_of, verdict
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.schema import Model
+from rga.provenance import versions
 from rga.records import Record
 from rga.simulation import Simulator
 
@@ -104,9 +109,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         failed,
     )
 
-    effects = assemble.effects_of(found, prepared.record)
-    faults = {fault: assemble.fault_effect(fault, prepared.record) for fault in prepared.faults}
-    named = {assemble.cause_name(model, effect): effect for effect in effects}
+    effects = effects_of(found, prepared.record)
+    faults = {fault: fault_effect(fault, prepared.record) for fault in prepared.faults}
+    named = {cause_name(model, effect): effect for effect in effects}
     broken = {f"fault of {fault.sensor}": effect for fault, effect in faults.items()}
     extended = model.extended({**named, **broken})
     before, believed = whole.simulated(start), whole.believed(found.problem)
@@ -129,22 +134,22 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     )
     findings = Findings(
         verdict=verdict(found, bool(prepared.faults), structure),
-        gap=assemble.gap(account, gained),
+        gap=gap(account, gained),
         causes=[
-            *(assemble.fault_cause(fault, effect) for fault, effect in faults.items()),
-            *assemble.causes(found, effects, prepared.record, failed),
+            *(fault_cause(fault, effect) for fault, effect in faults.items()),
+            *causes(found, effects, prepared.record, failed),
         ],
-        unidentifiable=assemble.unidentifiable(screening.first),
+        unidentifiable=unidentifiable(screening.first),
         unexplained={"share": share, "looks_like": "; ".join([*doubts, pattern])},
-        explanations=assemble.explanations(tried, found, prepared.record),
-        groups=assemble.groups(account, grouped),
-        contexts=assemble.contexts(found.problem, model),
+        explanations=explanations(tried, found, prepared.record),
+        groups=groups(account, grouped),
+        contexts=contexts(found.problem, model),
         warnings=[*prepared.warnings, *(one.words for one in off if one.alone), *failed],
         misfits=list(dict.fromkeys(name for one in off for name in one.channels)),
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,
-        versions=assemble.versions(),
+        versions=versions(),
     )
     findings._account = account
     progress("done", 1.0)

@@ -8,7 +8,6 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga.arrays import FloatArray
-from rga.diagnosis.assemble import versions
 from rga.diagnosis.noise import random_effects
 from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
@@ -27,6 +26,7 @@ from rga.planning.predictions import planned_sensor, planned_test
 from rga.planning.result import Advised, Plan, PlannedTruck, Separation, SimulatedTrials
 from rga.planning.rivals import rival_pairs, working_sensors
 from rga.planning.selection import Choice, Chooser
+from rga.provenance import versions
 from rga.simulation import Simulator
 
 SENSORS, POSITIONS = 2, 3

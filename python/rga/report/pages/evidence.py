@@ -5,7 +5,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from rga.diagnosis.assemble import last_effect
+from rga.diagnosis.assemble.effects import last_effect
 from rga.diagnosis.checks.detectability import Least, least_seen
 from rga.diagnosis.checks.leave_one_out import Hold, contrast, hold
 from rga.diagnosis.checks.profiles import onset_profile, profiles

@@ -1,0 +1,1 @@
+"""From numbers to findings: causes, gaps, groups and contexts as findings hold them."""

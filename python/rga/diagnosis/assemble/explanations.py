@@ -1,0 +1,114 @@
+"""What was tried beside the causes, and what could not be seen at all."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rga.diagnosis.assemble.causes import rivals_of
+from rga.diagnosis.assemble.effects import content, estimated_effects
+from rga.diagnosis.checks.explanations import Tried
+from rga.diagnosis.search.laplace import Fit
+from rga.diagnosis.search.screening import Prospect
+from rga.diagnosis.search.stepwise import NAMED, RIVAL, Found
+from rga.findings.phrases import effect_words, place_words
+from rga.findings.schema import (
+    Explanation,
+    Unidentifiable,
+)
+from rga.records import Record
+
+SMALLEST_D_PRIME = 3.0
+#: share of the gap on unseen channels that an explanation must take off; unlikely z
+UNHELPFUL, UNLIKELY = 0.98, 3.0
+#: share of the named causes' gap on unseen channels below which another predicts them better
+BETTER = 0.9
+
+
+def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
+    """The explanations that were tried, the likeliest first."""
+    if not tried:
+        return []
+    nothing = tried[0]
+    named = next((one for one in tried if one.fit and _same(one.fit, found.fit)), nothing)
+    told = []
+    for one in tried:
+        if one.fit is None:
+            words, effects, odds = "a free gain on every channel", [], 0.0
+            remark = "fits, and says nothing of channels that were not fitted"
+        else:
+            effects = [content(effect) for effect in estimated_effects(one.fit, record)]
+            words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
+            odds = one.fit.log_evidence
+            remark = _remark(one, nothing, named, found)
+        told.append(
+            Explanation(
+                words=words,
+                effects=effects,
+                log_odds=max(odds, -1e9),
+                gap=one.gap,
+                gap_unseen_channels=one.gap_unseen if np.isfinite(one.gap_unseen) else None,
+                remark=remark,
+            )
+        )
+    return sorted(told, key=lambda one: -one.log_odds)
+
+
+def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
+    """Every kind and place whose largest physical value stays too small to be seen."""
+    return [
+        Unidentifiable(
+            kind=p.hypothesis.name,
+            place=place_words(p.hypothesis.place.values()),
+            d_prime_at_largest=p.largest,
+        )
+        for p in prospects
+        if p.largest < SMALLEST_D_PRIME
+    ]
+
+
+def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
+    """Why an explanation was kept or rejected."""
+    assert one.fit is not None  # the caller tells free gains apart
+    if not one.fit.hypotheses:
+        return "what every other explanation is measured against"
+    causes = found.fit
+    ahead = one.fit.log_evidence - causes.log_evidence
+    rivals = [r for number in range(len(found.log_odds)) for r in rivals_of(found, number)]
+    held = [any(h.same_place(cause) for h in one.fit.hypotheses) for cause in causes.hypotheses]
+    remarks = []
+    if causes.hypotheses and all(held):
+        added = len(one.fit.hypotheses) > len(causes.hypotheses)
+        earned = f"what is added earns {ahead:+.1f} log-odds, too little to be named"
+        remarks.append(earned if added else "what is named")
+    elif causes.hypotheses:
+        close = f"cannot be told from what is named ({ahead:+.1f} log-odds)"
+        hangs = f"its distance ({ahead:+.0f} log-odds) hangs on one channel: cannot be told apart"
+        rejected = (
+            hangs
+            if any(_same(one.fit, r.fit) for r in rivals)
+            else f"rejected ({ahead:+.0f} log-odds)"
+        )
+        remarks.append(close if ahead > -RIVAL else rejected)
+    else:
+        remarks.append(
+            "rejected: not likelier than no effect at all"
+            if ahead < NAMED
+            else f"likelier than no effect ({ahead:+.0f} log-odds), and rejected all the same: it "
+            "may be what no kind explains that speaks for it"
+        )
+    if not all(held) and one.gap_unseen < BETTER * named.gap_unseen:
+        remarks.append("yet it predicts channels that were left out better than what is named")
+    if np.isfinite(one.gap_unseen) and one.gap_unseen > UNHELPFUL * nothing.gap_unseen:
+        remarks.append("does not help channels that it was not fitted to")
+    remarks += [
+        f"{hypothesis.name.replace('_', ' ')} would need an unlikely value"
+        for hypothesis, where in zip(one.fit.hypotheses, one.fit.slices(), strict=True)
+        if np.abs(one.fit.z[where]).max(initial=0.0) > UNLIKELY
+    ]
+    return "; ".join(remarks)
+
+
+def _same(one: Fit, other: Fit) -> bool:
+    return len(one.hypotheses) == len(other.hypotheses) and all(
+        a.same_place(b) for a, b in zip(one.hypotheses, other.hypotheses, strict=True)
+    )
