@@ -2,7 +2,7 @@
 //! itself, and with memory and sensors that go together.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use rga_core::{Array, ChangeStatistics, Reference, ReferenceArrays, STATISTICS};
+use rga_detect::{Array, ChangeStatistics, Reference, ReferenceArrays, STATISTICS};
 
 const SENSORS: usize = 84;
 const ROWS: usize = 100_000;

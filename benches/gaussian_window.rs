@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pulp::{Arch, Simd, WithSimd};
-use rga_core::{Array, GaussianWindow, WindowRule};
+use rga_detect::{Array, GaussianWindow, WindowRule};
 
 const SENSORS: usize = 84;
 const ROWS: usize = 200_000;

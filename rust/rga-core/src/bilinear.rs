@@ -6,8 +6,7 @@
 use std::ops::Range;
 
 use nalgebra::DMatrix;
-
-use crate::lanes::Lanes;
+use rga_simd::f64::Lanes;
 
 /// `value` in row and column of the matrix of one weight.
 #[derive(Debug, Clone, Copy)]
@@ -329,7 +328,7 @@ fn by_crosses(entries: &[Entry]) -> Vec<(Terms, Terms)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::ONE;
+    use rga_simd::f64::ONE;
 
     /// `[weights, rows, columns]` = `[2, 4, 5]`: one of rank one, one of full rank.
     fn entries() -> Vec<Entry> {

@@ -1,12 +1,17 @@
 //! Checks of single arrays. Messages name the array, the index and what would
 //! be right.
 
-use crate::error::{Error, Result};
-use crate::input::Array;
+use rga_simd::Array;
 
-impl<T> Array<'_, T> {
+use crate::error::{Error, Result};
+
+pub trait CheckShape {
     /// The shape must be `expected` and the values must fill it.
-    pub fn check_shape(&self, name: &str, expected: &[usize]) -> Result<()> {
+    fn check_shape(&self, name: &str, expected: &[usize]) -> Result<()>;
+}
+
+impl<T> CheckShape for Array<'_, T> {
+    fn check_shape(&self, name: &str, expected: &[usize]) -> Result<()> {
         if self.shape == expected && self.values.len() == expected.iter().product::<usize>() {
             return Ok(());
         }
@@ -17,8 +22,33 @@ impl<T> Array<'_, T> {
     }
 }
 
-impl Array<'_, f64> {
-    pub fn check_each(&self, name: &str, right: &str, good: impl Fn(f64) -> bool) -> Result<()> {
+pub trait CheckNumbers {
+    /// Every value must be good, which is what `right` says.
+    fn check_each(&self, name: &str, right: &str, good: impl Fn(f64) -> bool) -> Result<()>;
+
+    /// The same of one row of a matrix.
+    fn check_row(
+        &self,
+        name: &str,
+        row: usize,
+        right: &str,
+        good: impl Fn(f64) -> bool,
+    ) -> Result<()>;
+
+    fn check_finite(&self, name: &str) -> Result<()>;
+
+    /// The same of the value of one member.
+    fn check_member(
+        &self,
+        name: &str,
+        index: usize,
+        right: &str,
+        good: impl Fn(f64) -> bool,
+    ) -> Result<()>;
+}
+
+impl CheckNumbers for Array<'_, f64> {
+    fn check_each(&self, name: &str, right: &str, good: impl Fn(f64) -> bool) -> Result<()> {
         match self.values.iter().position(|&value| !good(value)) {
             None => Ok(()),
             Some(at) => Err(Error::invalid(format!(
@@ -29,8 +59,7 @@ impl Array<'_, f64> {
         }
     }
 
-    /// The same of one row of a matrix.
-    pub fn check_row(
+    fn check_row(
         &self,
         name: &str,
         row: usize,
@@ -46,11 +75,11 @@ impl Array<'_, f64> {
         }
     }
 
-    pub fn check_finite(&self, name: &str) -> Result<()> {
+    fn check_finite(&self, name: &str) -> Result<()> {
         self.check_each(name, "a finite number", f64::is_finite)
     }
 
-    pub fn check_member(
+    fn check_member(
         &self,
         name: &str,
         index: usize,
@@ -67,8 +96,13 @@ impl Array<'_, f64> {
     }
 }
 
-impl Array<'_, i64> {
-    pub fn check_range(&self, name: &str, low: i64, end: usize) -> Result<()> {
+pub trait CheckIndices {
+    /// Every index must be at least `low` and below `end`.
+    fn check_range(&self, name: &str, low: i64, end: usize) -> Result<()>;
+}
+
+impl CheckIndices for Array<'_, i64> {
+    fn check_range(&self, name: &str, low: i64, end: usize) -> Result<()> {
         let good = |value: i64| value >= low && value < end as i64;
         match self.values.iter().position(|&value| !good(value)) {
             None => Ok(()),

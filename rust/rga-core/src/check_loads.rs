@@ -1,7 +1,7 @@
 //! Loads and outputs are checked in full against a checked structure.
 
 use crate::axes::local_axes;
-use crate::check::positive;
+use crate::check::{CheckIndices, CheckNumbers, CheckShape, positive};
 use crate::error::{DOFS, Error, Result};
 use crate::input::{Loads, Outputs, Structure};
 

@@ -1,7 +1,7 @@
 //! A structure is checked in full before any step uses it.
 
 use crate::axes::local_axes;
-use crate::check::{not_negative, positive};
+use crate::check::{CheckIndices, CheckNumbers, CheckShape, not_negative, positive};
 use crate::error::{Error, Result};
 use crate::input::Structure;
 

@@ -1,5 +1,6 @@
 //! What can go wrong, in words a user can act on.
 
+use rga_simd::UnknownInstructions;
 use thiserror::Error;
 
 pub type Result<T> = std::result::Result<T, Error>;
@@ -61,5 +62,11 @@ impl Error {
             row,
             error: Box::new(self),
         }
+    }
+}
+
+impl From<UnknownInstructions> for Error {
+    fn from(error: UnknownInstructions) -> Self {
+        Self::invalid(error.to_string())
     }
 }

@@ -5,8 +5,10 @@
 //! with r the friction forces on the structure. Each step sticks to the place
 //! of the step before, or slips with |r| = mu N against the motion.
 
+use rga_simd::Array;
+
+use crate::check::{CheckNumbers, CheckShape};
 use crate::error::{Error, Result};
-use crate::input::Array;
 
 #[derive(Debug, Clone, Copy)]
 pub struct Bearings<'a> {

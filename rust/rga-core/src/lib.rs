@@ -14,9 +14,8 @@
 //!
 //! `refactor` repeats an analysis for samples of which every stiffness may
 //! vary: the structure is read off its elements as sums over their factors
-//! (`system`, `bilinear`), samples are factorised side by side in the `lanes`
-//! of SIMD vectors, of the `instructions` that the processor has, and rows are
-//! shared among threads (`parallel`).
+//! (`system`, `bilinear`), samples are factorised side by side in the lanes
+//! of SIMD vectors (`rga_simd`), and rows are shared among threads (`parallel`).
 //!
 //! `condensed` repeats an analysis for many samples of which few
 //! stiffnesses, or none, vary.
@@ -24,14 +23,10 @@
 //! `nonlinear` finds the equilibrium of the deformed structure, sample by sample, from members
 //! that are `deformed`: loads are combined (`combination`), and tangents go where they belong in
 //! the matrix (`scatter`).
-//!
-//! Two watch what sensors send: `gaussian_window` is the paper's rule, `change_statistics` weighs
-//! every kind and scale of change.
 
 mod assembly;
 mod axes;
 mod bilinear;
-mod change_statistics;
 mod check;
 mod check_loads;
 mod check_structure;
@@ -46,11 +41,8 @@ mod element;
 mod equilibrium;
 mod error;
 mod friction;
-mod gaussian_window;
 mod graph;
 mod input;
-mod instructions;
-mod lanes;
 mod load;
 mod member;
 mod model;
@@ -70,15 +62,14 @@ mod supernodes;
 mod system;
 mod turning;
 
+pub use rga_simd::{Array, instructions};
+
 pub use assembly::LowerTriangle;
-pub use change_statistics::{Alarm, ChangeStatistics, Reference, ReferenceArrays, STATISTICS};
 pub use condensed::Condensed;
 pub use directions::Directions;
 pub use error::{Error, Result};
 pub use friction::{Bearings, slide};
-pub use gaussian_window::{GaussianWindow, Refusal, WindowRule};
-pub use input::{Array, Loads, Outputs, Structure};
-pub use instructions::instructions;
+pub use input::{Loads, Outputs, Structure};
 pub use nonlinear::respond_nonlinear;
 pub use ordering::fill_reducing;
 pub use refactor::{Refactored, Samples};

@@ -14,6 +14,9 @@
 //! Advantages of the mixed format in geometrically nonlinear analysis of beams and shells using
 //! solid finite elements, IJNME 109, 2017).
 
+use rga_simd::Array;
+
+use crate::check::{CheckNumbers, CheckShape};
 use crate::check_loads::{check_loads, check_outputs};
 use crate::check_structure::check_structure;
 use crate::combination::{Combination, Combined};
@@ -22,7 +25,7 @@ use crate::deformed::{Deformed, Flexible};
 use crate::element::Vector12;
 use crate::equilibrium::Equilibrium;
 use crate::error::{Error, Result};
-use crate::input::{Array, Loads, Outputs, Structure};
+use crate::input::{Loads, Outputs, Structure};
 use crate::load::fixed_end_forces;
 use crate::model::Model;
 use crate::observe::{Observer, Output, State, read_outputs};

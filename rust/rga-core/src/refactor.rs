@@ -19,16 +19,17 @@ mod tiles;
 use std::ops::Range;
 
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
+use rga_simd::Array;
+use rga_simd::f64::{Lanes, MOST, ONE, One, Packs};
+use rga_simd::instructions_named;
 
-use crate::check::not_negative;
+use crate::check::{CheckNumbers, CheckShape, not_negative};
 use crate::check_loads::{check_loads, check_outputs};
 use crate::check_structure::check_structure;
 use crate::constraint::Constraints;
 use crate::directions::Directions;
 use crate::error::{Error, Result};
-use crate::input::{Array, Loads, Outputs, Structure};
-use crate::instructions::instructions_named;
-use crate::lanes::{Lanes, MOST, ONE, One, Packs};
+use crate::input::{Loads, Outputs, Structure};
 use crate::model::Model;
 use crate::observe::read_outputs;
 use crate::ordering::OFTEN;

@@ -5,14 +5,14 @@
 //! with load coefficients q, unknowns z and outputs y. The matrices are read off the elements once,
 //! by probing them with unit motions and with each load pattern.
 
-use crate::assembly::LowerTriangle;
+use rga_simd::f64::Lanes;
 
+use crate::assembly::LowerTriangle;
 use crate::bilinear::{Bilinear, Entry, merged};
 use crate::constraint::Constraints;
 use crate::element::Vector12;
 use crate::error::Result;
 use crate::input::Loads;
-use crate::lanes::Lanes;
 use crate::load::{PatternLoads, fixed_end_forces};
 use crate::member::Member;
 use crate::model::Model;

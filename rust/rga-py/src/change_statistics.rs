@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
-use rga_core::{Reference, ReferenceArrays, Refusal, STATISTICS};
+use rga_detect::{Reference, ReferenceArrays, Refusal, STATISTICS};
 
 use crate::arrays::Held;
 
@@ -11,7 +11,7 @@ pyo3::import_exception!(rga.errors, InputError);
 
 /// What `SyncMonitor` is made of.
 #[pyclass(module = "rga._core")]
-pub struct ChangeStatistics(rga_core::ChangeStatistics);
+pub struct ChangeStatistics(rga_detect::ChangeStatistics);
 
 #[pymethods]
 impl ChangeStatistics {
@@ -43,7 +43,7 @@ impl ChangeStatistics {
                 "one a statistic",
             ))
         })?;
-        Ok(Self(rga_core::ChangeStatistics::new(
+        Ok(Self(rga_detect::ChangeStatistics::new(
             reference, thresholds, rows_kept,
         )))
     }
@@ -99,7 +99,7 @@ impl ChangeStatistics {
     /// The statistics that `to_bytes` stored; InputError for other bytes.
     #[classmethod]
     fn from_bytes(_cls: &Bound<'_, PyType>, state: &[u8]) -> PyResult<Self> {
-        rga_core::ChangeStatistics::from_bytes(state)
+        rga_detect::ChangeStatistics::from_bytes(state)
             .map(Self)
             .map_err(refused)
     }

@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyType};
-use rga_core::{Refusal, WindowRule};
+use rga_detect::{Refusal, WindowRule};
 
 use crate::arrays::Held;
 
@@ -51,7 +51,7 @@ pyo3::import_exception!(rga.errors, InputError);
 /// >>> gaps.update([2.9, 1.1])
 /// array([False,  True])
 #[pyclass(module = "rga.detection")]
-pub struct GaussianWindow(rga_core::GaussianWindow);
+pub struct GaussianWindow(rga_detect::GaussianWindow);
 
 #[pymethods]
 impl GaussianWindow {
@@ -83,7 +83,7 @@ impl GaussianWindow {
             persistence,
             frozen,
         };
-        rga_core::GaussianWindow::new(rule)
+        rga_detect::GaussianWindow::new(rule)
             .map(Self)
             .map_err(refused)
     }
@@ -138,7 +138,7 @@ impl GaussianWindow {
     /// The window that `to_bytes` stored; InputError for other bytes.
     #[classmethod]
     fn from_bytes(_cls: &Bound<'_, PyType>, state: &[u8]) -> PyResult<Self> {
-        rga_core::GaussianWindow::from_bytes(state)
+        rga_detect::GaussianWindow::from_bytes(state)
             .map(Self)
             .map_err(refused)
     }

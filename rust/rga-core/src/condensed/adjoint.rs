@@ -5,10 +5,10 @@
 //!   by q: Y' g - (H V)' l,    by d: (l - a) v, term by term.
 
 use pulp::{Simd, WithSimd};
+use rga_simd::f64::{Lanes, Packs};
 
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
-use crate::lanes::{Lanes, Packs};
 
 /// Gradients `[n, p + r]` of rows; gives the first row whose structure is not stable.
 pub struct AdjointKernel<'a> {

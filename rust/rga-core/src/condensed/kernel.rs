@@ -4,10 +4,10 @@
 //! instruction set.
 
 use pulp::{Simd, WithSimd};
+use rga_simd::f64::{Lanes, Packs};
 
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
-use crate::lanes::{Lanes, Packs};
 
 /// Outputs of rows; gives the first row whose structure is not stable.
 pub struct Kernel<'a> {

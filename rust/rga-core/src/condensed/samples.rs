@@ -1,7 +1,8 @@
 //! As many condensed samples as there are lanes, solved together.
 
+use rga_simd::f64::{Lanes, Packs};
+
 use super::Condensed;
-use crate::lanes::{Lanes, Packs};
 
 /// A pivot below this part of its diagonal has no digits left.
 const SINGULAR: f64 = 1e-12;

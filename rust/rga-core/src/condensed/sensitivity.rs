@@ -3,11 +3,11 @@
 //!   (H + diag(d)) dv = H V dq - diag(dd) v,    dy = Y dq - C (d dv + dd v)
 
 use pulp::{Simd, WithSimd};
+use rga_simd::f64::{Lanes, Packs};
 
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
 use crate::directions::Directions;
-use crate::lanes::{Lanes, Packs};
 
 /// Derivatives `[n, c, o]` of rows; gives the first row whose structure is not stable.
 pub struct SensitivityKernel<'a> {

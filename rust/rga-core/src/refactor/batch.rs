@@ -1,10 +1,11 @@
 //! Samples that are solved together, one a lane.
 
+use rga_simd::f64::Lanes;
+
 use super::cholesky::Cholesky;
 use super::panels::Panels;
 use crate::equilibrium::{LOOSE_MOMENT, REFINE};
 use crate::error::Result;
-use crate::lanes::Lanes;
 use crate::stability::{DELICATE_PIVOT, SOFTEST};
 use crate::system::System;
 

@@ -1,10 +1,11 @@
 //! One sample at a time, refined and with every refusal named: what the lanes leave over, and
 //! structures that are too large for them.
 
+use rga_simd::f64::{Lanes, ONE, One};
+
 use super::batch::{Batch, Solve};
 use crate::equilibrium::{LOOSE_MOMENT, loose_moment};
 use crate::error::{Error, Result};
-use crate::lanes::{Lanes, ONE, One};
 use crate::model::Model;
 use crate::reduction::Reduction;
 use crate::stability::Solver;

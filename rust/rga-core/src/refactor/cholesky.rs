@@ -7,10 +7,10 @@
 #![allow(clippy::needless_range_loop)]
 
 use pulp::NullaryFnOnce;
+use rga_simd::f64::Lanes;
 
 use super::panels::{Panel, Panels, Update};
 use super::tiles::{Below, Hand, columns, load, store, take_products};
-use crate::lanes::Lanes;
 
 /// L of K = L L', with one over its diagonal beside it.
 pub struct Cholesky<'a, L: Lanes> {

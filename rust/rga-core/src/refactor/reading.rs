@@ -2,11 +2,12 @@
 //!
 //!   K dz = B dq + dB q - dK z,    dy = S dz + T dq + dS z + dT q.
 
+use rga_simd::Array;
+use rga_simd::f64::Lanes;
+
 use super::batch::{Batch, Solve};
 use crate::directions::Directions;
 use crate::error::Result;
-use crate::input::Array;
-use crate::lanes::Lanes;
 use crate::system::System;
 
 /// Rows of the samples in the lanes.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop)]
 
-use crate::lanes::Lanes;
+use rga_simd::f64::Lanes;
 
 /// Rows of a panel below columns of which the triangle is factorised.
 pub struct Below<'a, V, const WIDE: usize> {
