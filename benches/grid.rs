@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use common::grid::roof;
-use common::samples::{refactored, run};
+use common::samples::{batch_solver, run};
 use common::{DISPLACEMENT, at};
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -17,7 +17,7 @@ fn bench(criterion: &mut Criterion) {
     let roof = [roof(PANELS)];
     let middle = [at(DISPLACEMENT, (PANELS / 2 * (PANELS + 2)) as i64, 2)];
     let factors = vec![1.0; roof[0].ends.len()];
-    let analyse = || refactored(black_box(&roof), &middle).expect("it is well formed");
+    let analyse = || batch_solver(black_box(&roof), &middle).expect("it is well formed");
     let batch = analyse();
     let mut group = criterion.benchmark_group("roof of 25 thousand unknowns");
     group

@@ -93,7 +93,7 @@ impl Loads<'_> {
 /// o outputs, each one number a pattern.
 #[derive(Debug, Clone, Copy)]
 pub struct Outputs<'a> {
-    /// `[o]` see `observe::Output`
+    /// `[o]` see `fe::outputs::Output`
     pub kind: Array<'a, i64>,
     /// `[o]` node or member
     pub index: Array<'a, i64>,

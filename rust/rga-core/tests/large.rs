@@ -3,7 +3,7 @@
 mod common;
 
 use common::grid::roof;
-use common::samples::{refactored, run};
+use common::samples::{batch_solver, run};
 use common::*;
 use rga_core::{Error, Result};
 
@@ -19,7 +19,7 @@ fn displacements(case: &Case) -> Vec<Output> {
 
 /// By one analysis, and as a sample.
 fn both(case: &Case, outputs: &[Output]) -> Result<[Vec<f64>; 2]> {
-    let sample = refactored(std::slice::from_ref(case), outputs)?;
+    let sample = batch_solver(std::slice::from_ref(case), outputs)?;
     let found = run(&sample, &vec![1.0; case.ends.len()], &[1.0], 1, 1)?;
     Ok([case.solve(outputs)?, found])
 }
@@ -113,7 +113,7 @@ fn both_orders_give_one_answer() -> Result<()> {
     let outputs = displacements(&block);
     let [one, sample] = both(&block, &outputs)?;
     assert!(differ(&one, &sample) < 1e-9);
-    let batch = refactored(std::slice::from_ref(&block), &outputs)?;
+    let batch = batch_solver(std::slice::from_ref(&block), &outputs)?;
     let factors = vec![1.0; 20 * block.ends.len()];
     for row in run(&batch, &factors, &[1.0; 20], 20, 2)?.chunks_exact(sample.len()) {
         assert_eq!(row, sample);
@@ -174,7 +174,7 @@ fn a_node_that_swings_is_named() -> Result<()> {
     assert!(unbalanced(&hung, &one) < 1e-10 && unbalanced(&hung, &sample) < 1e-10);
     let last = hung.ends.len() - 1;
     let cut = without_last(hung.clone());
-    let batch = refactored(std::slice::from_ref(&hung), &[at(DISPLACEMENT, 0, 2)])?;
+    let batch = batch_solver(std::slice::from_ref(&hung), &[at(DISPLACEMENT, 0, 2)])?;
     let mut factors = vec![1.0; last + 1];
     let before = run(&batch, &factors, &[1.0], 1, 1)?;
     factors[last] = 0.0;

@@ -1,13 +1,13 @@
 //! Python binding of the finite-element core: converts and documents.
 
 mod arrays;
+mod batch_solver;
 mod change_statistics;
 mod condensed;
 mod exceptions;
 mod functions;
 mod gaussian_window;
 mod read;
-mod refactor;
 
 use pyo3::prelude::*;
 
@@ -28,7 +28,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<change_statistics::ChangeStatistics>()?;
     module.add_class::<condensed::Condensed>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
-    module.add_class::<refactor::Refactored>()?;
+    module.add_class::<batch_solver::BatchSolver>()?;
     module.add_function(wrap_pyfunction!(functions::instructions, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond_nonlinear, module)?)?;

@@ -1,4 +1,5 @@
-//! Sixteen numbers of single precision side by side, in vectors of whatever width the instructions have.
+//! Sixteen numbers of single precision side by side, in vectors of whatever width the
+//! instructions have.
 //!
 //! Products are added without rounding in between, and sums of lanes are formed in one order, so
 //! that results have the same bits on all instructions.

@@ -1,6 +1,6 @@
-//! Samples by `Refactored`, and the same by `respond`.
+//! Samples by `BatchSolver`, and the same by `respond`.
 
-use rga_core::{Array, Loads, Refactored, Result, Samples, respond};
+use rga_core::{Array, BatchSolver, Loads, Result, Samples, respond};
 
 use super::*;
 
@@ -26,16 +26,16 @@ impl Random {
 }
 
 /// `patterns` are one structure under several loads.
-pub fn refactored(patterns: &[Case], outputs: &[Output]) -> Result<Refactored> {
-    refactored_with(patterns, outputs, None)
+pub fn batch_solver(patterns: &[Case], outputs: &[Output]) -> Result<BatchSolver> {
+    batch_solver_with(patterns, outputs, None)
 }
 
 /// The same with one of `instructions()`.
-pub fn refactored_with(
+pub fn batch_solver_with(
     patterns: &[Case],
     outputs: &[Output],
     instructions: Option<&str>,
-) -> Result<Refactored> {
+) -> Result<BatchSolver> {
     fn flat<T: Copy, const N: usize>(rows: impl Iterator<Item = [T; N]>) -> Vec<T> {
         rows.flatten().collect()
     }
@@ -81,7 +81,7 @@ pub fn refactored_with(
         member_end: Array::new(&end, &per_load),
     };
     patterns[0].lend(outputs, |structure, _, outputs| {
-        Refactored::new(structure, &loads, outputs, instructions)
+        BatchSolver::new(structure, &loads, outputs, instructions)
     })
 }
 
@@ -208,7 +208,7 @@ pub fn all_outputs(case: &Case) -> Vec<Output> {
 }
 
 pub fn run(
-    batch: &Refactored,
+    batch: &BatchSolver,
     factors: &[f64],
     coefficients: &[f64],
     rows: usize,

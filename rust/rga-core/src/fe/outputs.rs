@@ -1,0 +1,239 @@
+//! Outputs read off a solved pattern.
+
+use crate::fe::constraint::Constraints;
+use crate::fe::deformed_member::Deformed;
+use crate::fe::element::Vector12;
+use crate::fe::load::{MemberLoad, PatternLoads};
+use crate::fe::model::Model;
+use crate::input::Outputs;
+
+/// One pattern, solved.
+pub struct State<'a> {
+    pub loads: &'a PatternLoads,
+    pub strain: &'a [f64],
+    pub forces: &'a [f64],
+    pub fixed_end: Vec<Vector12>,
+    pub displacements: Vec<f64>,
+    /// Applied minus internal forces.
+    pub unbalanced: Vec<f64>,
+    /// Of each member, where displacements are large.
+    pub deformed: Option<&'a [Deformed]>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub enum Output {
+    Motion(Motion),
+    /// Of a member.
+    Member(usize, Reading),
+    /// Force or moment of supports on a node (first dof).
+    Reaction(usize, [f64; 3]),
+}
+
+/// Displacement or rotation of a node, relative to another.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion {
+    /// First dof of the node.
+    first: usize,
+    reference: Option<usize>,
+    direction: [f64; 3],
+}
+
+#[derive(Debug, Clone, Copy)]
+pub enum Reading {
+    /// At (place in 0..1, y, z); total or mechanical.
+    Strain([f64; 3], bool),
+    /// At a place in 0..1.
+    AxialForce(f64),
+    /// Of a local end dof.
+    EndForce(usize),
+}
+
+pub struct Observer<'a> {
+    model: &'a Model,
+    constraints: &'a Constraints,
+    outputs: &'a [Output],
+}
+
+/// Axial force and bending moments EI (v'' + free curvature) of a section.
+struct Section {
+    axial: f64,
+    /// In the local x-y and x-z planes.
+    moments: [f64; 2],
+}
+
+impl<'a> Observer<'a> {
+    pub fn new(model: &'a Model, constraints: &'a Constraints, outputs: &'a [Output]) -> Self {
+        Self {
+            model,
+            constraints,
+            outputs,
+        }
+    }
+
+    pub fn read(&self, state: &State, results: &mut Vec<f64>) {
+        let reacts = |output: &Output| matches!(output, Output::Reaction(..));
+        let reactions = if self.outputs.iter().any(reacts) {
+            self.reactions(state)
+        } else {
+            Vec::new()
+        };
+        let values = self.outputs.iter().map(|output| match output {
+            Output::Motion(motion) => motion.of(&state.displacements),
+            Output::Member(index, reading) => self.member(state, *index, reading),
+            Output::Reaction(first, direction) => along(&reactions, *first, direction),
+        });
+        results.extend(values);
+    }
+
+    /// What is read of one member.
+    pub fn member(&self, state: &State, index: usize, reading: &Reading) -> f64 {
+        match *reading {
+            Reading::Strain(place, total) => self.strain(state, index, &place, total),
+            Reading::AxialForce(place) => {
+                let x = place * self.model.members[index].length;
+                self.section(state, index, x).axial
+            }
+            Reading::EndForce(dof) => self.end_forces(state, index)[dof],
+        }
+    }
+
+    fn reactions(&self, state: &State) -> Vec<f64> {
+        let needed: Vec<f64> = state.unbalanced.iter().map(|force| -force).collect();
+        let mut reactions = self.constraints.support_forces(&needed);
+        for spring in self
+            .model
+            .springs
+            .iter()
+            .filter(|spring| spring.other.is_none())
+        {
+            reactions[spring.dof] -= spring.stiffness * state.displacements[spring.dof];
+        }
+        reactions
+    }
+
+    fn end_forces(&self, state: &State, index: usize) -> Vector12 {
+        match state.deformed {
+            Some(deformed) => deformed[index].end_forces(),
+            None => {
+                self.model.members[index].end_forces(&state.displacements, &state.fixed_end[index])
+            }
+        }
+    }
+
+    fn section(&self, state: &State, index: usize, x: f64) -> Section {
+        let ends = match state.deformed {
+            Some(deformed) => deformed[index].ends,
+            None => self.end_forces(state, index),
+        };
+        let mut section = Section {
+            axial: -ends[0],
+            moments: [ends[1] * x - ends[5], ends[2] * x + ends[4]],
+        };
+        for load in state.loads.of(index) {
+            section.add(load, x);
+        }
+        if let Some(deformed) = state.deformed {
+            let member = &self.model.members[index];
+            let bow = deformed[index].bow(member, x);
+            for (moment, bow) in section.moments.iter_mut().zip(bow) {
+                *moment += deformed[index].tension * bow;
+            }
+        }
+        section
+    }
+
+    fn strain(&self, state: &State, index: usize, place: &[f64], total: bool) -> f64 {
+        let member = &self.model.members[index];
+        let initial = &state.strain[3 * index..3 * index + 3];
+        let Some(frame) = &member.frame else {
+            let elongation = match state.deformed {
+                Some(deformed) => deformed[index].elongation,
+                None => member.elongation(&state.displacements),
+            };
+            return elongation / member.length - if total { 0.0 } else { initial[0] };
+        };
+        let section = self.section(state, index, place[0] * member.length);
+        let fibre = &place[1..];
+        let mut strain = section.axial / frame.beam.ea;
+        for ((plane, moment), distance) in frame.beam.planes.iter().zip(section.moments).zip(fibre)
+        {
+            if *distance != 0.0 {
+                strain -= distance * moment / plane.ei;
+            }
+        }
+        if total {
+            strain += initial[0] + initial[1] * fibre[0] + initial[2] * fibre[1];
+        }
+        strain
+    }
+}
+
+impl Motion {
+    fn of(&self, displacements: &[f64]) -> f64 {
+        let terms = self.terms();
+        terms.map(|(dof, factor)| factor * displacements[dof]).sum()
+    }
+
+    /// (dof, factor)
+    pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let direction = self.direction;
+        let at = move |first: usize, sign: f64| {
+            (0..3).map(move |axis| (first + axis, sign * direction[axis]))
+        };
+        let reference = self.reference.into_iter();
+        at(self.first, 1.0).chain(reference.flat_map(move |first| at(first, -1.0)))
+    }
+}
+
+impl Section {
+    /// The part of a member load between the first node and the section at x.
+    fn add(&mut self, load: &MemberLoad, x: f64) {
+        if load.from >= x {
+            return;
+        }
+        for (at, size) in load.points(0.0, x) {
+            match load.axis {
+                0 => self.axial -= size,
+                1 => self.moments[0] += size * (x - at),
+                2 => self.moments[1] += size * (x - at),
+                4 => self.moments[1] += size,
+                5 => self.moments[0] -= size,
+                _ => {}
+            }
+        }
+    }
+}
+
+pub fn read_outputs(outputs: &Outputs) -> Vec<Output> {
+    (0..outputs.kind.len())
+        .map(|at| read_output(outputs, at))
+        .collect()
+}
+
+fn read_output(outputs: &Outputs, at: usize) -> Output {
+    let index = outputs.index.at(at);
+    let other = outputs.other[at];
+    let mut vector = [0.0; 3];
+    vector.copy_from_slice(outputs.vector.row(at));
+    match outputs.kind[at] {
+        kind @ (0 | 1) => {
+            let first = 3 * kind as usize;
+            let reference = (other >= 0).then(|| 6 * other as usize + first);
+            Output::Motion(Motion {
+                first: 6 * index + first,
+                reference,
+                direction: vector,
+            })
+        }
+        2 => Output::Member(index, Reading::Strain(vector, outputs.total[at])),
+        3 => Output::Member(index, Reading::AxialForce(vector[0])),
+        4 => Output::Reaction(6 * index, vector),
+        5 => Output::Reaction(6 * index + 3, vector),
+        _ => Output::Member(index, Reading::EndForce(other as usize)),
+    }
+}
+
+fn along(values: &[f64], first: usize, direction: &[f64]) -> f64 {
+    let terms = values[first..first + 3].iter().zip(direction);
+    terms.map(|(value, cosine)| value * cosine).sum()
+}

@@ -1,0 +1,17 @@
+//! Paths from a structure and its loads to outputs: which one is quickest depends on what varies.
+//!
+//! - `linear`: one structure, many load patterns.
+//! - `condensed`: many samples of which few stiffnesses vary, or none.
+//! - `batch`: many samples of which every stiffness may vary.
+//! - `nonlinear`: many samples, each in the equilibrium of the deformed structure.
+//! - `friction`: bearings that stick and slide, through time.
+//!
+//! Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
+
+pub mod batch;
+pub mod condensed;
+pub mod directions;
+pub mod friction;
+pub mod linear;
+pub mod nonlinear;
+mod parallel;

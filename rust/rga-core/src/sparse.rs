@@ -1,0 +1,17 @@
+//! Sparse symmetric matrices: their Cholesky factors, and nothing about structures.
+//!
+//! A matrix (`lower_triangle`) is eliminated in an order that keeps its factor small (`ordering`,
+//! of `minimum_degree` and of nested `dissection` of its `graph`). A small one is factorised
+//! column by column, a large one dense front by dense front (`supernodes`, `multifrontal`);
+//! `factor` chooses, and solves. `inverse_iteration` finds the motion that a matrix resists
+//! least.
+
+pub mod dissection;
+pub mod factor;
+pub mod graph;
+pub mod inverse_iteration;
+pub mod lower_triangle;
+pub mod minimum_degree;
+pub mod multifrontal;
+pub mod ordering;
+pub mod supernodes;

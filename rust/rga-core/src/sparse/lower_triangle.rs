@@ -1,0 +1,119 @@
+//! A symmetric matrix, as a sparse lower triangle.
+
+use faer::sparse::SymbolicSparseColMatRef;
+
+/// Compressed columns; rows ascend within a column and the diagonal, which is
+/// always there, comes first.
+#[derive(Debug, Clone)]
+pub struct LowerTriangle {
+    pub first: Vec<usize>,
+    pub rows: Vec<usize>,
+    pub values: Vec<f64>,
+}
+
+/// (row, column, value)
+pub type Entry = (usize, usize, f64);
+
+impl LowerTriangle {
+    /// `each` calls `add(row, column, value)` for all entries; entries repeat, and are summed in
+    /// their order.
+    pub fn sum(size: usize, each: impl Fn(&mut dyn FnMut(usize, usize, f64))) -> Self {
+        let mut starts = vec![0; size + 1];
+        each(&mut |_, column, _| starts[column + 1] += 1);
+        for at in 0..size {
+            starts[at + 1] += starts[at];
+        }
+        let mut next = starts.clone();
+        let mut sorted = vec![(0, 0.0); starts[size]];
+        each(&mut |row, column, value| {
+            sorted[next[column]] = (row, value);
+            next[column] += 1;
+        });
+        let mut matrix = Self {
+            first: Vec::with_capacity(size + 1),
+            rows: Vec::new(),
+            values: Vec::new(),
+        };
+        let mut sums = Vec::new();
+        // Of each row, where its sum may stand.
+        let mut place = vec![0; size];
+        for column in 0..size {
+            sums.clear();
+            sums.push((column, 0.0));
+            place[column] = 0;
+            for &(row, value) in &sorted[starts[column]..starts[column + 1]] {
+                match sums.get_mut(place[row]) {
+                    Some((same, sum)) if *same == row => *sum += value,
+                    _ => {
+                        place[row] = sums.len();
+                        sums.push((row, value));
+                    }
+                }
+            }
+            sums.sort_unstable_by_key(|&(row, _)| row);
+            matrix.first.push(matrix.rows.len());
+            matrix.rows.extend(sums.iter().map(|&(row, _)| row));
+            matrix.values.extend(sums.iter().map(|&(_, sum)| sum));
+        }
+        matrix.first.push(matrix.rows.len());
+        matrix
+    }
+
+    pub fn size(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    pub fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let size = self.size();
+        SymbolicSparseColMatRef::new_checked(size, size, &self.first, None, &self.rows)
+    }
+
+    /// Where the entry, which is there, stands in `values`.
+    pub fn place(&self, row: usize, column: usize) -> usize {
+        let (first, end) = (self.first[column], self.first[column + 1]);
+        first + self.rows[first..end].partition_point(|&other| other < row)
+    }
+
+    /// The same of an entry that may not be there.
+    pub fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let at = self.place(row, column);
+        let there = at < self.first[column + 1] && self.rows[at] == row;
+        there.then_some(at)
+    }
+
+    pub fn diagonal(&self) -> Vec<f64> {
+        let starts = &self.first[..self.size()];
+        starts.iter().map(|&start| self.values[start]).collect()
+    }
+
+    /// K x, both triangles taken.
+    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        for column in 0..self.size() {
+            let own = self.first[column]..self.first[column + 1];
+            let mut sum = self.values[own.start] * x[column];
+            for at in own.start + 1..own.end {
+                product[self.rows[at]] += self.values[at] * x[column];
+                sum += self.values[at] * x[self.rows[at]];
+            }
+            product[column] += sum;
+        }
+        product
+    }
+
+    /// S K S with diagonal S.
+    pub fn scale(&mut self, scale: &[f64]) {
+        for column in 0..self.size() {
+            for at in self.first[column]..self.first[column + 1] {
+                self.values[at] *= scale[column] * scale[self.rows[at]];
+            }
+        }
+    }
+
+    /// K + shift I
+    pub fn shift(&mut self, shift: f64) {
+        for column in 0..self.size() {
+            self.values[self.first[column]] += shift;
+        }
+    }
+}
