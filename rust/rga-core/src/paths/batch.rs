@@ -1,18 +1,20 @@
 //! Samples of a structure of which every stiffness may vary (C3).
 //!
 //! What does not depend on the stiffness is done once: checks, supports and ties, the structure as
-//! sums over the factors of its elements (`system`), in which order unknowns are eliminated
-//! (`elimination`), and where the numbers of the factor stand (`panels`). Samples are then filled
-//! in, factorised (`cholesky`) and solved for their one load together, one a lane of a SIMD vector
-//! (`simd_solver`). A sample that may be unstable or lose digits is solved again by itself
-//! (`scalar_fallback`), as is every sample of a structure that is too large for caches to hold it
-//! many times. Outputs and derivatives are read off the solved samples (`readings`). Factors enter
-//! all of these sparsely (`bilinear`); sums of the factorisation stay in registers (`tiles`).
+//! sums over the factors of its elements (`system`, read off by `probe`), in which order unknowns
+//! are eliminated (`elimination`), and where the numbers of the factor stand (`panels`). Samples
+//! are then filled in, factorised (`cholesky`) and solved for their one load together, one a lane
+//! of a SIMD vector (`simd_solver`). A sample that may be unstable or lose digits is solved again
+//! by itself (`scalar_fallback`), as is every sample of a structure that is too large for caches to
+//! hold it many times. Outputs and derivatives are read off the solved samples (`readings`).
+//! Factors enter all of these sparsely (`bilinear`); sums of the factorisation stay in registers
+//! (`tiles`).
 
 mod bilinear;
 mod cholesky;
 mod elimination;
 mod panels;
+mod probe;
 mod readings;
 mod scalar_fallback;
 mod simd_solver;
