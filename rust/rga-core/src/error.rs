@@ -6,7 +6,7 @@ use thiserror::Error;
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Names of the dofs of a node, in their order.
-pub const DOFS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
+pub(crate) const DOFS: [&str; 6] = ["ux", "uy", "uz", "rx", "ry", "rz"];
 
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Error {
@@ -53,11 +53,11 @@ pub enum Error {
 }
 
 impl Error {
-    pub fn invalid(message: impl Into<String>) -> Self {
+    pub(crate) fn invalid(message: impl Into<String>) -> Self {
         Self::InvalidInput(message.into())
     }
 
-    pub fn of_row(self, row: usize) -> Self {
+    pub(crate) fn of_row(self, row: usize) -> Self {
         Self::Row {
             row,
             error: Box::new(self),

@@ -8,17 +8,17 @@
 //! (`equilibrium`), and outputs are read off it (`outputs`). `deformed_member` is a member under
 //! large displacements.
 
-pub mod assembly;
-pub mod axes;
-pub mod connection;
-pub mod constraint;
-pub mod deformed_member;
-pub mod element;
-pub mod equilibrium;
-pub mod free_rotations;
-pub mod load;
-pub mod member;
-pub mod model;
-pub mod outputs;
-pub mod reduction;
-pub mod stability;
+pub(crate) mod assembly;
+pub(crate) mod axes;
+pub(crate) mod connection;
+pub(crate) mod constraint;
+pub(crate) mod deformed_member;
+pub(crate) mod element;
+pub(crate) mod equilibrium;
+pub(crate) mod free_rotations;
+pub(crate) mod load;
+pub(crate) mod member;
+pub(crate) mod model;
+pub(crate) mod outputs;
+pub(crate) mod reduction;
+pub(crate) mod stability;

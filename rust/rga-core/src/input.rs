@@ -51,11 +51,11 @@ pub struct Structure<'a> {
 }
 
 impl Structure<'_> {
-    pub fn node_count(&self) -> usize {
+    pub(crate) fn node_count(&self) -> usize {
         self.coordinates.len()
     }
 
-    pub fn member_count(&self) -> usize {
+    pub(crate) fn member_count(&self) -> usize {
         self.ends.len()
     }
 }

@@ -12,6 +12,8 @@
 //!
 //! SIMD lanes and the view of arrays are those of `rga_simd`.
 
+#![warn(unreachable_pub)]
+
 mod error;
 mod fe;
 mod input;

@@ -8,10 +8,10 @@
 //!
 //! Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
 
-pub mod batch;
-pub mod condensed;
-pub mod directions;
-pub mod friction;
-pub mod linear;
-pub mod nonlinear;
+pub(crate) mod batch;
+pub(crate) mod condensed;
+pub(crate) mod directions;
+pub(crate) mod friction;
+pub(crate) mod linear;
+pub(crate) mod nonlinear;
 mod parallel;

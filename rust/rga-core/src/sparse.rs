@@ -6,12 +6,12 @@
 //! `factor` chooses, and solves. `inverse_iteration` finds the motion that a matrix resists
 //! least.
 
-pub mod dissection;
-pub mod factor;
-pub mod graph;
-pub mod inverse_iteration;
-pub mod lower_triangle;
-pub mod minimum_degree;
-pub mod multifrontal;
-pub mod ordering;
-pub mod supernodes;
+pub(crate) mod dissection;
+pub(crate) mod factor;
+pub(crate) mod graph;
+pub(crate) mod inverse_iteration;
+pub(crate) mod lower_triangle;
+pub(crate) mod minimum_degree;
+pub(crate) mod multifrontal;
+pub(crate) mod ordering;
+pub(crate) mod supernodes;

@@ -2,7 +2,7 @@
 //!
 //! `arrays` checks single arrays; `structure`, `loads` and `outputs` check what they say together.
 
-pub mod arrays;
-pub mod loads;
-pub mod outputs;
-pub mod structure;
+pub(crate) mod arrays;
+pub(crate) mod loads;
+pub(crate) mod outputs;
+pub(crate) mod structure;

@@ -3,6 +3,8 @@
 //! `window` is the paper's rule: a Gaussian bound on each sensor's next value. `change` weighs
 //! every kind and scale of change. `refusal` says what is wrong with input that cannot be used.
 
+#![warn(unreachable_pub)]
+
 mod change;
 mod refusal;
 mod window;

@@ -8,14 +8,14 @@ use rga_core::Array;
 use crate::exceptions::InvalidInput;
 
 /// Keeps a NumPy array readable while the core works on it.
-pub struct Held<'py, T: Element> {
+pub(crate) struct Held<'py, T: Element> {
     array: PyReadonlyArrayDyn<'py, T>,
     /// In C order, where the array itself is not.
     copy: Option<Vec<T>>,
 }
 
 /// The names NumPy gives to the element types of the core.
-pub trait Named: Element + Copy {
+pub(crate) trait Named: Element + Copy {
     const NAME: &'static str;
 }
 
@@ -33,7 +33,7 @@ impl Named for bool {
 
 impl<'py, T: Named> Held<'py, T> {
     /// The entry `key` of the dict that the caller knows as `name`.
-    pub fn entry(dict: &Bound<'py, PyDict>, name: &str, key: &str) -> PyResult<Self> {
+    pub(crate) fn entry(dict: &Bound<'py, PyDict>, name: &str, key: &str) -> PyResult<Self> {
         match dict.get_item(key)? {
             Some(value) => Self::new(&value, &format!("{name}[{key:?}]")),
             None => Err(InvalidInput::new_err(format!(
@@ -42,7 +42,7 @@ impl<'py, T: Named> Held<'py, T> {
         }
     }
 
-    pub fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let Ok(array) = value.cast::<PyArrayDyn<T>>() else {
             return Err(InvalidInput::new_err(format!(
                 "{name} must be a numpy array of {}, not {}",
@@ -59,7 +59,7 @@ impl<'py, T: Named> Held<'py, T> {
         Ok(Self { array, copy })
     }
 
-    pub fn view(&self) -> Array<'_, T> {
+    pub(crate) fn view(&self) -> Array<'_, T> {
         let values = match &self.copy {
             Some(copy) => copy.as_slice(),
             None => self.array.as_slice().unwrap_or_default(),
@@ -77,7 +77,7 @@ fn describe(value: &Bound<'_, PyAny>) -> String {
 }
 
 /// Pairs of indices, i64[n, 2].
-pub fn pairs(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<(usize, usize)>> {
+pub(crate) fn pairs(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<(usize, usize)>> {
     let held = Held::<i64>::new(value, name)?;
     let entries = held.view();
     let index = |value: i64| {

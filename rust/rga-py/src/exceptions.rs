@@ -35,7 +35,7 @@ create_exception!(
     "Friction forces did not settle.\n\nrow: the row of the time series."
 );
 
-pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
+pub(crate) fn to_python(py: Python<'_>, error: Error) -> PyErr {
     let message = error.to_string();
     raised(py, error, message)
 }

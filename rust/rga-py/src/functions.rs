@@ -59,7 +59,7 @@ type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 /// ------
 /// InvalidInput, UnstableStructure
 #[pyfunction]
-pub fn respond<'py>(
+pub(crate) fn respond<'py>(
     py: Python<'py>,
     structure: &Bound<'py, PyDict>,
     loads: &Bound<'py, PyDict>,
@@ -96,7 +96,7 @@ pub fn respond<'py>(
 /// `share` of its load that is carried
 #[pyfunction]
 #[pyo3(signature = (structure, loads, outputs, coefficients, threads=1))]
-pub fn respond_nonlinear<'py>(
+pub(crate) fn respond_nonlinear<'py>(
     py: Python<'py>,
     structure: &Bound<'py, PyDict>,
     loads: &Bound<'py, PyDict>,
@@ -137,7 +137,7 @@ pub fn respond_nonlinear<'py>(
 /// ------
 /// InvalidInput, NotConverged
 #[pyfunction]
-pub fn slide<'py>(
+pub(crate) fn slide<'py>(
     py: Python<'py>,
     free_displacement: &Bound<'py, PyAny>,
     flexibility: &Bound<'py, PyAny>,
@@ -170,6 +170,6 @@ pub fn slide<'py>(
 /// -------
 /// list[str], of "avx512", "avx2" and "portable" on x86-64
 #[pyfunction]
-pub fn instructions() -> Vec<&'static str> {
+pub(crate) fn instructions() -> Vec<&'static str> {
     rga_core::instructions()
 }

@@ -1,5 +1,7 @@
 //! Python binding of the finite-element core: converts and documents.
 
+#![warn(unreachable_pub)]
+
 mod arrays;
 mod batch_solver;
 mod change_statistics;

@@ -11,7 +11,7 @@ pub const SIXTEEN: usize = 16;
 
 /// Sixteen numbers of single precision in `P` vectors.
 #[derive(Debug, Clone, Copy)]
-pub struct Sixteen<S, const P: usize>(S);
+struct Sixteen<S, const P: usize>(S);
 
 /// What is done with sixteen numbers.
 pub trait Lanes: Copy {

@@ -4,6 +4,8 @@
 //! of single precision. `instructions` names the instruction sets that a processor has, and
 //! `array` is a view of rows of numbers. On all instruction sets results have the same bits.
 
+#![warn(unreachable_pub)]
+
 mod array;
 pub mod f32;
 pub mod f64;

@@ -5,7 +5,7 @@ use crate::fe::reduction::Reduction;
 use crate::sparse::lower_triangle::LowerTriangle;
 
 /// T' K T
-pub fn assemble(model: &Model, reduction: &Reduction) -> LowerTriangle {
+pub(crate) fn assemble(model: &Model, reduction: &Reduction) -> LowerTriangle {
     LowerTriangle::sum(reduction.unknowns.len(), |add| {
         model.for_each_stiffness(|row, column, value| {
             if value == 0.0 {

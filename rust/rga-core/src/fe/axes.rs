@@ -10,7 +10,7 @@ use crate::input::Structure;
 /// x runs from the first node to the second. Without a `local_y`, y is
 /// global z cross x (horizontal), and global y for a vertical member.
 /// z = x cross y, and y is re-orthogonalised.
-pub fn local_axes(structure: &Structure, member: usize) -> Option<(f64, Matrix3<f64>)> {
+pub(crate) fn local_axes(structure: &Structure, member: usize) -> Option<(f64, Matrix3<f64>)> {
     let point = |end: usize| {
         let node = structure.ends.row(member)[end] as usize;
         Vector3::from_column_slice(structure.coordinates.row(node))

@@ -19,7 +19,7 @@ struct Step {
 }
 
 #[derive(Debug, Clone, Default)]
-pub struct Connection {
+pub(crate) struct Connection {
     steps: Vec<Step>,
 }
 
@@ -31,7 +31,7 @@ const LOOSE_FORCE: f64 = 1e-9;
 
 impl Connection {
     /// Turns `k` of the bare member into that of the member with its ends.
-    pub fn condense(k: &mut Matrix12, stiffness: &[f64]) -> Self {
+    pub(crate) fn condense(k: &mut Matrix12, stiffness: &[f64]) -> Self {
         let finite = |&(_, value): &(usize, &f64)| value.is_finite();
         let steps = stiffness.iter().enumerate().filter(finite);
         Self {
@@ -43,7 +43,7 @@ impl Connection {
 
     /// The same for fixed-end forces; the error is a local dof that is loaded
     /// although nothing holds it.
-    pub fn pass_on(&self, forces: &mut Vector12) -> Result<(), usize> {
+    pub(crate) fn pass_on(&self, forces: &mut Vector12) -> Result<(), usize> {
         let largest = forces.amax();
         for step in &self.steps {
             let force = forces[step.dof];
@@ -57,7 +57,7 @@ impl Connection {
     }
 
     /// Motions of the bare member behind its connections, from those of the nodes.
-    pub fn inner(&self, ends: &Vector12) -> Vector12 {
+    pub(crate) fn inner(&self, ends: &Vector12) -> Vector12 {
         let mut inner = *ends;
         for step in self.steps.iter().rev() {
             inner[step.dof] = step.share * inner[step.dof] - step.carry.dot(&inner);

@@ -24,13 +24,13 @@ struct Constraint {
 
 /// (index, factor) lists over remaining dofs and over constraints.
 #[derive(Debug, Clone, Default)]
-pub struct Row {
+pub(crate) struct Row {
     pub dofs: Vec<(usize, f64)>,
     values: Vec<(usize, f64)>,
 }
 
 #[derive(Debug, Clone)]
-pub struct Constraints {
+pub(crate) struct Constraints {
     list: Vec<Constraint>,
     /// Of each dof: how it follows, if a constraint removed it.
     pub rows: Vec<Option<Row>>,
@@ -42,7 +42,7 @@ pub struct Constraints {
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl Constraints {
-    pub fn new(structure: &Structure) -> Self {
+    pub(crate) fn new(structure: &Structure) -> Self {
         let mut constraints = Self {
             list: Vec::new(),
             rows: vec![None; 6 * structure.node_count()],
@@ -107,7 +107,7 @@ impl Constraints {
     }
 
     /// The prescribed values of one pattern, by constraint.
-    pub fn values(&self, loads: &Loads, pattern: usize) -> Result<Vec<f64>> {
+    pub(crate) fn values(&self, loads: &Loads, pattern: usize) -> Result<Vec<f64>> {
         let value = |constraint: &Constraint| match constraint.value {
             Value::Dof(dof) => loads.prescribed.row(pattern)[dof],
             Value::Inclined(index) => loads.prescribed_inclined.row(pattern)[index],
@@ -134,14 +134,14 @@ impl Constraints {
     }
 
     /// Displacements with all remaining dofs at zero.
-    pub fn base_displacements(&self, values: &[f64]) -> Vec<f64> {
+    pub(crate) fn base_displacements(&self, values: &[f64]) -> Vec<f64> {
         let base = |row: &Option<Row>| row.as_ref().map_or(0.0, |row| row.sum(values));
         self.rows.iter().map(base).collect()
     }
 
     /// Forces of supports (not ties) on all dofs, from what is out of balance:
     /// internal minus applied forces.
-    pub fn support_forces(&self, unbalanced: &[f64]) -> Vec<f64> {
+    pub(crate) fn support_forces(&self, unbalanced: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.list.len()];
         for (row, force) in self.rows.iter().zip(unbalanced) {
             for &(index, factor) in row.iter().flat_map(|row| &row.values) {
@@ -161,7 +161,7 @@ impl Constraints {
 
     /// Weights of what is out of balance, by dof, in the force of supports along a direction at
     /// three dofs.
-    pub fn support_weights(&self, first: usize, direction: &[f64]) -> Vec<(usize, f64)> {
+    pub(crate) fn support_weights(&self, first: usize, direction: &[f64]) -> Vec<(usize, f64)> {
         let along = |constraint: &Constraint| -> f64 {
             if matches!(constraint.value, Value::Zero) {
                 return 0.0;

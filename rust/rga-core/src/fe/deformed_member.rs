@@ -21,7 +21,7 @@ use crate::fe::member::{Frame, Member, pairs};
 
 /// What does not depend on the state.
 #[derive(Debug, Clone)]
-pub struct Flexible {
+pub(crate) struct Flexible {
     /// Tension per elongation, end connections included.
     axial: f64,
     frame: Option<Box<Bow>>,
@@ -39,7 +39,7 @@ struct Bow {
 
 /// A member in a state, in its axes as drawn.
 #[derive(Debug, Clone)]
-pub struct Deformed {
+pub(crate) struct Deformed {
     /// With that of temperature.
     pub elongation: f64,
     pub tension: f64,
@@ -56,7 +56,7 @@ pub struct Deformed {
 }
 
 impl Flexible {
-    pub fn new(member: &Member) -> Self {
+    pub(crate) fn new(member: &Member) -> Self {
         let Some(frame) = &member.frame else {
             return Self {
                 axial: member.ea / member.length,
@@ -84,7 +84,7 @@ impl Flexible {
 
     /// `strain` is the initial axial strain; `fixed_end` the forces of loads and of gradients of
     /// the initial strain, which keep their directions.
-    pub fn deform(
+    pub(crate) fn deform(
         &self,
         member: &Member,
         displacements: &[f64],
@@ -133,14 +133,19 @@ impl Flexible {
     }
 
     /// The tension after a further motion of the ends, by the gradient.
-    pub fn tension_ahead(&self, member: &Member, deformed: &Deformed, motion: &[f64]) -> f64 {
+    pub(crate) fn tension_ahead(
+        &self,
+        member: &Member,
+        deformed: &Deformed,
+        motion: &[f64],
+    ) -> f64 {
         let further = member.to_local(motion).dot(&deformed.gradient);
         deformed.tension + self.axial * further
     }
 
     /// The tangent stiffness with a tension, entry by entry as `Member::for_each_stiffness` gives
     /// the stiffness.
-    pub fn for_each_tangent(
+    pub(crate) fn for_each_tangent(
         &self,
         member: &Member,
         deformed: &Deformed,
@@ -175,7 +180,7 @@ impl Flexible {
 
 impl Deformed {
     /// Forces of the nodes on the member.
-    pub fn end_forces(&self) -> Vector12 {
+    pub(crate) fn end_forces(&self) -> Vector12 {
         let mut forces = self.ends;
         let turned = (self.chord - Vector3::x()) * self.tension;
         for axis in 0..3 {
@@ -185,12 +190,12 @@ impl Deformed {
         forces
     }
 
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.tension.is_finite() && self.end_forces().iter().all(|force| force.is_finite())
     }
 
     /// Deflection of the axis beside the chord at x, in the local x-y and x-z planes.
-    pub fn bow(&self, member: &Member, x: f64) -> [f64; 2] {
+    pub(crate) fn bow(&self, member: &Member, x: f64) -> [f64; 2] {
         let Some(frame) = &member.frame else {
             return [0.0; 2];
         };

@@ -2,12 +2,12 @@
 
 use nalgebra::{SMatrix, SVector, Vector4};
 
-pub type Matrix12 = SMatrix<f64, 12, 12>;
-pub type Vector12 = SVector<f64, 12>;
+pub(crate) type Matrix12 = SMatrix<f64, 12, 12>;
+pub(crate) type Vector12 = SVector<f64, 12>;
 
 /// Bending in one plane. The four dofs are deflection and slope at each end.
 #[derive(Debug, Clone, Copy)]
-pub struct Bending {
+pub(crate) struct Bending {
     pub ei: f64,
     /// 12 EI / (G As L^2): 0 without shear deformation.
     phi: f64,
@@ -17,13 +17,13 @@ pub struct Bending {
 }
 
 /// Deflection and section rotation per end dof at one place.
-pub struct Shape {
+pub(crate) struct Shape {
     pub deflection: Vector4<f64>,
     pub rotation: Vector4<f64>,
 }
 
 #[derive(Debug, Clone, Copy)]
-pub struct Beam {
+pub(crate) struct Beam {
     pub length: f64,
     pub ea: f64,
     pub gj: f64,
@@ -36,7 +36,7 @@ const XZ: [(usize, f64); 4] = [(2, 1.0), (4, -1.0), (8, 1.0), (10, -1.0)];
 
 impl Beam {
     /// `stiffness` is (EA, GJ), `bending` is (EI, G As) for x-y, then x-z.
-    pub fn new(length: f64, stiffness: (f64, f64), bending: [(f64, f64); 2]) -> Self {
+    pub(crate) fn new(length: f64, stiffness: (f64, f64), bending: [(f64, f64); 2]) -> Self {
         let plane = |(ei, shear): (f64, f64), dofs| Bending {
             ei,
             phi: 12.0 * ei / (shear * length * length),
@@ -50,7 +50,7 @@ impl Beam {
         }
     }
 
-    pub fn stiffness(&self) -> Matrix12 {
+    pub(crate) fn stiffness(&self) -> Matrix12 {
         let mut k = Matrix12::zeros();
         for (first, stiffness) in [(0, self.ea), (3, self.gj)] {
             let (i, j) = (first, first + 6);
@@ -74,7 +74,7 @@ impl Beam {
 impl Beam {
     /// Twice the shortening of the chord by deflection, as a form of the dofs: the geometric
     /// stiffness per unit of axial force.
-    pub fn geometric(&self) -> Matrix12 {
+    pub(crate) fn geometric(&self) -> Matrix12 {
         let mut g = Matrix12::zeros();
         for plane in &self.planes {
             let block = plane.geometric(self.length);
@@ -130,7 +130,7 @@ impl Bending {
 
     /// At `xi` = x / length. These solve the unloaded beam exactly, so by
     /// reciprocity they give exact fixed-end forces of any load.
-    pub fn shape(&self, length: f64, xi: f64) -> Shape {
+    pub(crate) fn shape(&self, length: f64, xi: f64) -> Shape {
         let (phi, scale) = (self.phi, 1.0 / (1.0 + self.phi));
         let bow = xi - xi * xi;
         let deflection = Vector4::new(

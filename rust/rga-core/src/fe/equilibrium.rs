@@ -11,15 +11,15 @@ use crate::fe::reduction::Reduction;
 use crate::fe::stability::Solver;
 
 /// A residual above this part of the load asks for one refinement step.
-pub const REFINE: f64 = 1e-12;
+pub(crate) const REFINE: f64 = 1e-12;
 
 /// A residual above this part of load and internal forces is refused.
-pub const REFUSE: f64 = 1e-9;
+pub(crate) const REFUSE: f64 = 1e-9;
 
 /// A moment on a held rotation below this part of the largest load is rounding.
-pub const LOOSE_MOMENT: f64 = 1e-9;
+pub(crate) const LOOSE_MOMENT: f64 = 1e-9;
 
-pub struct Equilibrium<'a> {
+pub(crate) struct Equilibrium<'a> {
     pub model: &'a Model,
     pub reduction: &'a Reduction,
     pub solver: &'a Solver,
@@ -28,7 +28,7 @@ pub struct Equilibrium<'a> {
 impl Equilibrium<'_> {
     /// Unknowns at zero. `unbalanced` is what is applied minus what the
     /// structure takes.
-    pub fn start<'b>(
+    pub(crate) fn start<'b>(
         &self,
         loads: &'b PatternLoads,
         strain: &'b [f64],
@@ -55,7 +55,7 @@ impl Equilibrium<'_> {
     }
 
     /// A moment on a rotation that nothing stiffens must not vanish silently.
-    pub fn check_loose(&self, state: &State, load: impl Display) -> Result<()> {
+    pub(crate) fn check_loose(&self, state: &State, load: impl Display) -> Result<()> {
         let unbalanced = &state.unbalanced;
         let largest = unbalanced
             .iter()
@@ -69,7 +69,7 @@ impl Equilibrium<'_> {
 
     /// Adds the solution, refines it once if needed, and checks the residual.
     /// `load` is the norm of what was applied.
-    pub fn finish(&self, state: &mut State, load: f64, unknowns: &[f64]) -> Result<()> {
+    pub(crate) fn finish(&self, state: &mut State, load: f64, unknowns: &[f64]) -> Result<()> {
         self.reduction.expand(unknowns, &mut state.displacements);
         let mut residual = self.residual(state);
         if self.solver.force_norm(&residual) > REFINE * load {
@@ -104,7 +104,7 @@ impl Equilibrium<'_> {
     }
 }
 
-pub fn loose_moment(load: impl Display, dof: usize) -> Error {
+pub(crate) fn loose_moment(load: impl Display, dof: usize) -> Error {
     Error::invalid(format!(
         "{load} puts a moment on {} of node {}, which no member, spring or support resists; remove \
          the moment or stiffen the rotation",

@@ -16,7 +16,7 @@ const NO_STIFFNESS: f64 = 1e-12;
 
 /// A direction about which one node turns freely.
 #[derive(Debug, Clone)]
-pub struct FreeRotation {
+pub(crate) struct FreeRotation {
     /// (unknown, component)
     pub terms: Vec<(usize, f64)>,
     /// That it is given.
@@ -26,7 +26,7 @@ pub struct FreeRotation {
 }
 
 impl FreeRotation {
-    pub fn find(matrix: &LowerTriangle, reduction: &Reduction) -> Vec<Self> {
+    pub(crate) fn find(matrix: &LowerTriangle, reduction: &Reduction) -> Vec<Self> {
         let unknowns = &reduction.unknowns;
         let mut found = Vec::new();
         let mut first = 0;
@@ -65,7 +65,7 @@ impl FreeRotation {
     }
 
     /// Stiffens it.
-    pub fn hold(&self, matrix: &mut LowerTriangle) {
+    pub(crate) fn hold(&self, matrix: &mut LowerTriangle) {
         for (row, column, value) in self.stiffness_on(matrix) {
             let at = matrix.place(row, column);
             matrix.values[at] += value;
@@ -73,7 +73,7 @@ impl FreeRotation {
     }
 
     /// The stiffness that it is given, in the lower triangle.
-    pub fn stiffness_on(&self, matrix: &LowerTriangle) -> Vec<Place> {
+    pub(crate) fn stiffness_on(&self, matrix: &LowerTriangle) -> Vec<Place> {
         let pairs = self
             .terms
             .iter()
@@ -86,7 +86,7 @@ impl FreeRotation {
     }
 
     /// A moment about it must not vanish silently. `forces` are those on the unknowns.
-    pub fn check(&self, forces: &[f64], load: impl std::fmt::Display) -> Result<()> {
+    pub(crate) fn check(&self, forces: &[f64], load: impl std::fmt::Display) -> Result<()> {
         let largest = forces
             .iter()
             .fold(0.0_f64, |most, force| most.max(force.abs()));

@@ -11,7 +11,7 @@ use crate::input::Loads;
 /// Linear from `start` at `from` to `end` at `to`; a point load of size
 /// `start` where both places are one.
 #[derive(Debug, Clone, Copy)]
-pub struct MemberLoad {
+pub(crate) struct MemberLoad {
     pub axis: usize,
     pub from: f64,
     pub to: f64,
@@ -28,7 +28,7 @@ const GAUSS: [(f64, f64); 3] = [
 ];
 
 impl MemberLoad {
-    pub fn is_point(&self) -> bool {
+    pub(crate) fn is_point(&self) -> bool {
         self.from == self.to
     }
 
@@ -38,7 +38,7 @@ impl MemberLoad {
 
     /// Point forces (place, size) that stand for the part within low..high,
     /// exactly for weights up to degree 4 in x.
-    pub fn points(&self, low: f64, high: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+    pub(crate) fn points(&self, low: f64, high: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
         let load = *self;
         let (low, high) = (low.max(load.from), high.min(load.to));
         let width = (high - low).max(0.0);
@@ -57,14 +57,14 @@ impl MemberLoad {
 
 /// The member loads of one pattern, by member.
 #[derive(Debug, Clone)]
-pub struct PatternLoads {
+pub(crate) struct PatternLoads {
     first: Vec<usize>,
     sorted: Vec<MemberLoad>,
 }
 
 impl PatternLoads {
     /// One set for each pattern.
-    pub fn group(loads: &Loads, members: usize) -> Vec<Self> {
+    pub(crate) fn group(loads: &Loads, members: usize) -> Vec<Self> {
         let patterns = loads.pattern_count();
         let mut order: Vec<usize> = (0..loads.member_pattern.len()).collect();
         let key = |&at: &usize| (loads.member_pattern.at(at), loads.member_index.at(at));
@@ -85,7 +85,7 @@ impl PatternLoads {
             .collect()
     }
 
-    pub fn none(members: usize) -> Self {
+    pub(crate) fn none(members: usize) -> Self {
         Self {
             first: vec![0; members + 1],
             sorted: Vec::new(),
@@ -93,7 +93,7 @@ impl PatternLoads {
     }
 
     /// All patterns as one, and the pattern of each load.
-    pub fn merge(loads: &Loads, members: usize) -> (Self, Vec<usize>) {
+    pub(crate) fn merge(loads: &Loads, members: usize) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..loads.member_pattern.len()).collect();
         let key = |&at: &usize| (loads.member_index.at(at), loads.member_pattern.at(at));
         order.sort_by_key(key);
@@ -108,7 +108,7 @@ impl PatternLoads {
     }
 
     /// The loads of `merged`, each times the coefficient of its pattern.
-    pub fn combine(&mut self, merged: &Self, patterns: &[usize], coefficients: &[f64]) {
+    pub(crate) fn combine(&mut self, merged: &Self, patterns: &[usize], coefficients: &[f64]) {
         self.sorted.clear();
         self.first.clear();
         self.first.push(0);
@@ -128,12 +128,12 @@ impl PatternLoads {
         }
     }
 
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let finite = |load: &MemberLoad| load.start.is_finite() && load.end.is_finite();
         self.sorted.iter().all(finite)
     }
 
-    pub fn of(&self, member: usize) -> &[MemberLoad] {
+    pub(crate) fn of(&self, member: usize) -> &[MemberLoad] {
         &self.sorted[self.first[member]..self.first[member + 1]]
     }
 }
@@ -150,7 +150,7 @@ fn member_load(loads: &Loads, at: usize) -> MemberLoad {
 
 /// Local, between the nodes, ends and rigid zones included. `strain` is the
 /// initial axial strain and its gradients along local y and z.
-pub fn fixed_end_forces(
+pub(crate) fn fixed_end_forces(
     member: &Member,
     index: usize,
     strain: &[f64],

@@ -9,7 +9,7 @@ use crate::fe::element::{Beam, Matrix12, Vector12};
 use crate::input::Structure;
 
 #[derive(Debug, Clone)]
-pub struct Member {
+pub(crate) struct Member {
     pub nodes: [usize; 2],
     pub length: f64,
     /// Rows x, y, z in global components.
@@ -22,7 +22,7 @@ pub struct Member {
 /// What bends: [rigid zone] connection, elastic beam, connection [rigid zone].
 /// The connections stand at the faces of the rigid zones.
 #[derive(Debug, Clone)]
-pub struct Frame {
+pub(crate) struct Frame {
     pub beam: Beam,
     pub rigid: [f64; 2],
     pub connection: Connection,
@@ -33,7 +33,7 @@ pub struct Frame {
 }
 
 impl Member {
-    pub fn new(structure: &Structure, index: usize) -> Result<Self> {
+    pub(crate) fn new(structure: &Structure, index: usize) -> Result<Self> {
         let ends = structure.ends.row(index);
         let (length, axes) = local_axes(structure, index)
             .ok_or_else(|| Error::invalid(format!("member {index} has no local axes")))?;
@@ -58,12 +58,12 @@ impl Member {
     }
 
     /// The stiffness is proportional to that of the bare member.
-    pub fn is_proportional(&self) -> bool {
+    pub(crate) fn is_proportional(&self) -> bool {
         !self.frame.as_deref().is_some_and(|frame| frame.yields)
     }
 
     /// The global dofs that the member stiffens, and its stiffness there.
-    pub fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
         match &self.frame {
             None => {
                 let x = self.axis();
@@ -93,7 +93,7 @@ impl Member {
 
     /// Forces of the nodes on the member, local: stiffness times
     /// displacements plus `fixed_end`.
-    pub fn end_forces(&self, displacements: &[f64], fixed_end: &Vector12) -> Vector12 {
+    pub(crate) fn end_forces(&self, displacements: &[f64], fixed_end: &Vector12) -> Vector12 {
         match &self.frame {
             None => {
                 let tension = self.ea / self.length * self.elongation(displacements);
@@ -107,7 +107,7 @@ impl Member {
     }
 
     /// Motions of the two ends, local.
-    pub fn to_local(&self, displacements: &[f64]) -> Vector12 {
+    pub(crate) fn to_local(&self, displacements: &[f64]) -> Vector12 {
         let mut local = Vector12::zeros();
         for block in 0..4 {
             let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
@@ -120,7 +120,7 @@ impl Member {
     }
 
     /// Twice the strain energy of a motion of its ends.
-    pub fn energy(&self, displacements: &[f64]) -> f64 {
+    pub(crate) fn energy(&self, displacements: &[f64]) -> f64 {
         match &self.frame {
             None => self.ea / self.length * self.elongation(displacements).powi(2),
             Some(frame) => {
@@ -130,13 +130,13 @@ impl Member {
         }
     }
 
-    pub fn elongation(&self, displacements: &[f64]) -> f64 {
+    pub(crate) fn elongation(&self, displacements: &[f64]) -> f64 {
         let at = |node: usize| Vector3::from_column_slice(&displacements[6 * node..6 * node + 3]);
         self.axis().dot(&(at(self.nodes[1]) - at(self.nodes[0])))
     }
 
     /// Calls `add(dof, force)` for local end forces in global components.
-    pub fn for_each_force(&self, local: &Vector12, mut add: impl FnMut(usize, f64)) {
+    pub(crate) fn for_each_force(&self, local: &Vector12, mut add: impl FnMut(usize, f64)) {
         // A truss member has no end moments.
         let step = if self.frame.is_some() { 1 } else { 2 };
         for block in (0..4).step_by(step) {
@@ -149,7 +149,7 @@ impl Member {
     }
 
     /// Adds the sizes of local end forces and moments to all dofs that these may act on.
-    pub fn add_sizes(&self, local: &Vector12, total: &mut [f64]) {
+    pub(crate) fn add_sizes(&self, local: &Vector12, total: &mut [f64]) {
         for block in 0..4 {
             let first = 6 * self.nodes[block / 2] + 3 * (block % 2);
             let size = local.fixed_rows::<3>(3 * block).norm();
@@ -163,7 +163,7 @@ impl Member {
         self.axes.row(0).transpose()
     }
 
-    pub fn to_global(&self, local: &Matrix12) -> Matrix12 {
+    pub(crate) fn to_global(&self, local: &Matrix12) -> Matrix12 {
         let mut global = Matrix12::zeros();
         for row in 0..4 {
             for column in 0..4 {
@@ -221,12 +221,12 @@ impl Frame {
     }
 
     /// Motions of the faces of the rigid zones, from those of the nodes.
-    pub fn node_to_face(&self, motions: &Vector12) -> Vector12 {
+    pub(crate) fn node_to_face(&self, motions: &Vector12) -> Vector12 {
         rigid_arm(self.rigid) * motions
     }
 
     /// Forces at the faces of the rigid zones, moved to the nodes.
-    pub fn face_to_node(&self, forces: &Vector12) -> Vector12 {
+    pub(crate) fn face_to_node(&self, forces: &Vector12) -> Vector12 {
         rigid_arm(self.rigid).tr_mul(forces)
     }
 }
@@ -241,6 +241,6 @@ fn rigid_arm(rigid: [f64; 2]) -> Matrix12 {
     arm
 }
 
-pub fn pairs(size: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn pairs(size: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..size).flat_map(move |row| (0..size).map(move |column| (row, column)))
 }

@@ -6,7 +6,7 @@ use crate::fe::member::Member;
 use crate::input::Structure;
 
 #[derive(Debug, Clone, Copy)]
-pub struct Spring {
+pub(crate) struct Spring {
     pub dof: usize,
     /// Nothing: the spring goes to ground.
     pub other: Option<usize>,
@@ -14,7 +14,7 @@ pub struct Spring {
 }
 
 impl Spring {
-    pub fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
         add(self.dof, self.dof, self.stiffness);
         if let Some(other) = self.other {
             add(other, other, self.stiffness);
@@ -24,7 +24,7 @@ impl Spring {
     }
 
     /// Forces of the nodes on the spring, `add(dof, force)`.
-    pub fn for_each_force(&self, displacements: &[f64], mut add: impl FnMut(usize, f64)) {
+    pub(crate) fn for_each_force(&self, displacements: &[f64], mut add: impl FnMut(usize, f64)) {
         let terms = self.terms();
         let elongation: f64 = terms.map(|(dof, sign)| sign * displacements[dof]).sum();
         for (dof, sign) in self.terms() {
@@ -33,14 +33,14 @@ impl Spring {
     }
 
     /// Its elongation, as (dof, factor).
-    pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub(crate) fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
         let other = self.other.map(|other| (other, -1.0));
         std::iter::once((self.dof, 1.0)).chain(other)
     }
 }
 
 #[derive(Debug, Clone)]
-pub struct Model {
+pub(crate) struct Model {
     /// Coordinates of the nodes.
     pub nodes: Vec<[f64; 3]>,
     pub members: Vec<Member>,
@@ -49,7 +49,7 @@ pub struct Model {
 }
 
 impl Model {
-    pub fn new(structure: &Structure) -> Result<Self> {
+    pub(crate) fn new(structure: &Structure) -> Result<Self> {
         let members = (0..structure.member_count()).map(|index| Member::new(structure, index));
         let springs = (0..structure.spring_node.len()).map(|index| {
             let ends = structure.spring_node.row(index);
@@ -69,7 +69,7 @@ impl Model {
     }
 
     /// Calls `add(row, column, value)` for all entries; entries repeat.
-    pub fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn for_each_stiffness(&self, mut add: impl FnMut(usize, usize, f64)) {
         for member in &self.members {
             member.for_each_stiffness(&mut add);
         }
@@ -79,12 +79,12 @@ impl Model {
     }
 
     /// Half the mean length of a member: by it, rotations count as translations.
-    pub fn arm(&self) -> f64 {
+    pub(crate) fn arm(&self) -> f64 {
         let lengths: f64 = self.members.iter().map(|member| member.length).sum();
         0.5 * lengths / self.members.len().max(1) as f64
     }
 
-    pub fn diagonal(&self) -> Result<Vec<f64>> {
+    pub(crate) fn diagonal(&self) -> Result<Vec<f64>> {
         let mut diagonal = vec![0.0; self.dofs];
         self.for_each_stiffness(|row, column, value| {
             if row == column {
@@ -101,7 +101,11 @@ impl Model {
     }
 
     /// Forces of the nodes on elements without loads, each with a factor on its stiffness.
-    pub fn elastic_forces(&self, displacements: &[f64], factor: impl Fn(usize) -> f64) -> Vec<f64> {
+    pub(crate) fn elastic_forces(
+        &self,
+        displacements: &[f64],
+        factor: impl Fn(usize) -> f64,
+    ) -> Vec<f64> {
         let mut total = vec![0.0; self.dofs];
         for (element, member) in self.members.iter().enumerate() {
             let forces = member.end_forces(displacements, &Vector12::zeros());
@@ -117,7 +121,7 @@ impl Model {
 
     /// Twice the strain energy of a motion, each element with a factor on its stiffness: members
     /// before springs.
-    pub fn energy(&self, displacements: &[f64], factor: impl Fn(usize) -> f64) -> f64 {
+    pub(crate) fn energy(&self, displacements: &[f64], factor: impl Fn(usize) -> f64) -> f64 {
         let of_members = self
             .members
             .iter()
@@ -134,14 +138,18 @@ impl Model {
     }
 
     /// Forces of the nodes on members and springs: K u + fixed-end forces.
-    pub fn internal_forces(&self, displacements: &[f64], fixed_end: &[Vector12]) -> Vec<f64> {
+    pub(crate) fn internal_forces(
+        &self,
+        displacements: &[f64],
+        fixed_end: &[Vector12],
+    ) -> Vec<f64> {
         let ends = self.members.iter().zip(fixed_end);
         let ends = ends.map(|(member, fixed_end)| member.end_forces(displacements, fixed_end));
         self.sum_forces(displacements, ends)
     }
 
     /// The same from the local end forces of all members.
-    pub fn sum_forces(
+    pub(crate) fn sum_forces(
         &self,
         displacements: &[f64],
         ends: impl Iterator<Item = Vector12>,

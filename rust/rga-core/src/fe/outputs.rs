@@ -8,7 +8,7 @@ use crate::fe::model::Model;
 use crate::input::Outputs;
 
 /// One pattern, solved.
-pub struct State<'a> {
+pub(crate) struct State<'a> {
     pub loads: &'a PatternLoads,
     pub strain: &'a [f64],
     pub forces: &'a [f64],
@@ -21,7 +21,7 @@ pub struct State<'a> {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub enum Output {
+pub(crate) enum Output {
     Motion(Motion),
     /// Of a member.
     Member(usize, Reading),
@@ -31,7 +31,7 @@ pub enum Output {
 
 /// Displacement or rotation of a node, relative to another.
 #[derive(Debug, Clone, Copy)]
-pub struct Motion {
+pub(crate) struct Motion {
     /// First dof of the node.
     first: usize,
     reference: Option<usize>,
@@ -39,7 +39,7 @@ pub struct Motion {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub enum Reading {
+pub(crate) enum Reading {
     /// At (place in 0..1, y, z); total or mechanical.
     Strain([f64; 3], bool),
     /// At a place in 0..1.
@@ -48,7 +48,7 @@ pub enum Reading {
     EndForce(usize),
 }
 
-pub struct Observer<'a> {
+pub(crate) struct Observer<'a> {
     model: &'a Model,
     constraints: &'a Constraints,
     outputs: &'a [Output],
@@ -62,7 +62,11 @@ struct Section {
 }
 
 impl<'a> Observer<'a> {
-    pub fn new(model: &'a Model, constraints: &'a Constraints, outputs: &'a [Output]) -> Self {
+    pub(crate) fn new(
+        model: &'a Model,
+        constraints: &'a Constraints,
+        outputs: &'a [Output],
+    ) -> Self {
         Self {
             model,
             constraints,
@@ -70,7 +74,7 @@ impl<'a> Observer<'a> {
         }
     }
 
-    pub fn read(&self, state: &State, results: &mut Vec<f64>) {
+    pub(crate) fn read(&self, state: &State, results: &mut Vec<f64>) {
         let reacts = |output: &Output| matches!(output, Output::Reaction(..));
         let reactions = if self.outputs.iter().any(reacts) {
             self.reactions(state)
@@ -86,7 +90,7 @@ impl<'a> Observer<'a> {
     }
 
     /// What is read of one member.
-    pub fn member(&self, state: &State, index: usize, reading: &Reading) -> f64 {
+    pub(crate) fn member(&self, state: &State, index: usize, reading: &Reading) -> f64 {
         match *reading {
             Reading::Strain(place, total) => self.strain(state, index, &place, total),
             Reading::AxialForce(place) => {
@@ -175,7 +179,7 @@ impl Motion {
     }
 
     /// (dof, factor)
-    pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
+    pub(crate) fn terms(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
         let direction = self.direction;
         let at = move |first: usize, sign: f64| {
             (0..3).map(move |axis| (first + axis, sign * direction[axis]))
@@ -204,7 +208,7 @@ impl Section {
     }
 }
 
-pub fn read_outputs(outputs: &Outputs) -> Vec<Output> {
+pub(crate) fn read_outputs(outputs: &Outputs) -> Vec<Output> {
     (0..outputs.kind.len())
         .map(|at| read_output(outputs, at))
         .collect()

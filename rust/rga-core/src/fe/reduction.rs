@@ -4,10 +4,10 @@ use crate::fe::constraint::Constraints;
 
 /// Relative to the stiffest direction of the node, a diagonal below this is
 /// the rounding of direction cosines (squared), not stiffness.
-pub const NO_STIFFNESS: f64 = 1e-21;
+pub(crate) const NO_STIFFNESS: f64 = 1e-21;
 
 #[derive(Debug, Clone)]
-pub struct Reduction {
+pub(crate) struct Reduction {
     /// Rows of T in compressed form: (unknown, factor).
     first: Vec<usize>,
     entries: Vec<(usize, f64)>,
@@ -19,7 +19,7 @@ pub struct Reduction {
 
 impl Reduction {
     /// `diagonal` is that of the unreduced stiffness.
-    pub fn new(constraints: &Constraints, diagonal: &[f64]) -> Self {
+    pub(crate) fn new(constraints: &Constraints, diagonal: &[f64]) -> Self {
         let mut reduced = diagonal.to_vec();
         for (dof, row) in constraints.rows.iter().enumerate() {
             for &(to, factor) in row.iter().flat_map(|row| &row.dofs) {
@@ -62,17 +62,17 @@ impl Reduction {
     }
 
     /// Of the unknowns, from those of the nodes.
-    pub fn places(&self, nodes: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn places(&self, nodes: &[[f64; 3]]) -> Vec<[f64; 3]> {
         self.unknowns.iter().map(|dof| nodes[dof / 6]).collect()
     }
 
     /// The unknowns that move `dof`, with their factors.
-    pub fn entries(&self, dof: usize) -> &[(usize, f64)] {
+    pub(crate) fn entries(&self, dof: usize) -> &[(usize, f64)] {
         &self.entries[self.first[dof]..self.first[dof + 1]]
     }
 
     /// `displacements` += T `unknowns`.
-    pub fn expand(&self, unknowns: &[f64], displacements: &mut [f64]) {
+    pub(crate) fn expand(&self, unknowns: &[f64], displacements: &mut [f64]) {
         for (dof, displacement) in displacements.iter_mut().enumerate() {
             for &(from, factor) in self.entries(dof) {
                 *displacement += factor * unknowns[from];
@@ -81,7 +81,7 @@ impl Reduction {
     }
 
     /// `reduced` = T' `forces`.
-    pub fn collect(&self, forces: &[f64], reduced: &mut [f64]) {
+    pub(crate) fn collect(&self, forces: &[f64], reduced: &mut [f64]) {
         reduced.fill(0.0);
         for (dof, force) in forces.iter().enumerate() {
             for &(to, factor) in self.entries(dof) {
@@ -93,7 +93,7 @@ impl Reduction {
 
 /// The largest diagonal among the three translations, or rotations, that
 /// `dof` belongs to.
-pub fn stiffest(diagonal: &[f64], dof: usize) -> f64 {
+pub(crate) fn stiffest(diagonal: &[f64], dof: usize) -> f64 {
     let first = dof - dof % 3;
     diagonal[first..first + 3]
         .iter()

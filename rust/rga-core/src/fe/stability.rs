@@ -17,7 +17,7 @@ const SMALLEST_PIVOT: f64 = 1e-11;
 const SUSPICIOUS_PIVOT: f64 = 1e-6;
 
 /// Below this, the assembled matrix may have lost digits of soft motions.
-pub const DELICATE_PIVOT: f64 = 1e-3;
+pub(crate) const DELICATE_PIVOT: f64 = 1e-3;
 
 /// Refinements there: each gains about as many digits as the factor still has.
 const DELICATE_STEPS: usize = 2;
@@ -28,7 +28,7 @@ const FREE_ENERGY: f64 = 1e-12;
 /// Scaling never takes a direction that is this much softer than the
 /// stiffest of its node for a stiff one. With `SMALLEST_PIVOT` it refuses
 /// what `NO_STIFFNESS` calls rounding.
-pub const SOFTEST: f64 = 1e-10;
+pub(crate) const SOFTEST: f64 = 1e-10;
 
 /// Makes the scaled matrix definite; far below every stiffness that counts.
 const SHIFT: f64 = 1e-10;
@@ -44,7 +44,7 @@ const AS_LARGE: f64 = 1.0 - 1e-6;
 
 /// K of the unknowns, scaled to unit diagonal and factorised. Scaling makes
 /// the pivots dimensionless: translations and rotations compare.
-pub struct Solver {
+pub(crate) struct Solver {
     matrix: LowerTriangle,
     scale: Vec<f64>,
     factor: Factor,
@@ -53,7 +53,7 @@ pub struct Solver {
 }
 
 impl Solver {
-    pub fn new(model: &Model, reduction: &Reduction) -> Result<Self> {
+    pub(crate) fn new(model: &Model, reduction: &Reduction) -> Result<Self> {
         let mut matrix = assemble(model, reduction);
         let free_rotations = FreeRotation::find(&matrix, reduction);
         free_rotations
@@ -72,7 +72,7 @@ impl Solver {
     /// The symbolic analysis alone; `factorise` must follow, about `repeats` times.
     /// `free_rotations` are held in new values of K by `hold_free_rotations`; `places` are those
     /// of the unknowns.
-    pub fn analyse(
+    pub(crate) fn analyse(
         matrix: LowerTriangle,
         free_rotations: Vec<FreeRotation>,
         places: &[[f64; 3]],
@@ -88,7 +88,7 @@ impl Solver {
 
     /// Another solver that shares the symbolic analysis; values and
     /// `factorise` must follow.
-    pub fn another(&self) -> Result<Self> {
+    pub(crate) fn another(&self) -> Result<Self> {
         Ok(Self {
             matrix: self.matrix.clone(),
             scale: self.scale.clone(),
@@ -98,26 +98,30 @@ impl Solver {
     }
 
     /// Holds them in new values of K.
-    pub fn hold_free_rotations(&mut self) {
+    pub(crate) fn hold_free_rotations(&mut self) {
         for rotation in &self.free_rotations {
             rotation.hold(&mut self.matrix);
         }
     }
 
     /// A moment about one of them must not vanish silently. `forces` are those on the unknowns.
-    pub fn check_free_rotations(&self, forces: &[f64], load: impl std::fmt::Display) -> Result<()> {
+    pub(crate) fn check_free_rotations(
+        &self,
+        forces: &[f64],
+        load: impl std::fmt::Display,
+    ) -> Result<()> {
         self.free_rotations
             .iter()
             .try_for_each(|rotation| rotation.check(forces, &load))
     }
 
     /// Those of K; `factorise` must follow.
-    pub fn values_mut(&mut self) -> &mut [f64] {
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
         &mut self.matrix.values
     }
 
     /// Scales K and factorises it; false where something moves freely.
-    pub fn factorise(&mut self, model: &Model, reduction: &Reduction) -> bool {
+    pub(crate) fn factorise(&mut self, model: &Model, reduction: &Reduction) -> bool {
         self.scale = scaling(&self.matrix, reduction, model.dofs);
         self.matrix.scale(&self.scale);
         self.factor.factorise(&self.matrix) && self.factor.smallest_pivot() >= SMALLEST_PIVOT
@@ -129,7 +133,7 @@ impl Solver {
     /// small beside `FREE_ENERGY`: where it leaves no motion so little energy, none is free.
     ///
     /// `factor` is that of a member, or spring behind them, on the stiffness of `model`.
-    pub fn moves_freely(
+    pub(crate) fn moves_freely(
         &self,
         model: &Model,
         reduction: &Reduction,
@@ -153,7 +157,7 @@ impl Solver {
     }
 
     /// Solves in place for right-hand sides one behind the other.
-    pub fn solve(&self, right: &mut [f64]) -> Result<()> {
+    pub(crate) fn solve(&self, right: &mut [f64]) -> Result<()> {
         let size = self.scale.len();
         if size == 0 {
             return Ok(());
@@ -169,7 +173,7 @@ impl Solver {
     ///
     /// `resisted` gives K z element by element, which is asked for where digits of the assembled
     /// matrix may be lost: where members are much stiffer along than across, say.
-    pub fn solve_checked(
+    pub(crate) fn solve_checked(
         &self,
         right: &mut [f64],
         resisted: impl Fn(&[f64]) -> Vec<f64>,
@@ -229,7 +233,7 @@ impl Solver {
 
     /// Gives rotations that nothing stiffens a stiffness, so that they stay where they are;
     /// `factorise` must follow. The unknowns that it held.
-    pub fn hold_loose(&mut self, reduction: &Reduction, dofs: usize) -> Vec<usize> {
+    pub(crate) fn hold_loose(&mut self, reduction: &Reduction, dofs: usize) -> Vec<usize> {
         let mut all = vec![0.0; dofs];
         let diagonal = self.matrix.diagonal();
         for (&dof, value) in reduction.unknowns.iter().zip(&diagonal) {
@@ -256,7 +260,7 @@ impl Solver {
     }
 
     /// Dimensionless norm of forces on the unknowns.
-    pub fn force_norm(&self, forces: &[f64]) -> f64 {
+    pub(crate) fn force_norm(&self, forces: &[f64]) -> f64 {
         let terms = forces.iter().zip(&self.scale);
         terms
             .map(|(force, scale)| (force * scale).powi(2))
@@ -265,7 +269,7 @@ impl Solver {
     }
 
     /// The norm of unknowns in the same scale: K has norm 1 or a little more.
-    pub fn motion_norm(&self, unknowns: &[f64]) -> f64 {
+    pub(crate) fn motion_norm(&self, unknowns: &[f64]) -> f64 {
         let terms = unknowns.iter().zip(&self.scale);
         terms
             .map(|(motion, scale)| (motion / scale).powi(2))
@@ -274,7 +278,7 @@ impl Solver {
     }
 
     /// The error for K that does not factorise, or leaves a large residual.
-    pub fn unstable(&self, model: &Model, reduction: &Reduction) -> Error {
+    pub(crate) fn unstable(&self, model: &Model, reduction: &Reduction) -> Error {
         match self.null_vector() {
             Ok(motion) => name(
                 &displacements(&motion, &self.scale, model, reduction),

@@ -13,7 +13,7 @@ pub struct Directions {
 }
 
 impl Directions {
-    pub fn check(&self, patterns: usize, stiffnesses: usize) -> Result<()> {
+    pub(crate) fn check(&self, patterns: usize, stiffnesses: usize) -> Result<()> {
         for (name, entries, end) in [
             ("loads", &self.loads, patterns),
             ("changes", &self.changes, stiffnesses),

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 /// What a chunk holds does not depend on the number of threads, and neither do the results; the
 /// error is that of the first chunk that fails. Each thread works in a scratch of its own from
 /// `prepare`, which must not carry anything from chunk to chunk.
-pub fn in_chunks<S>(
+pub(super) fn in_chunks<S>(
     results: &mut [f64],
     width: usize,
     chunk: usize,

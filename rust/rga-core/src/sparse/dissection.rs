@@ -53,7 +53,7 @@ struct Dissection<'a> {
 }
 
 /// The unknowns in the order of their elimination; nothing where memory does not suffice.
-pub fn dissect(graph: &Graph, places: &[[f64; 3]]) -> Option<Vec<usize>> {
+pub(crate) fn dissect(graph: &Graph, places: &[[f64; 3]]) -> Option<Vec<usize>> {
     let size = graph.size();
     let mut dissection = Dissection {
         graph,

@@ -20,7 +20,7 @@ use crate::sparse::lower_triangle::LowerTriangle;
 use crate::sparse::multifrontal::{Fronts, Stack};
 use crate::sparse::ordering::{fill_reducing, inverse};
 
-pub struct Factor {
+pub(crate) struct Factor {
     analysis: Arc<Analysis>,
     values: Vec<f64>,
     memory: MemBuffer,
@@ -42,7 +42,11 @@ impl Factor {
     /// The symbolic analysis alone, which holds for all matrices of one
     /// pattern; `factorise` must follow, about `repeats` times. `places` are
     /// those of the unknowns.
-    pub fn analyse(matrix: &LowerTriangle, places: &[[f64; 3]], repeats: f64) -> Result<Self> {
+    pub(crate) fn analyse(
+        matrix: &LowerTriangle,
+        places: &[[f64; 3]],
+        repeats: f64,
+    ) -> Result<Self> {
         let size = matrix.size();
         let order = fill_reducing(matrix, places, repeats).ok_or_else(|| too_large(size))?;
         let inverse = inverse(&order);
@@ -66,7 +70,7 @@ impl Factor {
 
     /// Another factor that shares the symbolic analysis; `factorise` must
     /// follow.
-    pub fn another(&self) -> Result<Self> {
+    pub(crate) fn another(&self) -> Result<Self> {
         Self::over(Arc::clone(&self.analysis))
     }
 
@@ -91,7 +95,7 @@ impl Factor {
     }
 
     /// False where the matrix is not positive definite.
-    pub fn factorise(&mut self, matrix: &LowerTriangle) -> bool {
+    pub(crate) fn factorise(&mut self, matrix: &LowerTriangle) -> bool {
         let memory = MemStack::new(&mut self.memory);
         let done = match &self.analysis.fronts {
             Some(fronts) => {
@@ -114,7 +118,7 @@ impl Factor {
         done
     }
 
-    pub fn smallest_pivot(&self) -> f64 {
+    pub(crate) fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }
 
@@ -142,7 +146,7 @@ impl Factor {
     }
 
     /// Solves in place; `columns` right-hand sides one behind the other.
-    pub fn solve(&self, right: &mut [f64], columns: usize) -> Result<()> {
+    pub(crate) fn solve(&self, right: &mut [f64], columns: usize) -> Result<()> {
         let symbolic = &self.analysis.symbolic;
         let size = symbolic.nrows();
         let scratch = symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq);

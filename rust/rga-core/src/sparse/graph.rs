@@ -3,13 +3,13 @@
 use crate::sparse::lower_triangle::LowerTriangle;
 
 /// Every coupling stands at both of its ends.
-pub struct Graph {
+pub(crate) struct Graph {
     first: Vec<usize>,
     neighbours: Vec<u32>,
 }
 
 impl Graph {
-    pub fn new(matrix: &LowerTriangle) -> Self {
+    pub(crate) fn new(matrix: &LowerTriangle) -> Self {
         let size = matrix.size();
         let below =
             |column: usize| &matrix.rows[matrix.first[column] + 1..matrix.first[column + 1]];
@@ -38,11 +38,11 @@ impl Graph {
         Self { first, neighbours }
     }
 
-    pub fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.first.len() - 1
     }
 
-    pub fn neighbours(&self, at: usize) -> impl Iterator<Item = usize> {
+    pub(crate) fn neighbours(&self, at: usize) -> impl Iterator<Item = usize> {
         let own = &self.neighbours[self.first[at]..self.first[at + 1]];
         own.iter().map(|&neighbour| neighbour as usize)
     }

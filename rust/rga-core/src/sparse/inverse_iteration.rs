@@ -7,7 +7,7 @@ use crate::sparse::factor::Factor;
 /// irregular, so that no motion is square to it.
 const SHARE: f64 = 1e-6;
 
-pub struct InverseIteration<'a> {
+pub(crate) struct InverseIteration<'a> {
     factor: &'a Factor,
     /// Of norm 1.
     pub motion: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct InverseIteration<'a> {
 }
 
 impl<'a> InverseIteration<'a> {
-    pub fn new(factor: &'a Factor, size: usize) -> Self {
+    pub(crate) fn new(factor: &'a Factor, size: usize) -> Self {
         let golden = 0.618_033_988_749_895;
         let start = |at: usize| 0.5 + (golden * (at + 1) as f64).fract();
         let mut motion: Vec<f64> = (0..size).map(start).collect();
@@ -31,7 +31,7 @@ impl<'a> InverseIteration<'a> {
     }
 
     /// How much the motion has changed.
-    pub fn step(&mut self) -> Result<f64> {
+    pub(crate) fn step(&mut self) -> Result<f64> {
         let before = self.motion.clone();
         self.factor.solve(&mut self.motion, 1)?;
         self.growth += normalise(&mut self.motion).ln();
@@ -41,7 +41,7 @@ impl<'a> InverseIteration<'a> {
     }
 
     /// No motion of norm 1 has less energy: its part of the start would have grown more.
-    pub fn least_energy(&self) -> f64 {
+    pub(crate) fn least_energy(&self) -> f64 {
         let share = SHARE / (self.motion.len() as f64).sqrt();
         ((share.ln() - self.growth) / self.steps).exp()
     }

@@ -12,7 +12,7 @@ pub struct LowerTriangle {
 }
 
 /// (row, column, value)
-pub type Entry = (usize, usize, f64);
+pub(crate) type Entry = (usize, usize, f64);
 
 impl LowerTriangle {
     /// `each` calls `add(row, column, value)` for all entries; entries repeat, and are summed in
@@ -59,35 +59,35 @@ impl LowerTriangle {
         matrix
     }
 
-    pub fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.first.len() - 1
     }
 
-    pub fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
+    pub(crate) fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
         let size = self.size();
         SymbolicSparseColMatRef::new_checked(size, size, &self.first, None, &self.rows)
     }
 
     /// Where the entry, which is there, stands in `values`.
-    pub fn place(&self, row: usize, column: usize) -> usize {
+    pub(crate) fn place(&self, row: usize, column: usize) -> usize {
         let (first, end) = (self.first[column], self.first[column + 1]);
         first + self.rows[first..end].partition_point(|&other| other < row)
     }
 
     /// The same of an entry that may not be there.
-    pub fn find(&self, row: usize, column: usize) -> Option<usize> {
+    pub(crate) fn find(&self, row: usize, column: usize) -> Option<usize> {
         let at = self.place(row, column);
         let there = at < self.first[column + 1] && self.rows[at] == row;
         there.then_some(at)
     }
 
-    pub fn diagonal(&self) -> Vec<f64> {
+    pub(crate) fn diagonal(&self) -> Vec<f64> {
         let starts = &self.first[..self.size()];
         starts.iter().map(|&start| self.values[start]).collect()
     }
 
     /// K x, both triangles taken.
-    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+    pub(crate) fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; x.len()];
         for column in 0..self.size() {
             let own = self.first[column]..self.first[column + 1];
@@ -102,7 +102,7 @@ impl LowerTriangle {
     }
 
     /// S K S with diagonal S.
-    pub fn scale(&mut self, scale: &[f64]) {
+    pub(crate) fn scale(&mut self, scale: &[f64]) {
         for column in 0..self.size() {
             for at in self.first[column]..self.first[column + 1] {
                 self.values[at] *= scale[column] * scale[self.rows[at]];
@@ -111,7 +111,7 @@ impl LowerTriangle {
     }
 
     /// K + shift I
-    pub fn shift(&mut self, shift: f64) {
+    pub(crate) fn shift(&mut self, shift: f64) {
         for column in 0..self.size() {
             self.values[self.first[column]] += shift;
         }

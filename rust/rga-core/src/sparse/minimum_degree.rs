@@ -6,7 +6,7 @@ use faer::sparse::linalg::amd;
 
 /// The order, with the multiplications of the factorisation. Of each unknown,
 /// `rows` has what it is coupled with, once or twice, from `first` on.
-pub fn minimum_degree(first: &[usize], rows: &[usize]) -> Option<(Vec<usize>, f64)> {
+pub(crate) fn minimum_degree(first: &[usize], rows: &[usize]) -> Option<(Vec<usize>, f64)> {
     // Half of the memory is half of the time.
     let [first, rows] = [first, rows].map(narrow);
     let size = first.len() - 1;

@@ -19,7 +19,7 @@ use crate::sparse::lower_triangle::LowerTriangle;
 use crate::sparse::supernodes::Supernodes;
 
 /// What all factorisations of one pattern share.
-pub struct Fronts {
+pub(crate) struct Fronts {
     /// In postorder: each right behind its subtrees.
     fronts: Vec<Front>,
     /// Of each front: its rows below, as rows of its parent.
@@ -45,7 +45,7 @@ struct Front {
 
 /// What fronts left, until their parents take it. Parents take from one stack and leave on another.
 #[derive(Default)]
-pub struct Stack {
+pub(crate) struct Stack {
     numbers: Vec<f64>,
     used: usize,
     fronts: Vec<usize>,
@@ -53,7 +53,7 @@ pub struct Stack {
 
 impl Fronts {
     /// `inverse` is where each unknown of the matrix stands in the factor.
-    pub fn new(
+    pub(crate) fn new(
         symbolic: &SymbolicSupernodalCholesky<usize>,
         matrix: &LowerTriangle,
         inverse: &[usize],
@@ -99,20 +99,20 @@ impl Fronts {
     }
 
     /// For one factorisation at a time.
-    pub fn stacks(&self) -> [Stack; 2] {
+    pub(crate) fn stacks(&self) -> [Stack; 2] {
         self.room.map(|room| Stack {
             numbers: vec![0.0; room],
             ..Stack::default()
         })
     }
 
-    pub fn scratch(&self) -> StackReq {
+    pub(crate) fn scratch(&self) -> StackReq {
         let widest = self.fronts.iter().map(|front| front.columns).max();
         cholesky_in_place_scratch::<f64>(widest.unwrap_or(0), Par::Seq, Default::default())
     }
 
     /// Fills in the factor; false where the matrix is not positive definite.
-    pub fn factorise(
+    pub(crate) fn factorise(
         &self,
         matrix: &[f64],
         factor: &mut [f64],

@@ -13,7 +13,7 @@ use crate::sparse::minimum_degree::minimum_degree;
 const WORTHWHILE: f64 = 5e4;
 
 /// Factorisations of a pattern that samples share.
-pub const OFTEN: f64 = 10.0;
+pub(crate) const OFTEN: f64 = 10.0;
 
 /// The unknowns in the order of their elimination; nothing where memory does not suffice.
 ///
@@ -62,7 +62,7 @@ fn multiplications(graph: &Graph, order: &[usize]) -> f64 {
 }
 
 /// Where each unknown stands in the order.
-pub fn inverse(order: &[usize]) -> Vec<usize> {
+pub(crate) fn inverse(order: &[usize]) -> Vec<usize> {
     let mut inverse = vec![0; order.len()];
     for (position, &at) in order.iter().enumerate() {
         inverse[at] = position;

@@ -6,13 +6,13 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
 use crate::sparse::lower_triangle::LowerTriangle;
 
-pub struct Supernodes<'a> {
+pub(crate) struct Supernodes<'a> {
     symbolic: &'a SymbolicSupernodalCholesky<usize>,
     of_column: Vec<usize>,
 }
 
 impl<'a> Supernodes<'a> {
-    pub fn new(symbolic: &'a SymbolicSupernodalCholesky<usize>) -> Self {
+    pub(crate) fn new(symbolic: &'a SymbolicSupernodalCholesky<usize>) -> Self {
         let mut supernodes = Self {
             symbolic,
             of_column: vec![0; symbolic.ncols()],
@@ -24,27 +24,27 @@ impl<'a> Supernodes<'a> {
         supernodes
     }
 
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.symbolic.n_supernodes()
     }
 
-    pub fn columns(&self, at: usize) -> Range<usize> {
+    pub(crate) fn columns(&self, at: usize) -> Range<usize> {
         self.symbolic.supernode_begin()[at]..self.symbolic.supernode_end()[at]
     }
 
     /// The rows below the columns; they ascend.
-    pub fn below(&self, at: usize) -> &'a [usize] {
+    pub(crate) fn below(&self, at: usize) -> &'a [usize] {
         let first = self.symbolic.col_ptr_for_row_idx();
         &self.symbolic.row_idx()[first[at]..first[at + 1]]
     }
 
     /// It comes later.
-    pub fn parent(&self, at: usize) -> Option<usize> {
+    pub(crate) fn parent(&self, at: usize) -> Option<usize> {
         self.below(at).first().map(|&row| self.of_column[row])
     }
 
     /// Each right behind its subtrees.
-    pub fn postorder(&self) -> Vec<usize> {
+    pub(crate) fn postorder(&self) -> Vec<usize> {
         let count = self.count();
         let mut sizes = vec![1; count];
         for at in 0..count {
@@ -71,7 +71,7 @@ impl<'a> Supernodes<'a> {
 
     /// The rows below, counted from the first column of the parent over its columns and the rows
     /// below these.
-    pub fn in_parent(&self, at: usize) -> impl Iterator<Item = usize> {
+    pub(crate) fn in_parent(&self, at: usize) -> impl Iterator<Item = usize> {
         let parent = self.parent(at);
         let columns = parent.map_or(0..0, |parent| self.columns(parent));
         let mut later = parent.map_or(&[][..], |parent| self.below(parent)).iter();
@@ -89,7 +89,7 @@ impl<'a> Supernodes<'a> {
     /// Numbers of the values of a matrix, and their places among the values of their supernode,
     /// column by column: those of supernode k stand from the k-th of the first numbers on.
     /// `inverse` is where each unknown of the matrix stands in the factor.
-    pub fn entries(
+    pub(crate) fn entries(
         &self,
         matrix: &LowerTriangle,
         inverse: &[usize],

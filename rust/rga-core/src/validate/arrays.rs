@@ -5,7 +5,7 @@ use rga_simd::Array;
 
 use crate::error::{Error, Result};
 
-pub trait CheckShape {
+pub(crate) trait CheckShape {
     /// The shape must be `expected` and the values must fill it.
     fn check_shape(&self, name: &str, expected: &[usize]) -> Result<()>;
 }
@@ -22,7 +22,7 @@ impl<T> CheckShape for Array<'_, T> {
     }
 }
 
-pub trait CheckNumbers {
+pub(crate) trait CheckNumbers {
     /// Every value must be good, which is what `right` says.
     fn check_each(&self, name: &str, right: &str, good: impl Fn(f64) -> bool) -> Result<()>;
 
@@ -96,7 +96,7 @@ impl CheckNumbers for Array<'_, f64> {
     }
 }
 
-pub trait CheckIndices {
+pub(crate) trait CheckIndices {
     /// Every index must be at least `low` and below `end`.
     fn check_range(&self, name: &str, low: i64, end: usize) -> Result<()>;
 }
@@ -126,10 +126,10 @@ fn place(mut at: usize, shape: &[usize]) -> String {
     format!("[{}]", indices.join(", "))
 }
 
-pub fn positive(value: f64) -> bool {
+pub(crate) fn positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
 }
 
-pub fn not_negative(value: f64) -> bool {
+pub(crate) fn not_negative(value: f64) -> bool {
     value.is_finite() && value >= 0.0
 }

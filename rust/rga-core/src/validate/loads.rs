@@ -5,7 +5,7 @@ use crate::fe::axes::local_axes;
 use crate::input::{Loads, Structure};
 use crate::validate::arrays::{CheckIndices, CheckNumbers, CheckShape};
 
-pub fn check_loads(structure: &Structure, loads: &Loads) -> Result<()> {
+pub(crate) fn check_loads(structure: &Structure, loads: &Loads) -> Result<()> {
     let (n, m, k) = (
         structure.node_count(),
         structure.member_count(),

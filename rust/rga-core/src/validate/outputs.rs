@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::input::{Outputs, Structure};
 use crate::validate::arrays::{CheckIndices, CheckNumbers, CheckShape, positive};
 
-pub fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<()> {
+pub(crate) fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<()> {
     let (n, m, o) = (
         structure.node_count(),
         structure.member_count(),

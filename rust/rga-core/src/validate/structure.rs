@@ -5,7 +5,7 @@ use crate::fe::axes::local_axes;
 use crate::input::Structure;
 use crate::validate::arrays::{CheckIndices, CheckNumbers, CheckShape, not_negative, positive};
 
-pub fn check_structure(structure: &Structure) -> Result<()> {
+pub(crate) fn check_structure(structure: &Structure) -> Result<()> {
     let (n, m) = (structure.node_count(), structure.member_count());
     let (k, s, t) = (
         structure.inclined_node.len(),

@@ -11,7 +11,7 @@ const ROUNDING: f32 = 1.5 * (1 << 23) as f32;
 ///
 /// Series of cosh and sinh of what x differs by from the nearest multiple of ln 2; then powers of 2.
 #[inline(always)]
-pub fn powers<L: Lanes>(lanes: L, x: L::Numbers) -> (L::Numbers, L::Numbers) {
+pub(super) fn powers<L: Lanes>(lanes: L, x: L::Numbers) -> (L::Numbers, L::Numbers) {
     let rounding = lanes.splat(ROUNDING);
     let times = lanes.mul_add(x, lanes.splat(LOG2_E), rounding);
     let rest = lanes.mul_add(lanes.sub(times, rounding), lanes.splat(-LN_2), x);

@@ -5,7 +5,7 @@ use rga_simd::f32::SIXTEEN;
 use crate::change::Block;
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recent {
+pub(super) struct Recent {
     sensors: usize,
     /// `[rows kept, sensors]`
     pub(super) ring: Vec<f32>,
@@ -15,7 +15,7 @@ pub struct Recent {
 }
 
 impl Recent {
-    pub fn new(sensors: usize, rows: usize) -> Self {
+    pub(super) fn new(sensors: usize, rows: usize) -> Self {
         Self {
             sensors,
             ring: vec![0.0; sensors * rows],
@@ -25,7 +25,7 @@ impl Recent {
     }
 
     #[inline(always)]
-    pub fn push(&mut self, scores: &[Block], row: usize) {
+    pub(super) fn push(&mut self, scores: &[Block], row: usize) {
         let rows = self.rows();
         if rows == 0 {
             return;
@@ -46,12 +46,12 @@ impl Recent {
         self.filled = rows.min(self.filled + 1);
     }
 
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         (self.next, self.filled) = (0, 0);
     }
 
     /// Oldest row first.
-    pub fn in_order(&self) -> Vec<f32> {
+    pub(super) fn in_order(&self) -> Vec<f32> {
         if self.filled < self.rows() {
             return self.ring[..self.filled * self.sensors].to_vec();
         }
@@ -59,11 +59,11 @@ impl Recent {
         [early, late].concat()
     }
 
-    pub fn filled(&self) -> usize {
+    pub(super) fn filled(&self) -> usize {
         self.filled
     }
 
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.ring.len() / self.sensors
     }
 }

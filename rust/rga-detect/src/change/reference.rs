@@ -16,7 +16,7 @@ use crate::refusal::Refusal;
 use autoregression::any_missing;
 
 /// Scores are never beyond this: one reading alone says no more.
-pub const LARGEST_SCORE: f32 = 6.0;
+pub(super) const LARGEST_SCORE: f32 = 6.0;
 
 /// p sensors
 #[derive(Debug, Clone, PartialEq)]
@@ -191,12 +191,12 @@ impl Reference {
         ]
     }
 
-    pub fn sensors(&self) -> usize {
+    pub(crate) fn sensors(&self) -> usize {
         self.level.len()
     }
 
     /// Whole sixteens.
-    pub fn signature(&self) -> &[f32] {
+    pub(crate) fn signature(&self) -> &[f32] {
         &self.derived.signature
     }
 
@@ -207,7 +207,7 @@ impl Reference {
     /// Independent scores of rows, those of a beat at most, NaN where they are missing; and whether
     /// any is. `missing`: readings may be.
     #[inline(always)]
-    pub fn scores<L: Lanes>(
+    pub(crate) fn scores<L: Lanes>(
         &mut self,
         lanes: L,
         readings: &[f64],
@@ -294,7 +294,7 @@ fn scaled(
 
 /// What the rows of a beat are worked out in.
 #[derive(Debug, Clone)]
-pub struct Work {
+pub(crate) struct Work {
     /// Readings that predict the next ones are known.
     settled: bool,
     /// Whole sixteens, NaN behind the last sensor.
@@ -305,7 +305,7 @@ pub struct Work {
 }
 
 impl Work {
-    pub fn new(reference: &Reference) -> Self {
+    pub(crate) fn new(reference: &Reference) -> Self {
         let sensors = reference.sensors();
         let mut expected = reference.level.clone();
         reference.expect(&mut expected);

@@ -66,14 +66,14 @@ const OF_SPREADS: usize = STEPS;
 const OF_AVERAGES: usize = STEPS + SPREADS;
 
 /// Two sixteens; what is behind the last statistic means nothing.
-pub type Found = [f32; 2 * SIXTEEN];
+pub(super) type Found = [f32; 2 * SIXTEEN];
 
 /// Vectors of sixteen sensors: what every row changes, and what beats change.
 const QUICK: usize = 3 + ROW_AVERAGES.len() + 2 * ROW_STEPS.len();
 const SLOW: usize = 1 + 2 + 2 + SPREADS + BEAT_AVERAGES.len();
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct Banks {
+pub(super) struct Banks {
     sensors: usize,
     several: Several,
     /// `[sixteens, QUICK, 16]`
@@ -86,7 +86,7 @@ pub struct Banks {
 }
 
 impl Banks {
-    pub fn new(sensors: usize) -> Self {
+    pub(super) fn new(sensors: usize) -> Self {
         let width = sixteens(sensors) * SIXTEEN;
         Self {
             sensors,
@@ -99,14 +99,14 @@ impl Banks {
     }
 
     /// Rows until a beat is full.
-    pub fn rows_to_beat(&self) -> usize {
+    pub(super) fn rows_to_beat(&self) -> usize {
         BEAT - (self.rows % BEAT as u64) as usize
     }
 
     /// Takes the scores of rows of one beat, NaN where they are missing, and gives the statistics
     /// of each; one that is not looked at in a row is 0.
     #[inline(always)]
-    pub fn advance<L: Lanes>(
+    pub(super) fn advance<L: Lanes>(
         &mut self,
         lanes: L,
         scores: &[Block],

@@ -13,7 +13,7 @@ const MANY: usize = u32::MAX as usize;
 const USUAL: f64 = 1e-2 * LARGEST;
 
 #[derive(Debug, Clone)]
-pub struct Block {
+pub(super) struct Block {
     /// Rows of which nothing entered, modulo M: places that a lane is behind.
     pub lag: [u64; WIDTH],
     /// Values until the window is full.
@@ -26,7 +26,7 @@ pub struct Block {
 
 /// What the lanes of a block have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pace {
+pub(super) enum Pace {
     /// Some windows are not full.
     Filling,
     /// The next values go to several places.
@@ -37,7 +37,7 @@ pub enum Pace {
 
 /// A rule as blocks follow it.
 #[derive(Clone, Copy)]
-pub struct Task<L: Lanes> {
+pub(super) struct Task<L: Lanes> {
     pub lanes: L,
     pub weights: Weights<L::Numbers>,
     pub persistence: (i64, i64),
@@ -45,7 +45,7 @@ pub struct Task<L: Lanes> {
 }
 
 impl Block {
-    pub fn new(earlier: usize) -> Self {
+    pub(super) fn new(earlier: usize) -> Self {
         Self {
             lag: [0; WIDTH],
             lacking: [earlier as u64; WIDTH],
@@ -57,7 +57,7 @@ impl Block {
 
     /// Tests rows and lets them into the windows. False: some have, and a value is infinite.
     #[inline(always)]
-    pub fn take<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
+    pub(super) fn take<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
         let mut row = 0;
         loop {
             if self.walks(task) {
@@ -81,7 +81,7 @@ impl Block {
     /// Tests the only row of a tile, which holds no infinite value, and lets it into the windows.
     /// False: it takes `take` for that, and nothing has changed.
     #[inline(always)]
-    pub fn step<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
+    pub(super) fn step<L: Lanes>(&mut self, task: &Task<L>, tile: &mut Tile, part: Part) -> bool {
         let Task {
             lanes,
             weights,
@@ -111,7 +111,7 @@ impl Block {
 
     /// Whether `walk` can take rows.
     #[inline(always)]
-    pub fn walks<L: Lanes>(&self, task: &Task<L>) -> bool {
+    pub(super) fn walks<L: Lanes>(&self, task: &Task<L>) -> bool {
         self.pace == Pace::Together && task.persistence.1 == 1
     }
 
@@ -173,7 +173,7 @@ impl Block {
     /// The shift is the value nearest to the mean: values that are alike leave no rounding, and
     /// M Q - S^2 is then at least half of M Q.
     #[inline(never)]
-    pub fn sum_anew(&mut self, windows: &[Eight], blocks: usize, own: usize, bits: u64) {
+    pub(super) fn sum_anew(&mut self, windows: &[Eight], blocks: usize, own: usize, bits: u64) {
         let values = || windows[own..].iter().step_by(blocks);
         let count = (windows.len() / blocks) as f64;
         let first = windows[own].0;
@@ -215,7 +215,7 @@ impl Block {
 }
 
 impl Pace {
-    pub fn of(lag: &[u64; WIDTH], lacking: &[u64; WIDTH]) -> Self {
+    pub(super) fn of(lag: &[u64; WIDTH], lacking: &[u64; WIDTH]) -> Self {
         if *lacking != [0; WIDTH] {
             Self::Filling
         } else if *lag == [lag[0]; WIDTH] {

@@ -17,7 +17,7 @@ impl Block {
     ///
     /// A function of its own: the registers of those that call it are theirs.
     #[inline(never)]
-    pub fn masked<L: Lanes>(
+    pub(super) fn masked<L: Lanes>(
         &mut self,
         task: &Task<L>,
         tile: &mut Tile,

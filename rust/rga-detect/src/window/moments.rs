@@ -8,7 +8,7 @@ use super::tile::{Eight, WIDTH};
 
 /// Of each lane.
 #[derive(Debug, Clone, Copy)]
-pub struct Moments<N> {
+pub(super) struct Moments<N> {
     pub shift: N,
     /// S
     pub sum: N,
@@ -21,7 +21,7 @@ pub struct Moments<N> {
 }
 
 impl Moments<Eight> {
-    pub const FILLING: Self = Self {
+    pub(super) const FILLING: Self = Self {
         shift: Eight::ZERO,
         sum: Eight::ZERO,
         square: Eight::ZERO,
@@ -33,7 +33,7 @@ impl Moments<Eight> {
 /// A rule in numbers that stand in every lane.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub struct Weights<N> {
+pub(super) struct Weights<N> {
     count: N,
     /// Of r^2 and of M Q - S^2 in the comparison.
     own: N,
@@ -45,7 +45,7 @@ pub struct Weights<N> {
 
 impl<N: Copy> Weights<N> {
     #[inline(always)]
-    pub fn new<L: Lanes<Numbers = N>>(lanes: L, rule: &WindowRule) -> Self {
+    pub(super) fn new<L: Lanes<Numbers = N>>(lanes: L, rule: &WindowRule) -> Self {
         let (own, others) = rule.weights();
         let count = rule.earlier() as f64;
         Self {
@@ -60,7 +60,7 @@ impl<N: Copy> Weights<N> {
 
 impl<N: Copy> Moments<N> {
     #[inline(always)]
-    pub fn load<L: Lanes<Numbers = N>>(lanes: L, stored: &Moments<Eight>) -> Self {
+    pub(super) fn load<L: Lanes<Numbers = N>>(lanes: L, stored: &Moments<Eight>) -> Self {
         Self {
             shift: lanes.load(&stored.shift.0),
             sum: lanes.load(&stored.sum.0),
@@ -72,7 +72,7 @@ impl<N: Copy> Moments<N> {
 
     /// The shift stays as it is.
     #[inline(always)]
-    pub fn store<L: Lanes<Numbers = N>>(&self, lanes: L, stored: &mut Moments<Eight>) {
+    pub(super) fn store<L: Lanes<Numbers = N>>(&self, lanes: L, stored: &mut Moments<Eight>) {
         lanes.store(self.sum, &mut stored.sum.0);
         lanes.store(self.square, &mut stored.square.0);
         lanes.store(self.peak, &mut stored.peak.0);
@@ -81,7 +81,7 @@ impl<N: Copy> Moments<N> {
 
     /// Whether a value exceeds the bound; not where it is NaN.
     #[inline(always)]
-    pub fn exceeded<L: Lanes<Numbers = N>>(
+    pub(super) fn exceeded<L: Lanes<Numbers = N>>(
         &self,
         lanes: L,
         weights: &Weights<N>,
@@ -97,7 +97,7 @@ impl<N: Copy> Moments<N> {
 
     /// With a value in place of the oldest.
     #[inline(always)]
-    pub fn moved<L: Lanes<Numbers = N>>(
+    pub(super) fn moved<L: Lanes<Numbers = N>>(
         &self,
         lanes: L,
         weights: &Weights<N>,
@@ -120,13 +120,18 @@ impl<N: Copy> Moments<N> {
 
     /// Whether M Q - S^2 has enough digits.
     #[inline(always)]
-    pub fn sound<L: Lanes<Numbers = N>>(&self, lanes: L, weights: &Weights<N>) -> L::Mask {
+    pub(super) fn sound<L: Lanes<Numbers = N>>(&self, lanes: L, weights: &Weights<N>) -> L::Mask {
         lanes.at_most(lanes.mul(weights.digits, self.peak), self.spread)
     }
 
     /// These where marked, else others.
     #[inline(always)]
-    pub fn select<L: Lanes<Numbers = N>>(&self, lanes: L, mask: L::Mask, others: &Self) -> Self {
+    pub(super) fn select<L: Lanes<Numbers = N>>(
+        &self,
+        lanes: L,
+        mask: L::Mask,
+        others: &Self,
+    ) -> Self {
         Self {
             shift: self.shift,
             sum: lanes.select(mask, self.sum, others.sum),

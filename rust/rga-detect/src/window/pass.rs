@@ -9,7 +9,7 @@ use super::tile::{TILE, Tile, WIDTH};
 use super::{GaussianWindow, LAPS, LARGEST};
 
 /// Tests rows and lets them into the windows. False: some have, and a value is infinite.
-pub struct Pass<'a> {
+pub(super) struct Pass<'a> {
     pub window: &'a mut GaussianWindow,
     pub values: &'a [f64],
     pub alarms: &'a mut [bool],

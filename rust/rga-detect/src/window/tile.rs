@@ -5,23 +5,23 @@ use std::ops::Range;
 use super::LARGEST;
 
 /// Sensors of a block.
-pub const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 /// Rows of a tile at most: they stay in the nearest cache while one block after the other takes
 /// them.
-pub const TILE: usize = 32;
+pub(super) const TILE: usize = 32;
 
 /// A number of each sensor of a block, in one line of the cache.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub struct Eight(pub [f64; WIDTH]);
+pub(super) struct Eight(pub [f64; WIDTH]);
 
 impl Eight {
-    pub const ZERO: Self = Self([0.0; WIDTH]);
+    pub(super) const ZERO: Self = Self([0.0; WIDTH]);
 }
 
 /// Rows that do not go beyond the last place of a window.
-pub struct Tile<'a> {
+pub(super) struct Tile<'a> {
     /// `[rows, sensors]`
     pub values: &'a [f64],
     /// `[rows, sensors]`
@@ -39,7 +39,7 @@ pub struct Tile<'a> {
 
 /// The part of a block in a tile.
 #[derive(Clone, Copy)]
-pub struct Part {
+pub(super) struct Part {
     pub block: usize,
     /// Its first sensor.
     pub first: usize,
@@ -48,7 +48,7 @@ pub struct Part {
 impl Tile<'_> {
     /// The same, borrowed once more.
     #[inline(always)]
-    pub fn again(&mut self) -> Tile<'_> {
+    pub(super) fn again(&mut self) -> Tile<'_> {
         Tile {
             alarms: &mut *self.alarms,
             windows: &mut *self.windows,
@@ -58,13 +58,13 @@ impl Tile<'_> {
 
     /// Index of the first value of a block in a row.
     #[inline(always)]
-    pub fn at(&self, part: Part, row: usize) -> usize {
+    pub(super) fn at(&self, part: Part, row: usize) -> usize {
         row * self.sensors + part.first
     }
 
     /// Where a row goes in a lane that is some places behind.
     #[inline(always)]
-    pub fn place(&self, row: usize, lag: u64) -> usize {
+    pub(super) fn place(&self, row: usize, lag: u64) -> usize {
         let (slot, lag) = (self.slot + row, lag as usize);
         let around = if lag > slot { self.places } else { 0 };
         slot + around - lag
@@ -72,7 +72,7 @@ impl Tile<'_> {
 
     /// Whether no value of a block in rows is too large.
     #[inline(never)]
-    pub fn within(&self, part: Part, rows: Range<usize>) -> bool {
+    pub(super) fn within(&self, part: Part, rows: Range<usize>) -> bool {
         let mut values = rows.flat_map(|row| &self.values[self.at(part, row)..][..WIDTH]);
         values.all(|value| value.abs() <= LARGEST)
     }
@@ -80,7 +80,7 @@ impl Tile<'_> {
 
 /// Writes the alarms of lanes, given by their bits.
 #[inline(always)]
-pub fn mark(alarms: &mut [bool], bits: u64) {
+pub(super) fn mark(alarms: &mut [bool], bits: u64) {
     alarms.copy_from_slice(&MARKS[bits as usize]);
 }
 
@@ -99,7 +99,7 @@ const MARKS: [[bool; WIDTH]; 1 << WIDTH] = {
 ///
 /// Blocks read rows with strides, which processors do not foresee.
 #[inline(always)]
-pub fn prefetch(values: &[f64], ahead: usize) {
+pub(super) fn prefetch(values: &[f64], ahead: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

@@ -10,7 +10,7 @@ use rga_simd::f64::Lanes;
 
 /// `value` in row and column of the matrix of one weight.
 #[derive(Debug, Clone, Copy)]
-pub struct Entry {
+pub(super) struct Entry {
     pub weight: usize,
     pub row: usize,
     pub column: usize,
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-14;
 const ELEMENT: usize = 200;
 
 #[derive(Debug)]
-pub struct Bilinear {
+pub(super) struct Bilinear {
     /// Of one shape behind each other: where a loop over their terms ends is then foreseen.
     products: Vec<Product>,
     /// The products of each weight.
@@ -75,7 +75,7 @@ impl Run<'_> {
 
 impl Bilinear {
     /// Entries of one place are summed, in their order.
-    pub fn new(entries: Vec<Entry>, weights: usize) -> Self {
+    pub(super) fn new(entries: Vec<Entry>, weights: usize) -> Self {
         let entries = merged(entries);
         let groups = entries.chunk_by(|one, other| one.weight == other.weight);
         let all = groups.flat_map(|own| {
@@ -106,7 +106,7 @@ impl Bilinear {
 
     /// `out` += w A x
     #[inline(always)]
-    pub fn add<L: Lanes>(
+    pub(super) fn add<L: Lanes>(
         &self,
         lanes: L,
         weights: &[L::Numbers],
@@ -142,7 +142,7 @@ impl Bilinear {
 
     /// The part of one weight.
     #[inline(always)]
-    pub fn add_one<L: Lanes>(
+    pub(super) fn add_one<L: Lanes>(
         &self,
         lanes: L,
         (at, weight): (usize, L::Numbers),
@@ -157,7 +157,7 @@ impl Bilinear {
 
     /// `out` += (w A)' y
     #[inline(always)]
-    pub fn add_transposed<L: Lanes>(
+    pub(super) fn add_transposed<L: Lanes>(
         &self,
         lanes: L,
         weights: &[L::Numbers],
@@ -174,7 +174,7 @@ impl Bilinear {
 
     /// `out[k]` += y' A[k] x
     #[inline(always)]
-    pub fn add_to_weights<L: Lanes>(
+    pub(super) fn add_to_weights<L: Lanes>(
         &self,
         lanes: L,
         y: &[L::Numbers],
@@ -230,7 +230,7 @@ fn dot<L: Lanes>(lanes: L, terms: &[(usize, f64)], x: &[L::Numbers]) -> L::Numbe
 }
 
 /// Entries by weight, row and column, of one place one.
-pub fn merged(mut entries: Vec<Entry>) -> Vec<Entry> {
+pub(super) fn merged(mut entries: Vec<Entry>) -> Vec<Entry> {
     let place = |entry: &Entry| (entry.weight, entry.row, entry.column);
     entries.sort_by_key(place);
     entries.dedup_by(|next, sum| {

@@ -17,7 +17,7 @@ use super::tiles::{Below, Hand, load, store, take_products};
 use substitution::Substitute;
 
 /// L of K = L L', with one over its diagonal beside it.
-pub struct Cholesky<'a, L: Lanes> {
+pub(super) struct Cholesky<'a, L: Lanes> {
     panels: &'a Panels,
     values: Vec<L::Numbers>,
     inverse: Vec<L::Numbers>,
@@ -28,7 +28,7 @@ pub struct Cholesky<'a, L: Lanes> {
 }
 
 impl<'a, L: Lanes> Cholesky<'a, L> {
-    pub fn new(lanes: L, panels: &'a Panels) -> Self {
+    pub(super) fn new(lanes: L, panels: &'a Panels) -> Self {
         let zero = lanes.splat(0.0);
         Self {
             values: vec![zero; panels.numbers],
@@ -43,7 +43,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     /// panel is at hand.
     ///
     /// `share` is that of `sound`.
-    pub fn factorise(
+    pub(super) fn factorise(
         &mut self,
         lanes: L,
         weights: &[L::Numbers],
@@ -61,7 +61,7 @@ impl<'a, L: Lanes> Cholesky<'a, L> {
     }
 
     /// Solves K x = `right` in place, `N` right-hand sides beside each other.
-    pub fn solve<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
+    pub(super) fn solve<const N: usize>(&self, lanes: L, right: &mut [L::Numbers]) {
         let cholesky = self;
         lanes.vectorize(Substitute::<L, N> {
             lanes,

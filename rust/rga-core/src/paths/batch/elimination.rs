@@ -10,7 +10,7 @@ use crate::sparse::minimum_degree::minimum_degree;
 use crate::sparse::ordering::inverse;
 
 #[derive(Debug)]
-pub struct Elimination {
+pub(super) struct Elimination {
     /// The unknown of each place, in the order of elimination.
     pub order: Vec<usize>,
     /// Children before their parents; each begins where the one before ends.
@@ -19,7 +19,7 @@ pub struct Elimination {
 
 /// Places in the order of elimination.
 #[derive(Debug, Clone, Default)]
-pub struct Supernode {
+pub(super) struct Supernode {
     pub columns: Vec<usize>,
     /// Ascending.
     pub below: Vec<usize>,
@@ -27,7 +27,7 @@ pub struct Supernode {
 
 impl Elimination {
     /// Nothing where the factor would have more than `most` numbers.
-    pub fn new(matrix: &LowerTriangle, most: usize) -> Option<Self> {
+    pub(super) fn new(matrix: &LowerTriangle, most: usize) -> Option<Self> {
         // It has all that the matrix has.
         if matrix.rows.len() > most {
             return None;
@@ -40,7 +40,7 @@ impl Elimination {
     }
 
     /// Numbers of the factor, zeros among them.
-    pub fn numbers(&self) -> usize {
+    pub(super) fn numbers(&self) -> usize {
         let of_one =
             |node: &Supernode| node.columns.len() * (node.columns.len() + node.below.len());
         self.supernodes.iter().map(of_one).sum()

@@ -9,7 +9,7 @@ use super::bilinear::Entry;
 use super::elimination::{Elimination, Supernode};
 
 #[derive(Debug)]
-pub struct Panels {
+pub(super) struct Panels {
     pub panels: Vec<Panel>,
     /// Numbers of all panels.
     pub numbers: usize,
@@ -19,14 +19,14 @@ pub struct Panels {
 
 /// A part of the stiffness: a value times a weight, at a place in its panel.
 #[derive(Debug, Clone, Copy)]
-pub struct Term {
+pub(super) struct Term {
     pub place: u32,
     pub weight: u32,
     pub value: f64,
 }
 
 #[derive(Debug)]
-pub struct Panel {
+pub(super) struct Panel {
     /// Its first unknown; the others follow.
     pub first: usize,
     pub width: usize,
@@ -49,7 +49,7 @@ pub struct Panel {
 
 /// What a panel hands on to another.
 #[derive(Debug)]
-pub struct Update {
+pub(super) struct Update {
     pub to: usize,
     /// Rows below, by number, that are columns of the other panel; those behind `from` are rows
     /// there.
@@ -61,7 +61,7 @@ pub struct Update {
 
 impl Panels {
     /// `stiffness` holds the lower triangle or all of it, in places of the elimination.
-    pub fn new(elimination: &Elimination, stiffness: &[Entry]) -> Self {
+    pub(super) fn new(elimination: &Elimination, stiffness: &[Entry]) -> Self {
         let supernodes = &elimination.supernodes;
         let mut owner = vec![0; elimination.order.len()];
         for (index, node) in supernodes.iter().enumerate() {
@@ -151,17 +151,17 @@ impl Panels {
     }
 
     /// Terms of a panel that stand alone at their place.
-    pub fn alone(&self, panel: &Panel) -> &[Term] {
+    pub(super) fn alone(&self, panel: &Panel) -> &[Term] {
         &self.terms[panel.alone.clone()]
     }
 
     /// Terms of a panel of which many make a sum; those of a sum behind each other.
-    pub fn sums(&self, panel: &Panel) -> &[Term] {
+    pub(super) fn sums(&self, panel: &Panel) -> &[Term] {
         &self.terms[panel.sums.clone()]
     }
 
     /// Number of unknowns.
-    pub fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.panels
             .last()
             .map_or(0, |panel| panel.first + panel.width)
@@ -169,18 +169,18 @@ impl Panels {
 }
 
 impl Panel {
-    pub fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.width + self.below.len()
     }
 
     /// Numbers of the panel.
-    pub fn numbers(&self) -> Range<usize> {
+    pub(super) fn numbers(&self) -> Range<usize> {
         self.start..self.start + self.width * self.rows()
     }
 
     /// The unknown of a row.
     #[inline(always)]
-    pub fn unknown(&self, row: usize) -> usize {
+    pub(super) fn unknown(&self, row: usize) -> usize {
         match row.checked_sub(self.width) {
             None => self.first + row,
             Some(row) => self.below[row],

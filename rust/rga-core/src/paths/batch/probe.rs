@@ -23,7 +23,7 @@ fn weight_of(member: &Member, index: usize, weights: &Weights) -> usize {
 }
 
 /// K, entry by entry.
-pub fn stiffness(model: &Model, reduction: &Reduction, weights: &Weights) -> Vec<Entry> {
+pub(super) fn stiffness(model: &Model, reduction: &Reduction, weights: &Weights) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut add = |weight: usize, row: usize, column: usize, value: f64| {
         if value == 0.0 {
@@ -53,7 +53,7 @@ pub fn stiffness(model: &Model, reduction: &Reduction, weights: &Weights) -> Vec
 }
 
 /// Elements under unit motions and under the load patterns.
-pub struct Probe<'a> {
+pub(super) struct Probe<'a> {
     model: &'a Model,
     constraints: &'a Constraints,
     reduction: &'a Reduction,
@@ -65,7 +65,7 @@ pub struct Probe<'a> {
 }
 
 impl<'a> Probe<'a> {
-    pub fn new(
+    pub(super) fn new(
         model: &'a Model,
         constraints: &'a Constraints,
         reduction: &'a Reduction,
@@ -118,7 +118,7 @@ impl<'a> Probe<'a> {
     }
 
     /// On the unknowns, and on rotations that are held.
-    pub fn loads(&self) -> Result<(Vec<Entry>, Vec<Entry>)> {
+    pub(super) fn loads(&self) -> Result<(Vec<Entry>, Vec<Entry>)> {
         let mut held = vec![None; self.model.dofs];
         for (row, &dof) in self.reduction.held.iter().enumerate() {
             held[dof] = Some(row);
@@ -142,7 +142,7 @@ impl<'a> Probe<'a> {
     }
 
     /// S and T.
-    pub fn outputs(&self, wanted: &[Output]) -> Result<(Vec<Entry>, Vec<Entry>)> {
+    pub(super) fn outputs(&self, wanted: &[Output]) -> Result<(Vec<Entry>, Vec<Entry>)> {
         let mut entries = Outputs {
             probe: self,
             row: 0,

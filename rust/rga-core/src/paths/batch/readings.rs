@@ -12,12 +12,12 @@ use crate::paths::directions::Directions;
 
 /// Rows of the samples in the lanes.
 #[derive(Clone, Copy)]
-pub struct Rows {
+pub(super) struct Rows {
     pub from: usize,
     pub count: usize,
 }
 
-pub trait Reading: Sync {
+pub(super) trait Reading: Sync {
     /// Numbers of a sample.
     fn width(&self) -> usize;
 
@@ -34,7 +34,7 @@ pub trait Reading: Sync {
 }
 
 /// The outputs themselves.
-pub struct Outputs {
+pub(super) struct Outputs {
     pub outputs: usize,
 }
 
@@ -64,7 +64,7 @@ impl Reading for Outputs {
 }
 
 /// Derivatives along directions, `[directions, outputs]`.
-pub struct Forward<'a> {
+pub(super) struct Forward<'a> {
     pub outputs: usize,
     pub directions: &'a Directions,
     /// Derivatives of the coefficients that the directions name, row by row.
@@ -179,7 +179,7 @@ impl Forward<'_> {
 
 /// Derivatives of the sum of the outputs times gradients, by the coefficients and then by the
 /// factors, `[patterns + elements]`: the adjoint.
-pub struct Adjoint<'a> {
+pub(super) struct Adjoint<'a> {
     pub patterns: usize,
     pub elements: usize,
     pub gradients: Array<'a, f64>,

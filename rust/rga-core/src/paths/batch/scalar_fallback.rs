@@ -11,7 +11,7 @@ use crate::fe::model::Model;
 use crate::fe::reduction::Reduction;
 use crate::fe::stability::Solver;
 
-pub struct ScalarFallback<'a> {
+pub(super) struct ScalarFallback<'a> {
     pub model: &'a Model,
     pub reduction: &'a Reduction,
     pub system: &'a System,
@@ -20,7 +20,7 @@ pub struct ScalarFallback<'a> {
 
 impl ScalarFallback<'_> {
     /// Finds the unknowns under the load.
-    pub fn factorise(&mut self, batch: &mut Batch<One>) -> Result<()> {
+    pub(super) fn factorise(&mut self, batch: &mut Batch<One>) -> Result<()> {
         let (system, solver) = (self.system, &mut self.solver);
         let load = One::flat(&batch.load);
         if !load.iter().all(|force| force.is_finite()) {

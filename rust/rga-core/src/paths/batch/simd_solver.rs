@@ -10,7 +10,7 @@ use crate::fe::equilibrium::{LOOSE_MOMENT, REFINE};
 use crate::fe::stability::{DELICATE_PIVOT, SOFTEST};
 
 /// What is given of samples, and what was found.
-pub struct Batch<L: Lanes> {
+pub(super) struct Batch<L: Lanes> {
     pub weights: Vec<L::Numbers>,
     /// q
     pub coefficients: Vec<L::Numbers>,
@@ -20,13 +20,13 @@ pub struct Batch<L: Lanes> {
 }
 
 /// Solves K x = right for the samples at hand.
-pub trait Solve<L: Lanes> {
+pub(super) trait Solve<L: Lanes> {
     /// In place; right-hand sides one behind the other.
     fn solve(&mut self, lanes: L, batch: &Batch<L>, right: &mut [L::Numbers]) -> Result<()>;
 }
 
 impl<L: Lanes> Batch<L> {
-    pub fn new(lanes: L, system: &System, patterns: usize) -> Self {
+    pub(super) fn new(lanes: L, system: &System, patterns: usize) -> Self {
         let zero = lanes.splat(0.0);
         Self {
             weights: vec![zero; system.weights.count()],
@@ -38,7 +38,7 @@ impl<L: Lanes> Batch<L> {
 
     /// Rows of factors and coefficients, `count` from `from` on, and the loads that they make.
     #[inline(always)]
-    pub fn take(
+    pub(super) fn take(
         &mut self,
         lanes: L,
         system: &System,
@@ -59,7 +59,7 @@ impl<L: Lanes> Batch<L> {
 
 /// Factorises and solves all lanes at once. A sample that asks for care, since it may be unstable
 /// or lose digits, is only marked.
-pub struct SimdSolver<'a, L: Lanes> {
+pub(super) struct SimdSolver<'a, L: Lanes> {
     system: &'a System,
     cholesky: Cholesky<'a, L>,
     /// One over the diagonal of K.
@@ -75,7 +75,7 @@ pub struct SimdSolver<'a, L: Lanes> {
 const BESIDE: usize = 4;
 
 impl<'a, L: Lanes> SimdSolver<'a, L> {
-    pub fn new(lanes: L, system: &'a System, panels: &'a Panels) -> Self {
+    pub(super) fn new(lanes: L, system: &'a System, panels: &'a Panels) -> Self {
         let zero = lanes.splat(0.0);
         let size = system.order.len();
         Self {
@@ -91,7 +91,7 @@ impl<'a, L: Lanes> SimdSolver<'a, L> {
 
     /// Finds the unknowns under the load.
     #[inline(always)]
-    pub fn factorise(&mut self, lanes: L, batch: &mut Batch<L>) {
+    pub(super) fn factorise(&mut self, lanes: L, batch: &mut Batch<L>) {
         batch.unknowns.copy_from_slice(&batch.load);
         self.cholesky
             .factorise(lanes, &batch.weights, DELICATE_PIVOT, &mut batch.unknowns);
@@ -191,7 +191,7 @@ impl<'a, L: Lanes> SimdSolver<'a, L> {
 
     /// Whether a sample of a lane stands as it is.
     #[inline(always)]
-    pub fn sound(&self, lanes: L, lane: usize) -> bool {
+    pub(super) fn sound(&self, lanes: L, lane: usize) -> bool {
         let told = [lanes.select(self.sound, lanes.splat(1.0), lanes.splat(0.0))];
         L::flat(&told)[lane] == 1.0
     }

@@ -23,7 +23,7 @@ use crate::sparse::ordering::inverse;
 
 /// Weights are the factors of members, then of springs; a one; and one over the factors of members.
 #[derive(Debug, Clone, Copy)]
-pub struct Weights {
+pub(super) struct Weights {
     pub members: usize,
     pub elements: usize,
     /// Whether anything depends on one over a factor.
@@ -31,21 +31,21 @@ pub struct Weights {
 }
 
 impl Weights {
-    pub fn one(&self) -> usize {
+    pub(super) fn one(&self) -> usize {
         self.elements
     }
 
-    pub fn inverse(&self, member: usize) -> usize {
+    pub(super) fn inverse(&self, member: usize) -> usize {
         self.elements + 1 + member
     }
 
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.elements + 1 + self.members
     }
 
     /// Fills in what follows from the factors.
     #[inline(always)]
-    pub fn complete<L: Lanes>(&self, lanes: L, weights: &mut [L::Numbers]) {
+    pub(super) fn complete<L: Lanes>(&self, lanes: L, weights: &mut [L::Numbers]) {
         let (factors, others) = weights.split_at_mut(self.elements);
         others[0] = lanes.splat(1.0);
         if !self.inverses {
@@ -58,7 +58,7 @@ impl Weights {
 }
 
 #[derive(Debug)]
-pub struct System {
+pub(super) struct System {
     pub weights: Weights,
     /// The unknown of each place in z, in the order of elimination, and back.
     pub order: Vec<usize>,
@@ -90,7 +90,7 @@ const MOST: usize = 1 << 17;
 
 impl System {
     /// Together with K, of factors of one.
-    pub fn new(
+    pub(super) fn new(
         model: &Model,
         constraints: &Constraints,
         reduction: &Reduction,
@@ -162,7 +162,7 @@ impl System {
     }
 
     /// Values of the lower triangle of K.
-    pub fn fill(&self, weights: &[f64], values: &mut [f64]) {
+    pub(super) fn fill(&self, weights: &[f64], values: &mut [f64]) {
         values.fill(0.0);
         for &(place, weight, value) in &self.entries {
             values[place] += weights[weight] * value;
@@ -170,7 +170,7 @@ impl System {
     }
 
     /// Numbers in the order of elimination, by unknown.
-    pub fn by_unknown(&self, values: &[f64]) -> Vec<f64> {
+    pub(super) fn by_unknown(&self, values: &[f64]) -> Vec<f64> {
         self.place.iter().map(|&place| values[place]).collect()
     }
 }

@@ -5,7 +5,7 @@
 use rga_simd::f64::Lanes;
 
 /// Rows of a panel below columns of which the triangle is factorised.
-pub struct Below<'a, V, const WIDE: usize> {
+pub(super) struct Below<'a, V, const WIDE: usize> {
     /// The columns before.
     pub before: &'a [V],
     pub rows: usize,
@@ -16,7 +16,7 @@ pub struct Below<'a, V, const WIDE: usize> {
 
 impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
     #[inline(always)]
-    pub fn factorise<const TALL: usize>(
+    pub(super) fn factorise<const TALL: usize>(
         &self,
         lanes: impl Lanes<Numbers = V>,
         row: usize,
@@ -42,7 +42,7 @@ impl<V: Copy, const WIDE: usize> Below<'_, V, WIDE> {
 }
 
 /// Products of rows of a panel, taken from another.
-pub struct Hand<'a, V> {
+pub(super) struct Hand<'a, V> {
     /// The panel that hands on, of columns as high as this.
     pub given: &'a [V],
     pub height: usize,
@@ -58,7 +58,7 @@ impl<V: Copy> Hand<'_, V> {
     /// `WIDE` columns, and all rows from the first of them on. What falls above the diagonal of
     /// the other panel counts for nothing.
     #[inline(always)]
-    pub fn columns<L: Lanes<Numbers = V>, const TALL: usize, const WIDE: usize>(
+    pub(super) fn columns<L: Lanes<Numbers = V>, const TALL: usize, const WIDE: usize>(
         &self,
         lanes: L,
         column: usize,
@@ -120,7 +120,7 @@ impl<V: Copy> Hand<'_, V> {
 
 /// `sums` -= the products of rows from each of two places on, over all columns.
 #[inline(always)]
-pub fn take_products<L: Lanes, const TALL: usize, const WIDE: usize>(
+pub(super) fn take_products<L: Lanes, const TALL: usize, const WIDE: usize>(
     lanes: L,
     columns: &[L::Numbers],
     height: usize,
@@ -144,7 +144,7 @@ pub fn take_products<L: Lanes, const TALL: usize, const WIDE: usize>(
 
 /// A tile from `row` on of the first columns.
 #[inline(always)]
-pub fn load<L: Lanes, const TALL: usize, const WIDE: usize>(
+pub(super) fn load<L: Lanes, const TALL: usize, const WIDE: usize>(
     lanes: L,
     columns: &[L::Numbers],
     height: usize,
@@ -161,7 +161,7 @@ pub fn load<L: Lanes, const TALL: usize, const WIDE: usize>(
 }
 
 #[inline(always)]
-pub fn store<L: Lanes, const TALL: usize, const WIDE: usize>(
+pub(super) fn store<L: Lanes, const TALL: usize, const WIDE: usize>(
     _: L,
     columns: &mut [L::Numbers],
     height: usize,
@@ -178,7 +178,7 @@ pub fn store<L: Lanes, const TALL: usize, const WIDE: usize>(
 
 /// Whole columns, from one on.
 #[inline(always)]
-pub fn columns<L: Lanes, const WIDE: usize>(
+pub(super) fn columns<L: Lanes, const WIDE: usize>(
     values: &[L::Numbers],
     height: usize,
     column: usize,

@@ -11,7 +11,7 @@ use super::Condensed;
 use super::samples::{Samples, Together, add_product};
 
 /// Gradients `[n, p + r]` of rows; gives the first row whose structure is not stable.
-pub struct AdjointKernel<'a> {
+pub(super) struct AdjointKernel<'a> {
     pub condensed: &'a Condensed,
     pub coefficients: &'a [f64],
     pub changes: &'a [f64],

@@ -10,7 +10,7 @@ use super::Condensed;
 use super::samples::{Samples, Together, add_product};
 
 /// Outputs of rows; gives the first row whose structure is not stable.
-pub struct Kernel<'a> {
+pub(super) struct Kernel<'a> {
     pub condensed: &'a Condensed,
     pub coefficients: &'a [f64],
     pub changes: &'a [f64],

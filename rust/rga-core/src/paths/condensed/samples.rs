@@ -8,9 +8,9 @@ use super::Condensed;
 const SINGULAR: f64 = 1e-12;
 
 /// Lanes of two vectors: their sums do not wait for each other.
-pub type Together<S> = Packs<S, 2>;
+pub(super) type Together<S> = Packs<S, 2>;
 
-pub struct Samples<'a, L: Lanes> {
+pub(super) struct Samples<'a, L: Lanes> {
     lanes: L,
     condensed: &'a Condensed,
     /// `[p]` q
@@ -28,7 +28,7 @@ pub struct Samples<'a, L: Lanes> {
 
 impl<'a, L: Lanes> Samples<'a, L> {
     #[inline(always)]
-    pub fn new(lanes: L, condensed: &'a Condensed) -> Self {
+    pub(super) fn new(lanes: L, condensed: &'a Condensed) -> Self {
         let zero = lanes.splat(0.0);
         let Condensed {
             patterns, terms, ..
@@ -46,7 +46,13 @@ impl<'a, L: Lanes> Samples<'a, L> {
 
     /// Lanes behind the last row hold the last row again.
     #[inline(always)]
-    pub fn load(&mut self, coefficients: &[f64], changes: &[f64], from: usize, count: usize) {
+    pub(super) fn load(
+        &mut self,
+        coefficients: &[f64],
+        changes: &[f64],
+        from: usize,
+        count: usize,
+    ) {
         self.lanes
             .gather(&mut self.coefficients, coefficients, from, count);
         self.lanes.gather(&mut self.changes, changes, from, count);
@@ -54,7 +60,7 @@ impl<'a, L: Lanes> Samples<'a, L> {
 
     /// Factorises H + diag(d) and finds v and w; gives the first lane that is not stable.
     #[inline(always)]
-    pub fn solve(&mut self, count: usize) -> Option<usize> {
+    pub(super) fn solve(&mut self, count: usize) -> Option<usize> {
         let lanes = self.lanes;
         if let Some(lane) = self.factorise(count) {
             return Some(lane);
@@ -121,7 +127,7 @@ impl<'a, L: Lanes> Samples<'a, L> {
 
     /// Solves (H + diag(d)) x = right in place.
     #[inline(always)]
-    pub fn substitute(&self, right: &mut [L::Numbers]) {
+    pub(super) fn substitute(&self, right: &mut [L::Numbers]) {
         let lanes = self.lanes;
         let terms = right.len();
         let mut rest = &self.factor[..];
@@ -148,7 +154,7 @@ impl<'a, L: Lanes> Samples<'a, L> {
 
 /// `sums` `[n]` += `factors` `[k]` times `matrix` `[k, n]`, for each lane.
 #[inline(always)]
-pub fn add_product<L: Lanes>(
+pub(super) fn add_product<L: Lanes>(
     lanes: L,
     factors: &[L::Numbers],
     matrix: &[f64],

@@ -10,7 +10,7 @@ use super::samples::{Samples, Together, add_product};
 use crate::paths::directions::Directions;
 
 /// Derivatives `[n, c, o]` of rows; gives the first row whose structure is not stable.
-pub struct SensitivityKernel<'a> {
+pub(super) struct SensitivityKernel<'a> {
     pub condensed: &'a Condensed,
     pub directions: &'a Directions,
     pub coefficients: &'a [f64],

@@ -6,7 +6,7 @@ use crate::fe::load::PatternLoads;
 use crate::input::Loads;
 
 #[derive(Debug)]
-pub struct Combination {
+pub(super) struct Combination {
     forces: Sparse,
     strain: Sparse,
     /// With all unknowns at zero.
@@ -17,7 +17,7 @@ pub struct Combination {
 
 /// A load of one sample.
 #[derive(Debug, Clone)]
-pub struct Combined {
+pub(super) struct Combined {
     pub forces: Vec<f64>,
     pub strain: Vec<f64>,
     pub displacements: Vec<f64>,
@@ -32,7 +32,7 @@ struct Sparse {
 }
 
 impl Combination {
-    pub fn new(loads: &Loads, constraints: &Constraints, members: usize) -> Result<Self> {
+    pub(super) fn new(loads: &Loads, constraints: &Constraints, members: usize) -> Result<Self> {
         let dofs = constraints.rows.len();
         let patterns = 0..loads.pattern_count();
         let moved = patterns.clone().map(|pattern| {
@@ -51,7 +51,7 @@ impl Combination {
     }
 
     /// Room for a sample.
-    pub fn room(&self) -> Combined {
+    pub(super) fn room(&self) -> Combined {
         Combined {
             forces: vec![0.0; self.forces.width],
             strain: vec![0.0; self.strain.width],
@@ -61,7 +61,7 @@ impl Combination {
     }
 
     /// With coefficients for forces, and others for initial strains and prescribed displacements.
-    pub fn combine(
+    pub(super) fn combine(
         &self,
         of_forces: &[f64],
         of_strains: &[f64],

@@ -10,7 +10,7 @@ use crate::fe::load::fixed_end_forces;
 use crate::fe::stability::Solver;
 
 /// What a thread needs for a sample.
-pub struct Scratch {
+pub(super) struct Scratch {
     pub solver: Solver,
     pub load: Combined,
     /// Without that of the axial strain.
@@ -117,13 +117,13 @@ impl Analysis {
 
 impl Scratch {
     /// Takes the tensions of the tangent from the state.
-    pub fn take_tensions(&mut self) {
+    pub(super) fn take_tensions(&mut self) {
         let tensions = self.deformed.iter().map(|member| member.tension);
         self.tensions = tensions.collect();
     }
 
     /// Of motions and forces, in the scale of the solver.
-    pub fn size(&self, unknowns: &[f64]) -> f64 {
+    pub(super) fn size(&self, unknowns: &[f64]) -> f64 {
         self.solver.motion_norm(unknowns) + self.solver.force_norm(&self.sizes)
     }
 }

@@ -5,10 +5,10 @@ use crate::fe::reduction::Reduction;
 use crate::sparse::lower_triangle::LowerTriangle;
 
 /// Entries of a member's stiffness.
-pub const MOST: usize = 144;
+pub(super) const MOST: usize = 144;
 
 #[derive(Debug)]
-pub struct TangentPlacement {
+pub(super) struct TangentPlacement {
     members: Vec<Vec<Link>>,
     springs: Vec<Vec<Link>>,
 }
@@ -32,7 +32,7 @@ struct Addition {
 
 impl TangentPlacement {
     /// Together with K, whose values are yet to be filled in.
-    pub fn new(model: &Model, reduction: &Reduction) -> (Self, LowerTriangle) {
+    pub(super) fn new(model: &Model, reduction: &Reduction) -> (Self, LowerTriangle) {
         let members = model.members.iter();
         let members: Vec<Vec<Addition>> = members
             .map(|member| additions(reduction, |add| member.for_each_stiffness(add)))
@@ -58,7 +58,7 @@ impl TangentPlacement {
     }
 
     /// Values of K, from the entries of each member's stiffness.
-    pub fn fill(
+    pub(super) fn fill(
         &self,
         model: &Model,
         of_member: impl Fn(usize) -> [f64; MOST],
@@ -80,7 +80,7 @@ impl TangentPlacement {
 }
 
 /// The values that `for_each` passes on, in their order.
-pub fn listed(for_each: impl FnOnce(&mut dyn FnMut(usize, usize, f64))) -> [f64; MOST] {
+pub(super) fn listed(for_each: impl FnOnce(&mut dyn FnMut(usize, usize, f64))) -> [f64; MOST] {
     let mut entries = [0.0; MOST];
     let mut next = entries.iter_mut();
     for_each(&mut |_, _, value| {

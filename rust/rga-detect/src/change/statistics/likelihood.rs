@@ -14,11 +14,11 @@ const FLAT: f32 = 5.2;
 /// Largest factor of one sensor in the product: one sensor is not several.
 const LARGEST_FACTOR: f32 = 1e3;
 /// Keeps statistics finite after a change.
-pub const LARGEST: f32 = 1e20;
+pub(super) const LARGEST: f32 = 1e20;
 
 /// (rows + R) L of a step: L = power exp(-d^2 rows / 2).
 #[inline(always)]
-pub fn grown<L: Lanes>(
+pub(super) fn grown<L: Lanes>(
     lanes: L,
     state: L::Numbers,
     power: L::Numbers,
@@ -31,7 +31,12 @@ pub fn grown<L: Lanes>(
 
 /// (rows + R) L
 #[inline(always)]
-pub fn replaced<L: Lanes>(lanes: L, state: L::Numbers, ratio: L::Numbers, rows: f32) -> L::Numbers {
+pub(super) fn replaced<L: Lanes>(
+    lanes: L,
+    state: L::Numbers,
+    ratio: L::Numbers,
+    rows: f32,
+) -> L::Numbers {
     if rows == 1.0 {
         lanes.mul_add(state, ratio, ratio)
     } else {
@@ -43,7 +48,7 @@ pub fn replaced<L: Lanes>(lanes: L, state: L::Numbers, ratio: L::Numbers, rows: 
 /// sum T of the squares of so many scores of a beat: s^-count times powers of e whose exponents are
 /// T / 4, 3 T / 8 and - 3 T / 2. `WHOLE`: the scores are those of all rows of the beat.
 #[inline(always)]
-pub fn spread_ratios<L: Lanes, const WHOLE: bool>(
+pub(super) fn spread_ratios<L: Lanes, const WHOLE: bool>(
     lanes: L,
     squares: L::Numbers,
     count: L::Numbers,
@@ -75,7 +80,7 @@ fn square<L: Lanes>(lanes: L, number: L::Numbers) -> L::Numbers {
 
 /// The mixture over which sensors have changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Several {
+pub(super) struct Several {
     unchanged: f32,
     changed: f32,
     /// Largest 1 + u^2 / WIDE: that of the largest factor.
@@ -83,7 +88,7 @@ pub struct Several {
 }
 
 impl Several {
-    pub fn new(sensors: usize) -> Self {
+    pub(super) fn new(sensors: usize) -> Self {
         let share = (SEVERAL / sensors as f32).min(0.5);
         let (unchanged, changed) = (1.0 - share, share / FLAT);
         let largest = (LARGEST_FACTOR - unchanged) / changed;
@@ -97,7 +102,7 @@ impl Several {
 
     /// Of an average over what has `rows` each.
     #[inline(always)]
-    pub fn factor<L: Lanes>(
+    pub(super) fn factor<L: Lanes>(
         &self,
         lanes: L,
         average: L::Numbers,

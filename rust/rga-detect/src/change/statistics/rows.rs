@@ -8,7 +8,7 @@ use crate::change::exponentials::powers;
 use crate::change::{BEAT, Block};
 
 /// Keeps products finite.
-pub const LARGEST_PRODUCT: f32 = 1e30;
+pub(super) const LARGEST_PRODUCT: f32 = 1e30;
 
 /// Keeps the statistics of steps in rows finite until the next beat.
 const LARGEST_STEPS: [f32; ROW_STEPS.len()] = [LARGEST, LARGEST, 1e10];
