@@ -1,4 +1,4 @@
-//! Python binding of the finite-element core: converts and documents.
+//! Python binding of the finite-element core and of the detectors: converts and documents.
 
 #![warn(unreachable_pub)]
 
