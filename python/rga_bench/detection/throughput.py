@@ -1,7 +1,7 @@
 """What the paper's rule and the monitor cost: rows a second, beside memory and other packages.
 
-What a row costs from Rust, `cargo bench -p rga-detect --bench gaussian_window` tells: `update` beside
-`read`.
+What a row costs from Rust, `cargo bench -p rga-detect --bench gaussian_window` tells: `update`
+beside `read`.
 """
 
 from collections.abc import Callable
