@@ -11,7 +11,7 @@ help:  ## show this list
 
 run: fresh = .venv
 run: wheel  ## build and install rga in a fresh environment, and run the twin of the case study
-	$(RUN)/python -m pip install --quiet dist/rga-*.whl
+	$(RUN)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[twin]"
 	$(RUN)/python examples/case_study.py
 
 test: fresh = .venv-test

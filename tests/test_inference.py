@@ -12,12 +12,12 @@ from rga.errors import InputError
 from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
 from rga.inference.laws.over_time import follow_law
 from rga.inference.laws.refine import polish_line
-from rga.inference.laws.travel_direction import EitherWay
 from rga.inference.map.laplace import covering_factor, laplace_spread
 from rga.inference.networks.design_samples import Design, design
 from rga.inference.networks.gradient_reversal import reverse_gradient
 from rga.inference.networks.layers import Encoder
 from rga.inference.networks.surrogate import pretrain
+from rga.inference.networks.travel_direction import EitherWay
 from rga.model import read_model
 from rga.model.schema import ContextVariable, Model
 from rga.simulation import Simulator

@@ -1,8 +1,9 @@
 """Reality Gap Analysis of digital twins of truss and frame structures."""
 
-from importlib import import_module
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from rga.lazy import opening
 
 if TYPE_CHECKING:
     from rga.diagnosis import diagnose
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 __version__ = version("rga")
 
-# The doors open on first use, so that the command line starts without the heavy parts.
-_DOORS = {
+# They are opened on first use, so that the command line starts without the heavy parts.
+_HOMES = {
     "Effect": "rga.model",
     "Findings": "rga.findings",
     "Model": "rga.model",
@@ -59,7 +60,4 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name in _DOORS:
-        return getattr(import_module(_DOORS[name]), name)
-    raise AttributeError(f"module 'rga' has no attribute {name!r}")
+__getattr__ = opening(__name__, _HOMES)

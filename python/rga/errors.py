@@ -23,6 +23,17 @@ class UnstableStructureError(InputError):
     """A structure that can move without resistance, with the node and the direction that move."""
 
 
+class MissingPackageError(ImportError):
+    """A package that only some parts of rga need, and that is not installed.
+
+    >>> str(MissingPackageError("torch", "networks"))
+    'torch is not installed: pip install "rga[networks]"'
+    """
+
+    def __init__(self, package: str, extra: str) -> None:
+        super().__init__(f'{package} is not installed: pip install "rga[{extra}]"', name=package)
+
+
 class ReportError(RuntimeError):
     """A report that could not be drawn, of findings that are written all the same.
 

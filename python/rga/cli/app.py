@@ -19,7 +19,8 @@ from rga.cli.schema import schema
 from rga.cli.simulate import simulate
 from rga.cli.verify import verify
 from rga.cli.whatif import whatif
-from rga.errors import InputError, ReportError
+from rga.errors import InputError, MissingPackageError, ReportError
+from rga.lazy import needing_extras
 
 app = typer.Typer(
     help="Find what a structure's digital twin gets wrong.",
@@ -60,10 +61,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        app(args=_json_with_target(given), prog_name="rga")
-    except (InputError, ReportError) as error:
+        with needing_extras():
+            app(args=_json_with_target(given), prog_name="rga")
+    except (InputError, MissingPackageError, ReportError) as error:
         typer.echo("error: " + " ".join(str(error).split()), err=True)
-        sys.exit(2 if isinstance(error, InputError) else 1)
+        sys.exit(1 if isinstance(error, ReportError) else 2)
 
 
 def _json_with_target(arguments: list[str]) -> list[str]:

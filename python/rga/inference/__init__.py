@@ -1,14 +1,19 @@
 """Context inference: from sensor readings to the contexts that nothing measured."""
 
+from typing import TYPE_CHECKING
+
 from rga.inference.joint.infer import Joint, infer_jointly
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.posterior_mode import Mode, posterior_mode
-from rga.inference.networks.context_network import ContextNetwork
 from rga.inference.networks.dataset import Samples
 from rga.inference.networks.settings import TrainingSettings
-from rga.inference.networks.training import train
 from rga.inference.rows import Rows
 from rga.inference.variables import Variables
+from rga.lazy import opening
+
+if TYPE_CHECKING:
+    from rga.inference.networks.context_network import ContextNetwork
+    from rga.inference.networks.training import train
 
 __all__ = [
     "ContextNetwork",
@@ -23,3 +28,12 @@ __all__ = [
     "posterior_mode",
     "train",
 ]
+
+# These need torch.
+__getattr__ = opening(
+    __name__,
+    {
+        "ContextNetwork": "rga.inference.networks.context_network",
+        "train": "rga.inference.networks.training",
+    },
+)

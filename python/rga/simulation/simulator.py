@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
+from rga.lazy import needing_extras
 from rga.model.effect import Effect, Values, seconds
 from rga.model.readings import Readings
 from rga.model.schema import Model
@@ -218,7 +219,8 @@ class Simulator:
             time: clock of the rows [s], float[rows], where the model needs one.
         """
         # Torch is heavy, and most uses of a simulator do without it.
-        from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
+        with needing_extras():
+            from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
 
         return DifferentiableSimulator(self, None if time is None else np.asarray(time, float))
 

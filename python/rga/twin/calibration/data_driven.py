@@ -13,8 +13,8 @@ from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, 
 from rga.inference.laws.mixture import Candidates, joined
 from rga.inference.laws.over_time import follow_law
 from rga.inference.laws.refine import polish_line
-from rga.inference.laws.travel_direction import EitherWay
 from rga.inference.map.laplace import birge_ratio, covering_factor, laplace_spread
+from rga.inference.networks.travel_direction import EitherWay
 from rga.model import ContextVariable, Model
 from rga.twin.messages.queries import R4
 from rga.twin.simulation_model import SimulationModel, broken

@@ -1,0 +1,55 @@
+"""Names that a package opens on first use, and packages that only some of them need."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from rga.errors import MissingPackageError
+
+#: extra of rga that installs a package
+EXTRAS = {
+    "torch": "networks",
+    "safetensors": "networks",
+    "sqlalchemy": "twin",
+    "alembic": "twin",
+    "filelock": "twin",
+}
+
+
+@contextmanager
+def needing_extras() -> Iterator[None]:
+    """Says of a package that is missed which extra installs it.
+
+    Raises:
+        MissingPackageError: it belongs to an extra, and is not installed.
+
+    >>> with needing_extras():
+    ...     raise ModuleNotFoundError("No module named 'torch'", name="torch")
+    Traceback (most recent call last):
+    rga.errors.MissingPackageError: torch is not installed: pip install "rga[networks]"
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in EXTRAS:
+            raise
+        raise MissingPackageError(package, EXTRAS[package]) from None
+
+
+def opening(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
+    """What a package does for a name that it has not imported: `__getattr__`.
+
+    Args:
+        package: its name.
+        homes: modules of the names.
+    """
+
+    def opened(name: str) -> Any:
+        if name not in homes:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        with needing_extras():
+            return getattr(import_module(homes[name]), name)
+
+    return opened
