@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rga.errors import ReportError, in_short
+from rga.files import write_whole
 from rga.findings import Findings
-from rga.model import write_model
+from rga.model.io import model_text
 
 if TYPE_CHECKING:
     from rga.twin.outcome import Outcome
@@ -37,11 +38,12 @@ def write_findings(
     """
     extended = findings.account.extended
     directory.mkdir(parents=True, exist_ok=True)
-    path = directory / "findings.json"
-    temporary = path.with_name("findings.json.partial")
-    temporary.write_text(findings.to_json() + "\n", encoding="utf-8")
-    write_model(extended, directory / "model.json")
-    temporary.replace(path)
+    write_whole(
+        {
+            directory / "model.json": model_text(extended).encode(),
+            directory / "findings.json": (findings.to_json() + "\n").encode(),
+        }
+    )
     shown = directory / "report.html"
     try:
         return (report or _write_report)(findings, shown)

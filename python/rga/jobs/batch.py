@@ -1,7 +1,7 @@
 """Many bridges at once: a list of models and records in, findings for each and a summary out."""
 
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -9,6 +9,7 @@ import polars as pl
 
 from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
+from rga.files import write_whole
 from rga.findings import Findings
 from rga.findings.phrases import effect_words
 from rga.model import Model, load_model
@@ -121,7 +122,7 @@ def diagnose_many(
         told[name] = Summary(name, error=" ".join(str(error).split()) or type(error).__name__)
     summaries = [told[bridge.name] for bridge in listed]
     frame = pl.DataFrame([asdict(one) for one in summaries], infer_schema_length=None)
-    _write({SUMMARY: frame.write_csv().encode()}, output)
+    write_whole({output / SUMMARY: frame.write_csv().encode()})
     for error in errors.values():
         if not isinstance(error, InputError):
             raise error
@@ -155,19 +156,10 @@ def _work(task: _Task) -> _Done:
 
 def _keep(name: str, done: _Done, directory: Path) -> Summary:
     _make(directory)
-    _write(done.files, directory)
+    write_whole({directory / name: content for name, content in done.files.items()})
     findings = Findings.model_validate_json(done.files["findings.json"])
     causes = " and ".join(effect_words(cause.effect) for cause in findings.causes)
     return Summary(name, findings.verdict, causes, findings.gap.held_out.gain)
-
-
-def _write(files: Mapping[str, bytes], directory: Path) -> None:
-    """Write files under temporary names, and rename them when all are whole."""
-    drafts = {directory / name: directory / f"{name}.partial" for name in files}
-    for path, draft in drafts.items():
-        draft.write_bytes(files[path.name])
-    for path, draft in drafts.items():
-        draft.replace(path)
 
 
 def _make(directory: Path) -> None:

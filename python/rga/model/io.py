@@ -10,6 +10,7 @@ import yaml
 from pydantic import ValidationError
 
 from rga.errors import InputError
+from rga.files import write_whole
 from rga.model.schema import Model
 
 
@@ -55,9 +56,12 @@ def read_model(content: Any, where: str) -> Model:
 
 def write_model(model: Model, path: Path) -> None:
     """Write a model file as JSON: to a temporary file, then renamed."""
-    temporary = path.with_name(path.name + ".partial")
-    temporary.write_text(json.dumps(model_content(model), indent=1) + "\n", encoding="utf-8")
-    temporary.replace(path)
+    write_whole({path: model_text(model).encode()})
+
+
+def model_text(model: Model) -> str:
+    """The model as the text of a JSON file."""
+    return json.dumps(model_content(model), indent=1) + "\n"
 
 
 def model_content(model: Model) -> dict[str, Any]:

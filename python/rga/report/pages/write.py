@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from rga.files import write_whole
 from rga.findings import Findings
 from rga.report.pages.diagnosis_page import page
 from rga.report.pages.fault_tolerant_parts import Lost
@@ -59,8 +60,6 @@ def _write(template: str, variables: dict[str, Any], path: Path) -> Path:
     )
     environment.tests["lost"] = lambda part: isinstance(part, Lost)
     html = environment.get_template(template).render(variables)
-    temporary = path.with_name(path.name + ".partial")
     # A name from a JSON file may hold half a surrogate pair, which UTF-8 cannot.
-    temporary.write_bytes(html.encode("utf-8", "replace"))
-    temporary.replace(path)
+    write_whole({path: html.encode("utf-8", "replace")})
     return path
