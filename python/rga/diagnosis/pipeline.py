@@ -23,7 +23,7 @@ from rga.diagnosis.checks.support import supported
 from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
-from rga.diagnosis.optional import spared
+from rga.diagnosis.fallback import spared
 from rga.diagnosis.preparation.prepare import PreparedRecord, prepare
 from rga.diagnosis.residuals import patterns
 from rga.diagnosis.residuals.curvature import curves, free_channels
