@@ -20,7 +20,10 @@ from pathlib import Path
 from typing import Any
 
 #: what differs from run to run, or is meant to differ between commits
-VOLATILE = {"versions", "seconds", "machine", "day", "code", "throughput", "milliseconds"}
+VOLATILE = {
+    *("versions", "code", "machine", "day"),
+    *("seconds", "times", "inference", "learning", "throughput"),
+}
 BENCHMARKS = ("diagnosis", "faults", "detector", "policies", "loi")
 
 
