@@ -1,0 +1,58 @@
+"""The shipped sample says what the README shows of it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rga
+from rga_bench.synthetic import Case, Conditions, draw_case
+from safe_words import check
+
+ROOT = Path(__file__).parents[1]
+SAMPLE = ROOT / "examples" / "footbridge"
+
+
+def drawn(kind: str) -> Case:
+    """The sample, or its null twin, as it was drawn."""
+    return draw_case(
+        7,
+        bridge="footbridge",
+        kind=kind,
+        reality="truss",
+        rows=160,
+        conditions=Conditions(scatter=0.01),
+        aims=(25.0, 40.0),
+    )
+
+
+def findings_of(folder: Path) -> rga.Findings:
+    model = rga.load_model(folder / "model.json")
+    findings = rga.diagnose(model, rga.load_record(folder / "record.csv", model))
+    check(findings)
+    return findings
+
+
+def test_the_readme_shows_what_it_says() -> None:
+    findings = findings_of(SAMPLE)
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert f"Verdict: {findings.verdict}. {findings.sentence()}" in readme
+
+
+def test_what_is_hidden_in_it_is_told(tmp_path: Path) -> None:
+    case = drawn("support_settlement")
+    case.write(tmp_path)
+    model = rga.load_model(SAMPLE / "model.json")
+    assert rga.load_model(tmp_path / "model.json") == model
+    shipped, again = (rga.load_record(f / "record.csv", model) for f in (SAMPLE, tmp_path))
+    np.testing.assert_allclose(again.readings, shipped.readings, rtol=1e-9)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"settled by {-1e3 * case.truth['value']:.2f} mm at" in " ".join(readme.split())
+    assert case.truth["onset"] == pytest.approx(145800.0)
+
+
+def test_its_null_twin_has_nothing_wrong(tmp_path: Path) -> None:
+    drawn("null").write(tmp_path)
+    findings = findings_of(tmp_path)
+    assert findings.verdict == "nothing_wrong"
+    assert findings.causes == []
