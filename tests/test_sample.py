@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rga
+from rga.model import model_content
 from rga_bench.synthetic import Case, Conditions, draw_case
 from safe_words import check
 
@@ -43,7 +44,7 @@ def test_what_is_hidden_in_it_is_told(tmp_path: Path) -> None:
     case = drawn("support_settlement")
     case.write(tmp_path)
     model = rga.load_model(SAMPLE / "model.json")
-    assert rga.load_model(tmp_path / "model.json") == model
+    assert model_content(rga.load_model(tmp_path / "model.json")) == model_content(model)
     shipped, again = (rga.load_record(f / "record.csv", model) for f in (SAMPLE, tmp_path))
     np.testing.assert_allclose(again.readings, shipped.readings, rtol=1e-9)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
