@@ -272,7 +272,7 @@ def measured_record() -> Callable[..., Record]:
 @pytest.fixture
 def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """The methods of the levels of integration, for a while."""
-    from loi_tasks import nearest
+    from context_tasks import nearest
     from rga_bench.contexts.rows import METHODS, Row
 
     methods = {
@@ -280,6 +280,6 @@ def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         "nearest": Row(nearest),
         "absent": Row(nearest, needs=("no_such_package",)),
     }
-    for module in ("run", "play", "lived", "sheet_asked"):
+    for module in ("run", "play", "stream_results", "tables.targets"):
         monkeypatch.setattr(f"rga_bench.contexts.{module}.METHODS", methods)
     return methods

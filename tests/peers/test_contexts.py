@@ -5,11 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from loi_problems import coverage, easy, error, measured
+from context_methods import NEEDS
+from context_problems import coverage, easy, error, measured
 from rga_bench.contexts.methods import domain_adaptation, neural_posterior
-from rga_bench.contexts.methods.domain_adaptation import skada_coral, skada_dann
-
-NEEDS = {neural_posterior.neural_posterior: "sbi", skada_coral: "skada", skada_dann: "skada"}
 
 
 @pytest.fixture(scope="module", params=NEEDS, ids=lambda method: method.__name__)

@@ -10,7 +10,7 @@ import pytest
 from reference_solver import solve_case
 from rga.simulation.verification import verify_case, verify_folder
 
-FOLDER = Path(__file__).parent / "verification"
+FOLDER = Path(__file__).parents[2] / "verification"
 CASES = sorted(FOLDER.glob("*.json"))
 
 

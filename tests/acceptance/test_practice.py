@@ -9,7 +9,7 @@ import pytest
 import rga
 from safe_words import check
 
-CASES = Path(__file__).parents[2] / "shared" / "measured" / "practice"
+CASES = Path(__file__).parents[3] / "shared" / "measured" / "practice"
 pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="the practice cases are not here")
 
 

@@ -9,8 +9,8 @@ import rga
 from rga.cli.settings import read_settings
 from rga.inference import TrainingSettings
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "rdso45m"
-RECORD = Path(__file__).parents[2] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "rdso45m"
+RECORD = Path(__file__).parents[3] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
 THINNED = 4
 LITTLE = TrainingSettings(steps=700, fine_steps=60, reduced_steps=500)
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from loi_tasks import RANGES, SIZES, nearest, task
+from context_tasks import RANGES, SIZES, nearest, task
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga_bench.contexts.context_regime import BEYOND, PART, Contexts

@@ -12,7 +12,7 @@ from rga_bench.solver.box_bridge import EXPANSION, PATTERNS, box_bridge, samples
 from rga_bench.solver.double_layer_grid import DENSITY, GRAVITY, PANEL, double_layer_grid
 from rga_bench.solver.space_truss import SpaceTruss
 
-FOLDER = Path(__file__).resolve().parents[2] / "shared" / "verification"
+FOLDER = Path(__file__).resolve().parents[4] / "shared" / "verification"
 DIRECTIONS = ("ux", "uy", "uz")
 
 

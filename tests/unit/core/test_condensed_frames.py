@@ -16,7 +16,7 @@ from rga.simulation.paths.condensation import Condensation, DependentTerms
 from rga.simulation.paths.rank_one_terms import stiffness_terms
 from rga.simulation.verification_input import FrameCase, Loads, output_arrays
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[2]
 NONE = np.zeros(0, np.int64)
 STRAIN, FORCE = 2, 3
 

@@ -10,7 +10,7 @@ from rga.model import model_content
 from rga_bench.synthetic import Case, Conditions, draw_case
 from safe_words import check
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "examples" / "footbridge"
 
 

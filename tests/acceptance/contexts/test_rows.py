@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from context_methods import NEEDS, UNLABELLED
 from rga.inference.rows import Rows
 from rga_bench.contexts.data import CalibrationData, calibration_of
 from rga_bench.contexts.examination import Examination
@@ -13,8 +14,6 @@ from rga_bench.contexts.methods.networks import NETWORKS
 from rga_bench.contexts.methods.polished import polished_network
 from rga_bench.contexts.rows import METHODS
 from rga_bench.contexts.setting import ContextsTask, Sizes
-from test_loi_model_based import UNLABELLED
-from test_loi_peers import NEEDS
 
 #: methods whose tests are in other files: test_loi_networks, _model_based, _peers and _joint
 ELSEWHERE = {*(getattr(networks, name) for name in NETWORKS), *UNLABELLED, *NEEDS, polished_network}

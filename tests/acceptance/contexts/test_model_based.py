@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from loi_problems import coverage, easy, error, measured
+from context_methods import UNLABELLED
+from context_problems import coverage, easy, error, measured
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
 from rga.inference.rows import Rows
@@ -15,19 +16,9 @@ from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
 from rga_bench.contexts.methods.iterated_kalman import iterated_kalman
 from rga_bench.contexts.methods.low_rank import low_rank_discrepancy
 from rga_bench.contexts.methods.modes import maximum_posterior
-from rga_bench.contexts.methods.prior import prior_mean
 from rga_bench.contexts.methods.unscented_kalman import unscented_kalman
 from rga_bench.contexts.methods.updated_model import updated_model
 
-UNLABELLED = [
-    prior_mean,
-    maximum_posterior,
-    smooth_discrepancy,
-    low_rank_discrepancy,
-    iterated_kalman,
-    unscented_kalman,
-    ensemble_kalman,
-]
 LEARNING = UNLABELLED[1:]
 NAMES = [method.__name__ for method in UNLABELLED]
 

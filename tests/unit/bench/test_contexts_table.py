@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from loi_tasks import SIZES, nearest, task
+from context_tasks import SIZES, nearest, task
 from rga.errors import InputError
 from rga_bench.contexts import setting
 from rga_bench.contexts.context_regime import MANNERS

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from loi_tasks import SIZES, Nearest, nearest, task
+from context_tasks import SIZES, Nearest, nearest, task
 from rga.arrays import FloatArray
 from rga_bench.contexts.data import DriftStream, calibration_of, stream_of
 from rga_bench.contexts.examination import Examination

@@ -6,7 +6,7 @@ import pytest
 
 from rga.simulation.verification import verify_case
 
-FOLDER = Path(__file__).resolve().parents[2] / "shared" / "verification"
+FOLDER = Path(__file__).resolve().parents[4] / "shared" / "verification"
 CASES = sorted(FOLDER.glob("*.json"))
 
 

@@ -17,7 +17,7 @@ from rga.records import Record, RecordMapping, load_contexts, load_record
 from rga.records.lead_in import find_lead_in
 from rga.records.read import read_table
 
-SHARED = Path(__file__).parents[2] / "shared" / "measured"
+SHARED = Path(__file__).parents[4] / "shared" / "measured"
 
 
 @pytest.fixture
@@ -208,7 +208,7 @@ def test_no_lead_in_where_nothing_is_quieter_than_the_rest() -> None:
 
 def test_the_measured_crossing_is_read_as_its_description_says() -> None:
     path = SHARED / "rdso45m" / "record_40kmh.txt"
-    example = Path(__file__).parents[1] / "examples" / "rdso45m"
+    example = Path(__file__).parents[3] / "examples" / "rdso45m"
     if not path.exists():
         pytest.skip("the measured record is not part of this project")
     if not (example / "model.json").exists():

@@ -93,7 +93,7 @@ def test_what_is_written_is_read_back(tmp_path: Path, two_bars: dict[str, Any]) 
 
 
 def test_the_schema_takes_what_is_a_model(two_bars: dict[str, Any]) -> None:
-    example = Path(__file__).parents[1] / "examples" / "rdso45m" / "model.json"
+    example = Path(__file__).parents[3] / "examples" / "rdso45m" / "model.json"
     validator = jsonschema.Draft202012Validator(model_schema())
     validator.validate(json.loads(example.read_text(encoding="utf-8")))
     validator.validate(two_bars)

@@ -16,8 +16,8 @@ import pytest
 import rga
 from safe_words import check
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "rdso45m"
-RECORD = Path(__file__).parents[2] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "rdso45m"
+RECORD = Path(__file__).parents[3] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
 pytestmark = pytest.mark.skipif(not RECORD.is_file(), reason="the measured record is not here")
 FLOOR = {"floor_participation", "added_axial_area"}
 
