@@ -295,8 +295,9 @@ def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     assert not Spared().has({"kind": "sensor_bias", "sensor": "S1"})
 
 
-def test_cross_talk_that_passes_for_a_modulus_names_a_channel() -> None:
-    """Without a channel of its own response, the steel of this frame is named softer."""
-    outcome = judge(draw_of("field-2031-outside-8"))
-    assert outcome.verdict == "partial"
-    assert {one["kind"] for one in outcome.named} == {"sensor_fault"}
+@pytest.mark.parametrize("name", ["field-2031-outside-8", "field-2033-single-31-null"])
+def test_a_channel_of_its_own_response_names_nothing(name: str) -> None:
+    """Cross-talk, or a gauge at a welded gusset: else a steel is softer, or a gauge broken."""
+    outcome = judge(draw_of(name))
+    assert outcome.verdict in ("partial", "unknown")
+    assert outcome.named == []

@@ -122,6 +122,11 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
     doubts = doubts_of(record.sensors, prepared.faults, found, dropped, off, gained)
+    doubts += [
+        f"channel {name} answers the loads in a way of its own, likelier than causes that would "
+        "move other channels too: no cause was looked for in it"
+        for name in prepared.apart
+    ]
     doubts += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
     structure = (
         bool(doubts) or share > STRUCTURE or bool(bends(found.problem) or curves(found.problem))
@@ -145,7 +150,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         groups=groups(account, grouped),
         contexts=contexts(found.problem, model),
         warnings=[*prepared.warnings, *(one.words for one in off if one.alone), *failed],
-        misfits=list(dict.fromkeys(name for one in off for name in one.channels)),
+        misfits=list(
+            dict.fromkeys([*prepared.apart, *(name for one in off for name in one.channels)])
+        ),
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,

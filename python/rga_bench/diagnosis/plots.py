@@ -126,7 +126,11 @@ def _nulls(axes: Axes, outcomes: Sequence[DrawOutcome]) -> None:
     axes.axhline(0.02, color="k", ls="--", lw=1, label="at most")
     axes.set(title="Null records on which a cause was named", ylabel="share")
     axes.set_ylim(-0.04, 1.04)
-    axes.set_xticks(range(len(nulls)), [name.replace(", ", ",\n") for name in nulls], fontsize=8)
+    axes.set_xticks(
+        range(len(nulls)),
+        [name.replace(", ", ",\n").replace("a channel ", "a channel\n") for name in nulls],
+        fontsize=8,
+    )
     axes.legend(loc="upper left", fontsize=8)
 
 

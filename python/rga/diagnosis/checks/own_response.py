@@ -3,15 +3,14 @@
 A wire that picks up another channel, or a gauge that reads more than its member, answers the loads
 linearly, as a structure does, and alone among the channels. Causes of the structure may be bent to
 look like that. So a channel whose responses are free is held against all causes of the structure
-together: by the marginal likelihood, which charges for every response that is free.
+together: by the marginal likelihood, which charges for every response that is free. Such a channel
+need not be broken (a gauge at a welded gusset reads the bending there): it is left out of the
+search, and reported as one that does not fit.
 """
-
-from math import ceil
 
 import numpy as np
 
 from rga.arrays import FloatArray, IntArray
-from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.laplace import fit
 from rga.diagnosis.search.stepwise import NAMED, Found
 
@@ -21,8 +20,8 @@ FREE = 0.3
 FEWEST = 4
 
 
-def own_response(found: Found) -> BrokenChannel | None:
-    """A channel that is likelier to have a response of its own than causes are to act.
+def own_response(found: Found) -> str | None:
+    """The name of a channel that is likelier to have a response of its own than causes are to act.
 
     Args:
         found: the end of a search.
@@ -44,13 +43,7 @@ def own_response(found: Found) -> BrokenChannel | None:
     gained = _gained(*covariance.posterior(residual), covariance.spread, channel)
     best = int(np.argmax(gained))
     odds = float(gained[best] - np.log(2 * len(names) * causes[0].kinds))
-    if len(names) < FEWEST or odds < max(NAMED, needed):
-        return None
-    why = (
-        "it answers the loads in a way of its own, which is likelier than causes that would move "
-        "other channels too"
-    )
-    return BrokenChannel(names[best], "erratic", why, ceil(odds / NAMED))
+    return None if len(names) < FEWEST or odds < max(NAMED, needed) else names[best]
 
 
 def _gained(

@@ -47,6 +47,7 @@ class PreparedRecord:
         record: the same rows of the record, its working and its rejected channels.
         chosen: bool[rows of the record], the rows that are analysed.
         faults: channels that do not work; the data leave them out.
+        apart: channels that work, and that no cause is looked for in; the data leave them out.
         warnings: in words.
     """
 
@@ -55,11 +56,13 @@ class PreparedRecord:
     chosen: BoolArray
     faults: list[BrokenChannel]
     warnings: list[str]
+    apart: tuple[str, ...] = ()
 
-    def leaving_out(self, fault: BrokenChannel, simulator: Simulator) -> "PreparedRecord":
-        """The same without a further channel that does not work."""
-        data = _without_faults(simulator, self.data, [fault])
-        return replace(self, data=data, faults=[*self.faults, fault])
+    def leaving_out(self, sensor: str, simulator: Simulator) -> "PreparedRecord":
+        """The same without a further channel that works."""
+        kept = [k for k, name in enumerate(self.data.sensors) if name != sensor]
+        data = _with_contexts_anew(simulator, _of_channels(self.data, kept))
+        return replace(self, data=data, apart=(*self.apart, sensor))
 
 
 def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> PreparedRecord:
@@ -238,11 +241,12 @@ def _data(model: Model, record: Record) -> Data:
 
 def _without_faults(simulator: Simulator, data: Data, faults: list[BrokenChannel]) -> Data:
     """The data without faults, and their latent contexts without them."""
-    data = _without(data, faults)
-    if data.belief.latent and data.sensors:
-        # A channel that is broken spoils the contexts that are inferred with it.
-        data = guess_rows(simulator, data)
-    return data
+    return _with_contexts_anew(simulator, _without(data, faults))
+
+
+def _with_contexts_anew(simulator: Simulator, data: Data) -> Data:
+    """The latent contexts by the channels that are left: one that is off spoils them."""
+    return guess_rows(simulator, data) if data.belief.latent and data.sensors else data
 
 
 def _without(data: Data, faults: list[BrokenChannel]) -> Data:
@@ -254,7 +258,10 @@ def _without(data: Data, faults: list[BrokenChannel]) -> Data:
         if row is not None:
             observed[row:, number] = False
     kept = [k for k, name in enumerate(data.sensors) if begun.get(name, 0) is not None]
-    data = replace(data, observed=observed)
+    return _of_channels(replace(data, observed=observed), kept)
+
+
+def _of_channels(data: Data, kept: list[int]) -> Data:
     return replace(
         data,
         sensors=tuple(data.sensors[number] for number in kept),
