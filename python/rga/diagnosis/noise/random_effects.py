@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.covariance import Covariance, RandomEffects
+from rga.linear_algebra import thin_svd
 from rga.model.effects.stiffness import MemberStiffness
 from rga.simulation import Simulator
 
@@ -186,7 +187,7 @@ def _largest(values: FloatArray) -> float:
 
 
 def _orthonormal(columns: FloatArray) -> FloatArray:
-    u, s, _ = np.linalg.svd(columns, full_matrices=False)
+    u, s, _ = thin_svd(columns)
     return np.asarray(u[:, s > 1e-12 * s.max(initial=0.0)])
 
 

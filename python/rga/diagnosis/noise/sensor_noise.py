@@ -17,6 +17,7 @@ from scipy.special import gammaln
 
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
+from rga.linear_algebra import thin_svd
 
 ITERATIONS = 12
 LARGEST_MEMORY = 0.995
@@ -129,7 +130,7 @@ def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | No
         places = np.linspace(BESIDE, len(rows) - BESIDE, MOMENTS).astype(int)
         bends = np.maximum(clock[:, None] - clock[places - 1], 0.0)
         # All moments at once: what neither the loads nor the reading before tells of each line.
-        known, strength, _ = np.linalg.svd(before, full_matrices=False)
+        known, strength, _ = thin_svd(before)
         known = known[:, strength > 1e-12 * strength[0]]
         together = np.column_stack([column[1:], clock, bends])
         rest = together - known @ (known.T @ together)
@@ -362,5 +363,5 @@ def _likeliest_freedom(squares: FloatArray) -> float:
 def _orthonormal(basis: FloatArray, most: int) -> FloatArray:
     with_constant = np.column_stack([np.ones(len(basis)), basis])
     scale = np.linalg.norm(with_constant, axis=0)
-    u, s, _ = np.linalg.svd(with_constant / np.where(scale > 0, scale, 1.0), full_matrices=False)
+    u, s, _ = thin_svd(with_constant / np.where(scale > 0, scale, 1.0))
     return np.asarray(u[:, s > 1e-6 * s[0]][:, :most])

@@ -15,6 +15,7 @@ from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.search.hypothesis import hypotheses
 from rga.diagnosis.search.signatures import signatures
+from rga.linear_algebra import thin_svd
 from rga.model.schema import Model
 from rga.records import Record
 from rga.simulation import Simulator
@@ -129,7 +130,7 @@ def _changes(
 def _constant(simulator: Simulator, data: Data) -> FloatArray:
     """A constant course, less what the courses of the loads have of it, float[rows]."""
     loads = simulator.load_coefficients(data.belief.table)
-    u, s, _ = np.linalg.svd(loads, full_matrices=False)
+    u, s, _ = thin_svd(loads)
     courses = u[:, s > 1e-6 * s.max(initial=0.0)]
     ones = np.ones(len(data.time))
     rest = ones - courses @ (courses.T @ ones)

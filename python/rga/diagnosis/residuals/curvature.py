@@ -14,6 +14,7 @@ from scipy.stats import chi2
 from rga.arrays import FloatArray
 from rga.diagnosis.residuals.slopes import STRAIGHT, squares, straight_courses
 from rga.diagnosis.search.linearised import Calibration, Problem, load_basis
+from rga.linear_algebra import thin_svd
 
 #: chance of a curve where there is none, as that at which a cause is named: one in a thousand
 CHANCE = 1e-3
@@ -93,5 +94,5 @@ def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
 def _courses(basis: FloatArray) -> FloatArray:
     """A level and the courses of the loads, orthonormal, float[rows, courses]."""
     together = np.column_stack([np.ones(len(basis)), basis])
-    u, s, _ = np.linalg.svd(together / np.linalg.norm(together, axis=0), full_matrices=False)
+    u, s, _ = thin_svd(together / np.linalg.norm(together, axis=0))
     return np.asarray(u[:, s > 1e-6 * s[0]][:, : max(1, int(MOST_COURSES * len(basis)))])

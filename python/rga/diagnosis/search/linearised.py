@@ -18,6 +18,7 @@ from rga.diagnosis.noise.random_effects import (
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise, unexplainable
 from rga.diagnosis.noise.zero_errors import slopes_at_zero, zero_errors
+from rga.linear_algebra import thin_svd
 from rga.model.effect import Values
 from rga.simulation import Simulator
 
@@ -250,7 +251,7 @@ def load_basis(simulator: Simulator, data: Data) -> FloatArray:
     scaled = coefficients[:, peak > 0] / peak[peak > 0]
     if scaled.shape[1] == 0:
         return np.zeros((len(data.time), 0))
-    u, s, _ = np.linalg.svd(scaled, full_matrices=False)
+    u, s, _ = thin_svd(scaled)
     kept = s > 1e-6 * s[0]
     return np.asarray(u[:, kept] * np.sqrt(len(u)))
 

@@ -6,6 +6,7 @@ from rga.arrays import FloatArray
 from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.posterior_mode import standard
 from rga.inference.rows import Rows
+from rga.linear_algebra import thin_svd
 
 #: weight of the ridge, as rows
 RIDGE = 10.0
@@ -29,7 +30,7 @@ class QuadraticGuess:
         self._noise, (self._middle, self._scale) = noise, standard(ranges)
         shown = source.readings / noise
         self._mean = shown.mean(axis=0)
-        _, size, ways = np.linalg.svd(shown - self._mean, full_matrices=False)
+        _, size, ways = thin_svd(shown - self._mean)
         # What varies by less than the noise tells nothing.
         size = size / np.sqrt(len(shown))
         self._size, self._ways = size[size > 1.0], ways[size > 1.0].T
