@@ -19,7 +19,7 @@ from rga.simulation import Simulator
 from rga.simulation.dataset import write_dataset
 
 Rga = Callable[..., Any]
-VERIFICATION = Path(__file__).parents[3] / "shared" / "verification"
+VERIFICATION = Path(__file__).parents[4] / "shared" / "verification"
 
 
 def test_starting_imports_nothing_heavy() -> None:
