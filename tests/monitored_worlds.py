@@ -8,6 +8,7 @@ Rows = NDArray[np.float64]
 
 SENSORS = 6
 BASELINE = 400
+MISSING = float("nan")
 WORLDS = ("white", "memory", "heavy tails", "correlated", "skewed", "all")
 
 

@@ -11,7 +11,6 @@ from rga.errors import InputError
 from rga_bench.contexts.context_regime import BEYOND, PART, Contexts
 from rga_bench.contexts.data import LOAD_TESTS, calibration_of, stream_of
 from rga_bench.contexts.drift import DRIFTS, ONE_IN, MeasuredRows, when
-from rga_bench.contexts.floors import BEST_CONTEXT, FLOORS, NOISE, TRUE_CONTEXT, floor
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.rows import Row
 from rga_bench.contexts.score import score
@@ -139,18 +138,6 @@ def test_scores_by_hand() -> None:
     assert score(measured, replace(estimate, spread=None), np.ones((2, 3)), RANGES[:2]) == replace(
         found, coverage=None, rg=0.0, error=pytest.approx((0.5 * 12 + 2.0 / 300.0) / 2.0)
     )
-
-
-def test_floors_are_in_order() -> None:
-    known = calibration_of(task("same"))
-    rg = {name: floor(name, known.problem, known.test).rg for name in FLOORS}
-    assert 0.0 < rg[BEST_CONTEXT] < rg[TRUE_CONTEXT]
-    assert rg[NOISE] == pytest.approx(0.09, rel=0.2)
-    clean = calibration_of(task("same", gap="noise only"))
-    rg = {name: floor(name, clean.problem, clean.test).rg for name in FLOORS}
-    # The model is right, and contexts explain as many readings as there are contexts.
-    assert rg[TRUE_CONTEXT] == pytest.approx(rg[NOISE], rel=0.01)
-    assert rg[BEST_CONTEXT] == pytest.approx(rg[NOISE] * (1.0 - 8.0 / 84.0), rel=0.08)
 
 
 def test_intervals_over_splits() -> None:

@@ -2,8 +2,6 @@
 
 import math
 import pickle
-from collections import deque
-from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -11,62 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from exact_window import Rows, exact_alarms, hard_streams
 from rga.detection import GaussianWindow
 from rga.errors import InputError
 
-Rows = NDArray[np.float64]
 MISSING = float("nan")
-
-
-def exact_alarms(
-    rows: Rows,
-    window: int,
-    z: float,
-    *,
-    inclusive: bool = False,
-    persistence: tuple[int, int] = (1, 1),
-    frozen: bool = False,
-) -> NDArray[np.bool_]:
-    """The rule as it is told, in fractions."""
-    alarms = np.zeros(rows.shape, dtype=bool)
-    k, n = persistence
-    for sensor in range(rows.shape[1]):
-        held: deque[Fraction] = deque(maxlen=window - 1 if inclusive else window)
-        tested: deque[bool] = deque(maxlen=n)
-        for row in np.flatnonzero(~np.isnan(rows[:, sensor])):
-            value = Fraction(float(rows[row, sensor]))
-            exceeds = False
-            if len(held) == held.maxlen:
-                judged = [*held, value] if inclusive else list(held)
-                mean = sum(judged, Fraction(0)) / window
-                variance = sum(((each - mean) ** 2 for each in judged), Fraction(0)) / window
-                exceeds = value > mean and (value - mean) ** 2 > Fraction(z) ** 2 * variance
-                tested.append(exceeds)
-                alarms[row, sensor] = sum(tested) >= k
-            if not (frozen and exceeds):
-                held.append(value)
-    return alarms
-
-
-def hard_streams() -> Rows:
-    """Outliers of 1e9; a spread of 1e-2 on a level of 1e4; a scale that drops by 1e8."""
-    noise = np.random.default_rng(7).normal(size=(1200, 3))
-    noise[100::170, 0] += 1e9
-    noise[:, 1] = 1e4 + 1e-2 * noise[:, 1]
-    noise[:, 2] *= np.where(np.arange(1200) // 150 % 2, 1e-4, 1e4)
-    return noise
-
-
-@pytest.mark.parametrize("inclusive", [False, True])
-@pytest.mark.parametrize("frozen", [False, True])
-def test_decisions_are_exact(inclusive: bool, frozen: bool) -> None:
-    rows = hard_streams()
-    found = GaussianWindow(3, 30, 2.5, inclusive=inclusive, frozen=frozen).update_many(rows)
-    expected = exact_alarms(rows, 30, 2.5, inclusive=inclusive, frozen=frozen)
-    assert expected.any(axis=0).all()
-    assert np.array_equal(found, expected)
 
 
 def test_last_digit_decides() -> None:
