@@ -1,0 +1,133 @@
+"""Where a repository is kept: files, folders, servers, and what is none of ours."""
+
+import os
+import sqlite3
+import stat
+import sys
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from sqlalchemy import text
+
+from rga.errors import InputError
+from rga.twin.repository import Repository, migrations, tables
+from rga.twin.repository.database import database
+from stored_runs import alter
+
+
+def test_migrations_make_the_tables_of_the_code(place: str) -> None:
+    Repository.open(place).close()
+    opened = database(place, read_only=False)
+    with opened.engine.begin() as connection:
+        assert migrations.state(connection) == "current"
+        migrations.upgrade(connection)
+        context = MigrationContext.configure(connection, opts=migrations.OPTIONS)
+        assert compare_metadata(context, tables.metadata) == []
+        connection.execute(text("DROP TABLE kept"))
+        assert compare_metadata(context, tables.metadata) != []
+    opened.engine.dispose()
+
+
+def test_a_newer_repository_is_refused(place: str) -> None:
+    Repository.open(place).close()
+    alter(place, "UPDATE rga_repository SET version_num = 'later'")
+    for read_only in (True, False):
+        with pytest.raises(InputError, match="newer than this rga"):
+            Repository.open(place, read_only=read_only)
+
+
+def test_tables_of_something_else_are_no_repository(place: str) -> None:
+    alter(place, "CREATE TABLE photos (id INTEGER)")
+    for read_only in (True, False):
+        with pytest.raises(InputError, match="no repository"):
+            Repository.open(place, read_only=read_only)
+
+
+def test_a_directory_holds_twin_sqlite(tmp_path: Path) -> None:
+    Repository.open(tmp_path).close()
+    assert (tmp_path / "twin.sqlite").is_file()
+    Repository.open(tmp_path / "twin.sqlite", read_only=True).close()
+
+
+def test_sqlite_is_durable(tmp_path: Path) -> None:
+    opened = database(tmp_path, read_only=False)
+    with opened.engine.connect() as connection:
+        assert connection.scalar(text("PRAGMA journal_mode")) == "wal"
+        assert connection.scalar(text("PRAGMA synchronous")) == 2
+    opened.engine.dispose()
+
+
+def test_a_file_that_is_no_database(tmp_path: Path) -> None:
+    path = tmp_path / "twin.sqlite"
+    path.write_text("time,D1\n" * 200)
+    for read_only in (True, False):
+        with pytest.raises(InputError, match="no repository"):
+            Repository.open(path, read_only=read_only)
+    assert path.read_text() == "time,D1\n" * 200
+
+
+def test_a_missing_or_empty_file_cannot_be_read(tmp_path: Path) -> None:
+    path = tmp_path / "twin.sqlite"
+    with pytest.raises(InputError, match="no such file"):
+        Repository.open(path, read_only=True)
+    path.touch()
+    with pytest.raises(InputError, match="no repository"):
+        Repository.open(path, read_only=True)
+    Repository.open(path).close()
+    Repository.open(path, read_only=True).close()
+
+
+def test_a_locked_file(tmp_path: Path) -> None:
+    path = tmp_path / "twin.sqlite"
+    Repository.open(path).close()
+    other = sqlite3.connect(path, isolation_level=None)
+    other.execute("PRAGMA locking_mode = EXCLUSIVE")
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(InputError, match="locked by another process"):
+        Repository.open(path)
+    other.close()
+
+
+def test_a_directory_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be written"):
+        Repository.open(tmp_path / "absent" / "twin.sqlite")
+
+
+def test_a_directory_for_reading_only(tmp_path: Path) -> None:
+    path = tmp_path / "twin.sqlite"
+    Repository.open(path).close()
+    path.chmod(stat.S_IRUSR)
+    tmp_path.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    try:
+        if os.access(path, os.W_OK):
+            pytest.skip("this user may write everywhere")
+        with pytest.raises(InputError, match="cannot be written"):
+            Repository.open(path)
+        with Repository.open(path, read_only=True) as repository:
+            assert repository.runs() == ()
+    finally:
+        tmp_path.chmod(stat.S_IRWXU)
+
+
+@pytest.mark.parametrize(
+    ("url", "words"),
+    [
+        ("mysql://user:secret@host/base", "no repository is kept in 'mysql'"),
+        ("postgresql://user@host:port/base", "URL cannot be read"),
+        ("postgresql://user:secret@localhost:1/base?connect_timeout=5", "the server says"),
+    ],
+)
+def test_urls_that_lead_nowhere(url: str, words: str) -> None:
+    pytest.importorskip("psycopg")
+    with pytest.raises(InputError, match=words) as told:
+        Repository.open(url)
+    assert "secret" not in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+def test_a_missing_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "psycopg", None)
+    with pytest.raises(InputError, match=r"rga\[postgres\]"):
+        Repository.open("postgresql://user@host/base")
