@@ -52,11 +52,3 @@ def test_a_square_is_told_whatever_its_pattern(healthy: Problem) -> None:
 @pytest.mark.parametrize("power", [0, 1])
 def test_what_is_in_proportion_is_no_curve(healthy: Problem, power: int) -> None:
     assert curves(with_response(healthy, power)) == []
-
-
-def test_a_cause_that_follows_the_straight_part_of_a_curve_is_not_named(tmp_path: Path) -> None:
-    strange = rga.diagnose(*loaded("8-outside-5", tmp_path), seed=8)
-    assert strange.verdict == "unknown"
-    assert "go with the square of temperature" in strange.unexplained.looks_like
-    straight = rga.diagnose(*loaded("8-outside-5-null", tmp_path), seed=8)
-    assert straight.verdict == "nothing_wrong"

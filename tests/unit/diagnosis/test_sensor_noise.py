@@ -1,20 +1,11 @@
 """Noise is estimated with the tails that it has, and what they add is drawn in."""
 
-import tempfile
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis import diagnose
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise
-from rga.findings import Findings
-from rga.model import load_model
-from rga.records import load_record
-from rga_bench.diagnosis.design import Draw
 
 ROWS, SENSORS, MEMORY = 240, 24, 0.6
 
@@ -83,34 +74,3 @@ def test_tails_of_readings_are_those_of_their_innovations() -> None:
     rows = RowCovariance(noise, np.arange(ROWS, dtype=float), observed, np.zeros((ROWS, 2, 0)))
     innovations = np.where(observed.T, heavy(3, 2).T, 0.0)
     np.testing.assert_allclose(rows.whiten(rows.coloured(innovations)), innovations, atol=1e-12)
-
-
-#: a null twin with heavy tails, a channel of it, and how late and how far it is shifted
-NULL, CHANNEL, LATE, SHIFT = "101-single-22-null", 1, 20, 4.0
-
-
-def diagnosed(shifted: bool) -> tuple[str, float, Findings]:
-    """Channel, moment, and findings of the record with or without the shift."""
-    with tempfile.TemporaryDirectory() as folder:
-        Draw.parse(NULL).case().write(folder)
-        model = load_model(Path(folder) / "model.json")
-        record = load_record(Path(folder) / "record.csv", model)
-    sensor = record.sensors[CHANNEL]
-    readings = record.readings.copy()
-    readings[-LATE:, CHANNEL] += SHIFT * (model.sensors[sensor].noise or 0.0) * shifted
-    moment = float(record.origin + record.time[-LATE])
-    return sensor, moment, diagnose(model, replace(record, readings=readings))
-
-
-def test_tails_at_the_end_of_a_record_are_no_cause() -> None:
-    assert Draw.parse(NULL).circumstance.null == "Student t3"
-    *_, findings = diagnosed(shifted=False)
-    assert findings.verdict == "nothing_wrong"
-
-
-def test_a_late_shift_is_found_in_spite_of_tails() -> None:
-    sensor, moment, findings = diagnosed(shifted=True)
-    (cause,) = findings.causes
-    assert cause.effect["kind"] == "sensor_bias"
-    assert cause.effect["sensor"] == sensor
-    assert cause.onset == pytest.approx(moment)
