@@ -10,7 +10,8 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference import Rows, Unknowns, infer_jointly
 from rga.inference.map.identifiability import BLIND, unseen_share
-from rga.inference.map.posterior_mode import posterior_mode, standard
+from rga.inference.map.posterior_mode import posterior_mode
+from rga.inference.map.standard_units import standard
 from rga.model import Model, read_model, write_model
 from rga.simulation import Simulator
 

@@ -7,9 +7,9 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
-from rga.inference.map.bounded_newton import EDGE
 from rga.inference.map.initial_guess import QuadraticGuess
-from rga.inference.map.posterior_mode import posterior_mode, standard
+from rga.inference.map.posterior_mode import posterior_mode
+from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.rows import Rows
 from rga.simulation import Simulator
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import standard
 from rga.simulation import Simulator
 
 #: a context of whose prior variance more than this share is left is not seen

@@ -3,10 +3,9 @@
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.inference.map.bounded_newton import EDGE
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.rows import Rows
-from rga.linear_algebra import thin_svd
+from rga.numerics.decompositions import thin_svd
 
 #: weight of the ridge, as rows
 RIDGE = 10.0

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import standard
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
 from rga_bench.contexts.methods.modes import Modes

@@ -6,7 +6,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import standard
 
 
 @dataclass(frozen=True)

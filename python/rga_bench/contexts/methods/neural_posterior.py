@@ -9,8 +9,7 @@ import torch
 
 from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
-from rga.inference.map.bounded_newton import EDGE
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.networks.determinism import one_thread
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.installed import NotInstalledError

@@ -6,7 +6,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import standard
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 
 

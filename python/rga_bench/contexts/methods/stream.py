@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.inference.map.bounded_newton import box_step
-from rga.inference.map.posterior_mode import Mode, standard
+from rga.inference.map.posterior_mode import Mode
+from rga.inference.map.standard_units import EDGE, standard
+from rga.numerics.bounded_step import bounded_step
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.methods.modes import Modes, maximum_posterior
 
@@ -115,7 +116,7 @@ def recursion(
         before = np.linalg.inv(spread * np.outer(memory, memory) + np.diag(1.0 - memory**2))
         normal = before + told[row]
         toward = before @ (memory * here) + pull[row] - normal @ here
-        here = here + box_step(normal[None], toward[None], here[None], still)[0]
+        here = here + bounded_step(normal[None], toward[None], here[None], still, EDGE)[0]
         spread = np.linalg.inv(normal)
         mean[row], covariance[row] = here, spread
     return mean, covariance

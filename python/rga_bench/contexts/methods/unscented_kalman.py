@@ -3,8 +3,7 @@
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.inference.map.bounded_newton import EDGE
-from rga.inference.map.posterior_mode import standard
+from rga.inference.map.standard_units import EDGE, standard
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.modes import Modes
 from rga_bench.contexts.methods.stream import Filtered, filtered, recursion

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.linear_algebra import thin_svd
+from rga.numerics.decompositions import thin_svd
 
 
 @pytest.mark.parametrize("shape", [(7, 3), (3, 7), (4, 4)])
