@@ -44,7 +44,7 @@ class Belief:
         """The same belief with other best values."""
         return replace(self, table={**self.table, **changes})
 
-    def rows(self, chosen: BoolArray) -> "Belief":
+    def rows(self, chosen: BoolArray | IntArray) -> "Belief":
         """The belief for some of the rows."""
         return replace(
             self,
@@ -256,7 +256,7 @@ class Data:
             return np.asarray(column[0] + rate * (self.tare.time - self.time[0]))
         return self.tare.contexts[name]
 
-    def rows(self, chosen: BoolArray) -> "Data":
+    def rows(self, chosen: BoolArray | IntArray) -> "Data":
         """Some of the rows."""
         return replace(
             self,

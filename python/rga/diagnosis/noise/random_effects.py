@@ -9,8 +9,8 @@ from scipy.optimize import minimize
 from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.covariance import Covariance, RandomEffects
-from rga.linear_algebra import thin_svd
 from rga.model.effects.stiffness import MemberStiffness
+from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
 
 STEP = 1e-3

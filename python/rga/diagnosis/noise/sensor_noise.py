@@ -17,7 +17,7 @@ from scipy.special import gammaln
 
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
-from rga.linear_algebra import thin_svd
+from rga.numerics.decompositions import thin_svd
 
 ITERATIONS = 12
 LARGEST_MEMORY = 0.995

@@ -14,16 +14,18 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
-from rga.arrays import BoolArray, FloatArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.data.observations import Data
+from rga.inference.map.standard_units import EDGE, standard
+from rga.numerics.gauss_newton import minimise
 from rga.simulation import Simulator
 
 ROWS = 240
 LEVELS = 161
 RATES = 29
-#: contexts tried for every row, Gauss-Newton steps from the best of them, and the difference that
-#: their derivatives are taken over, in shares of the ranges
-TRIALS, STEPS, DIFFERENCE = 256, 12, 1e-4
+#: contexts tried for every row, and steps from the best of them; gain of a step [chi square] below
+#: which a row rests; what derivatives are taken over, in standard units
+TRIALS, STEPS, GAIN, DIFFERENCE = 256, 12, 1e-3, 3e-4
 #: share of a sensor's spread by which the model may be off
 MODEL_ERROR = 0.05
 
@@ -77,49 +79,38 @@ def guess_rows(simulator: Simulator, data: Data) -> Data:
     if not names:
         return data
     ranges = np.array([simulator.model.context[name].range for name in names])
-    middle, width = ranges.mean(axis=1), np.ptp(ranges, axis=1)
-    drawn = qmc.Sobol(len(names), scramble=True, rng=0).random(TRIALS) - 0.5
+    middle, scale = standard(ranges)
     typical = np.abs(data.predict(simulator)).max(axis=0, initial=0.0)
     stated = np.array([simulator.model.sensors[name].noise or 0.0 for name in data.sensors])
-    scale = np.maximum(
+    noise = np.maximum(
         np.hypot(stated, MODEL_ERROR * data.readings.std(axis=0)), 1e-9 + typical / 1e6
     )
 
-    def residual(shares: FloatArray) -> FloatArray:
-        changes = dict(zip(names, (middle + width * shares).T, strict=True))
-        off = (data.readings - data.predict(simulator, changes)) / scale
-        return np.where(data.observed, off, 0.0)
+    def residual(z: FloatArray, of: IntArray) -> FloatArray:
+        few = data.rows(of)
+        changes = dict(zip(names, (middle + scale * z).T, strict=True))
+        off = (few.predict(simulator, changes) - few.readings) / noise
+        return np.where(few.observed, off, 0.0)
 
-    def cost(shares: FloatArray, off: FloatArray) -> FloatArray:
-        # A context spread evenly over its range has the variance 1/12 in shares of it.
-        return np.asarray((off**2).sum(axis=1) + 12 * (shares**2).sum(axis=1))
-
-    rows = len(data.time)
-    best = np.zeros((rows, len(names)))
-    least = cost(best, residual(best))
-    for trial in drawn:
-        shares = np.tile(trial, (rows, 1))
-        found = cost(shares, residual(shares))
-        best[found < least] = trial
-        least = np.minimum(least, found)
-    damping = np.full(rows, 1e-3)
-    for _ in range(STEPS):
-        off = residual(best)
+    def slope(z: FloatArray, of: IntArray) -> FloatArray:
         columns = [
-            (residual(best - DIFFERENCE * one) - residual(best + DIFFERENCE * one))
+            (residual(z + DIFFERENCE * one, of) - residual(z - DIFFERENCE * one, of))
             / (2 * DIFFERENCE)
             for one in np.eye(len(names))
         ]
-        slopes = np.stack(columns, axis=2)
-        square = slopes.transpose(0, 2, 1) @ slopes + 12 * np.eye(len(names))
-        square = square * (1 + damping[:, None, None] * np.eye(len(names)))
-        along = np.einsum("tsk,ts->tk", slopes, off) - 12 * best
-        moved = best + np.linalg.solve(square, along[:, :, None])[:, :, 0]
-        found = cost(moved, residual(moved))
-        better = found < least
-        best[better], least = moved[better], np.minimum(least, found)
-        damping = np.where(better, damping / 5, damping * 5)
-    changes = dict(zip(names, (middle + width * best).T, strict=True))
+        return np.stack(columns, axis=2)
+
+    rows = np.arange(len(data.time))
+    start = np.zeros((len(rows), len(names)))
+    least = (residual(start, rows) ** 2).sum(axis=1)
+    for trial in qmc.Sobol(len(names), scramble=True, rng=0).random(TRIALS):
+        z = np.tile(EDGE * (2.0 * trial - 1.0), (len(rows), 1))
+        found = (residual(z, rows) ** 2).sum(axis=1) + (z**2).sum(axis=1)
+        start[found < least] = z[0]
+        least = np.minimum(least, found)
+    # A range is where contexts are likely to be, but a load may be greater.
+    best = middle + scale * minimise(residual, slope, start, np.inf, STEPS, GAIN).z
+    changes = dict(zip(names, best.T, strict=True))
     # The range is no prior for all rows at once: a long event beyond it would make the structure
     # look stiff. What is free in every row is free about its own guess.
     belief = replace(data.belief, centre={**data.belief.centre, **changes})

@@ -15,8 +15,8 @@ from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.search.hypothesis import hypotheses
 from rga.diagnosis.search.signatures import signatures
-from rga.linear_algebra import thin_svd
 from rga.model.schema import Model
+from rga.numerics.decompositions import thin_svd
 from rga.records import Record
 from rga.simulation import Simulator
 

@@ -14,7 +14,7 @@ from scipy.stats import chi2
 from rga.arrays import FloatArray
 from rga.diagnosis.residuals.slopes import STRAIGHT, squares, straight_courses
 from rga.diagnosis.search.linearised import Calibration, Problem, load_basis
-from rga.linear_algebra import thin_svd
+from rga.numerics.decompositions import thin_svd
 
 #: chance of a curve where there is none, as that at which a cause is named: one in a thousand
 CHANCE = 1e-3

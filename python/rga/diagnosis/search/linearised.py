@@ -18,8 +18,8 @@ from rga.diagnosis.noise.random_effects import (
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise, unexplainable
 from rga.diagnosis.noise.zero_errors import slopes_at_zero, zero_errors
-from rga.linear_algebra import thin_svd
 from rga.model.effect import Values
+from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
 
 STEP = 1e-3
