@@ -4,8 +4,8 @@ import numpy as np
 
 from rga.arrays import FloatArray
 
-#: rounds in which coordinates are set to the side that they would pass
-_ROUNDS = 4
+#: rounds in which coordinates are set to the side that they would pass, or let go
+_ROUNDS = 8
 
 
 def bounded_step(
@@ -30,15 +30,21 @@ def bounded_step(
     own = np.arange(here.shape[1])
     damped = normal.copy()
     damped[:, own, own] *= 1.0 + damping[:, None]
-    held, step = np.zeros(here.shape, dtype=bool), np.zeros(here.shape)
+    # Coordinates held at a side: 1 the upper, -1 the lower, 0 free.
+    held, step = np.zeros(here.shape), np.zeros(here.shape)
     for _ in range(_ROUNDS):
-        free = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
-        free[:, own, own] += held
-        pull = descent - (damped @ np.where(held, step, 0.0)[:, :, None])[:, :, 0]
-        step = np.linalg.solve(free, np.where(held, step, pull)[:, :, None])[:, :, 0]
-        passing = (np.abs(here + step) > bound) & ~held
+        fixed = held != 0.0
+        free = np.where(fixed[:, :, None] | fixed[:, None, :], 0.0, damped)
+        free[:, own, own] += fixed
+        pull = descent - (damped @ np.where(fixed, step, 0.0)[:, :, None])[:, :, 0]
+        step = np.linalg.solve(free, np.where(fixed, step, pull)[:, :, None])[:, :, 0]
+        passing = (np.abs(here + step) > bound) & ~fixed
+        held = np.where(passing, np.sign(step), held)
         step = np.clip(here + step, -bound, bound) - here
-        held |= passing
-        if not passing.any():
+        # What its side no longer stops is let go, once nothing passes any more.
+        inward = (descent - (damped @ step[:, :, None])[:, :, 0]) * held < 0.0
+        released = inward & ~passing.any(axis=1, keepdims=True)
+        held[released] = 0.0
+        if not (passing.any() or released.any()):
             break
     return step
