@@ -15,20 +15,20 @@ from rga.errors import InputError
 WIDTH = 140
 
 Result = TypeVar("Result")
-Told = TypeVar("Told", contravariant=True)
+Shown = TypeVar("Shown", contravariant=True)
 Progress = Callable[[float], None]
 
 
-class Tables(Protocol[Told]):
+class Tables(Protocol[Shown]):
     """The module of a benchmark that puts results into words."""
 
-    def about(self, result: Told, /) -> list[str]:
+    def about(self, result: Shown, /) -> list[str]:
         """Lines about the machine, and what was measured."""
 
-    def terminal(self, result: Told, /) -> RenderableType:
+    def terminal(self, result: Shown, /) -> RenderableType:
         """Tables for rich."""
 
-    def markdown(self, result: Told, command: str, /) -> str:
+    def markdown(self, result: Shown, command: str, /) -> str:
         """A page."""
 
 
@@ -43,12 +43,12 @@ def measured(
     output: Path | None,
     json: str | None,
 ) -> None:
-    """Measure, and tell what was found.
+    """Measure, and print the result.
 
     Args:
         name: of the benchmark, and of its page.
         command: that makes the same again.
-        measure: takes what is told the share that is done.
+        measure: takes what is called with the share that is done.
         tables: what is found in words.
         draw: writes figures into a folder.
         content: what programs read.

@@ -1,4 +1,4 @@
-"""`rga plan`: the sensors and load tests that would tell rival explanations apart."""
+"""`rga plan`: the sensors and load tests that would separate rival explanations."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -99,10 +99,10 @@ def _show(result: "Plan") -> None:
     for number, sensor in enumerate(result.sensors, 1):
         noise = f"{sensor.noise:.3g} {sensor.unit}"
         typer.echo(f"\nSensor {number}: measure {sensor.words} (noise {noise})")
-        _tell(sensor.tells, letters)
+        _show_readings(sensor.tells, letters)
     for number, test in enumerate(result.tests, 1):
         typer.echo(f"\nTest {number}: {test.words}")
-        _tell(test.tells, letters)
+        _show_readings(test.tells, letters)
     if result.separations:
         table = Table("apart", "d_perp", "expected", "simulated", "d_perp with everything")
         for one in result.separations:
@@ -121,7 +121,7 @@ def _letters(result: "Plan") -> dict[str, str]:
     return {one: chr(ord("A") + number) for number, one in enumerate(words)}
 
 
-def _tell(tells: "list[Telling]", letters: dict[str, str]) -> None:
+def _show_readings(tells: "list[Telling]", letters: dict[str, str]) -> None:
     for telling in tells:
         typer.echo(f"  {telling.sensor} [{telling.unit}], {telling.change}:")
         for says in telling.says:

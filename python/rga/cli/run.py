@@ -93,7 +93,7 @@ def _interruption_told() -> Iterator[None]:
 
 
 class _News:
-    """Tells what happens: a line for each event, and a live line for where the run stands."""
+    """Shows what happens: a line for each event, and a live line for where the run stands."""
 
     def __init__(self, progress: "Shown") -> None:
         self._progress = progress

@@ -36,8 +36,8 @@ class Alarm:
         sensors: that have changed, the clearest first; their columns.
         probability: that each of them has changed.
         change: of their readings by now, in the unit of the readings; of a variance the factor
-            on the standard deviation. Scores are cut where a baseline cannot tell any more, so
-            that a change beyond some three standard deviations is told as being as large as that.
+            on the standard deviation. Scores are cut where a baseline says no more, so
+            that a change beyond some three standard deviations is reported as that large.
         since: row of the likeliest onset.
         since_ci90: rows between which it lies, nine times in ten.
     """
@@ -67,10 +67,10 @@ class Alarm:
         Args:
             names: of the sensors; their columns if left out.
         """
-        told = [names[one] if names else f"sensor {one}" for one in self.sensors]
-        more = f" and {len(told) - SHOWN} more" if len(told) > SHOWN else ""
+        labels = [names[one] if names else f"sensor {one}" for one in self.sensors]
+        more = f" and {len(labels) - SHOWN} more" if len(labels) > SHOWN else ""
         first, last = self.since_ci90
-        where = f"{', '.join(told[:SHOWN])}{more}"
+        where = f"{', '.join(labels[:SHOWN])}{more}"
         alone = "; one bad sensor would look like this" if self.single else ""
         return f"{self.looks} in {where} since row {self.since} ({first} to {last}){alone}"
 

@@ -8,13 +8,13 @@ from rga.detection.baseline.decorrelation import repeating
 from rga.detection.baseline.stationarity import changed
 from rga.detection.thresholds import MEMORIES, WITHIN, TailModel, memory_of
 
-#: a baseline that chance makes so changeable less often is doubted
-DOUBTED = 0.01
+#: a baseline that chance makes so changeable less often is warned of
+UNLIKELY = 0.01
 #: part of a sensor's readings that may be one and the same
 SAME = 0.6
 
 
-def doubts(
+def assumption_warnings(
     reference: Reference, baseline: FloatArray, simulated: TailModel, columns: list[int]
 ) -> tuple[str, ...]:
     """What speaks against the promise about false alarms, in words.
@@ -31,7 +31,7 @@ def doubts(
             "the readings wander: they go with the ones before almost entirely, more than "
             "thresholds allow for; watch what they differ by from one row to the next"
         )
-    if changed(reference, baseline, simulated) < DOUBTED:
+    if changed(reference, baseline, simulated) < UNLIKELY:
         found.append(
             "the baseline changes by itself more than its memory explains: false alarms will come "
             "more often; take a longer one, or one during which nothing changes"
@@ -44,7 +44,7 @@ def doubts(
             f"{named(same)} mostly one value: with steps so coarse false alarms may come more often"
         )
     innovations = after_prediction(baseline - reference.level, reference.weights)
-    copies = [columns[one] for one in repeating(reference.bent(innovations))]
+    copies = [columns[one] for one in repeating(reference.normal_scores(innovations))]
     if copies:
         found.append(
             f"{named(copies)} nearly what others of them read: false alarms will come more often; "

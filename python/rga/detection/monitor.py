@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rga import _core
 from rga.arrays import FloatArray
 from rga.detection.alarm import Alarm, explain
-from rga.detection.assumption_checks import doubts
+from rga.detection.assumption_checks import assumption_warnings
 from rga.detection.baseline.baseline_model import Reference, unwatched
 from rga.detection.rows import row as row_of
 from rga.detection.rows import table, within
@@ -47,7 +47,7 @@ class SyncMonitor:
     Args:
         baseline: float[rows, n_sensors], NaN where missing; a sensor of which it says too little
             is not watched, and `unwatched` names it. The longer, the smaller the changes
-            that can be told from what the baseline leaves open.
+            that can be distinguished from what the baseline leaves open.
         arl0: rows between false alarms (average run length without a change), 100 to 1e12;
             `rows_between` counts them from alarms per month.
         seed: of the simulation of thresholds.
@@ -83,7 +83,7 @@ class SyncMonitor:
         )
         self._begin(reference, simulated, arl0, seed)
         columns = np.flatnonzero(self._watched).tolist()
-        self._doubts: tuple[str, ...] = doubts(reference, rows, simulated, columns)
+        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, columns)
 
     @classmethod
     def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:
@@ -127,7 +127,7 @@ class SyncMonitor:
         """The alarm that stands, explained by the rows around it.
 
         These are the 1024 rows up to the alarm and the 1024 behind it, as far as they have come:
-        what is told gets surer with them.
+        the explanation gets surer with them.
         """
         raised = self._statistics.alarm
         if raised is None:
@@ -136,9 +136,9 @@ class SyncMonitor:
         scores = self._statistics.recent().astype(float)
         first = self._statistics.recent_first
         raised_by = str(STATISTICS[statistic])
-        told = explain(scores, first, row, raised_by, self._sizes, self._signature)
+        alarm = explain(scores, first, row, raised_by, self._sizes, self._signature)
         columns = np.flatnonzero(self._watched)
-        return replace(told, sensors=tuple(columns[list(told.sensors)].tolist()))
+        return replace(alarm, sensors=tuple(columns[list(alarm.sensors)].tolist()))
 
     @property
     def rows(self) -> int:
@@ -151,9 +151,9 @@ class SyncMonitor:
         return self._arl0
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Reasons why false alarms may come more often than they should."""
-        return self._doubts
+        return self._warnings
 
     @property
     def unwatched(self) -> dict[int, str]:
@@ -161,7 +161,7 @@ class SyncMonitor:
         return dict(self._unwatched)
 
     def begin_again(self) -> None:
-        """Forget the alarm and all evidence; what the baseline told stays."""
+        """Forget the alarm and all evidence; what was learned from the baseline stays."""
         self._statistics.begin_again()
 
     def to_bytes(self) -> bytes:
@@ -169,7 +169,7 @@ class SyncMonitor:
         head = {
             "arl0": self._arl0,
             "seed": self._seed,
-            "doubts": self._doubts,
+            "warnings": self._warnings,
             "sensors": len(self._watched),
             "unwatched": list(self._unwatched.items()),
             "sizes": self._sizes.tolist(),
@@ -190,14 +190,14 @@ class SyncMonitor:
         monitor = cls.__new__(cls)
         monitor._statistics = _core.ChangeStatistics.from_bytes(rest)
         try:
-            told = json.loads(head)
-            monitor._arl0, monitor._seed = float(told["arl0"]), int(told["seed"])
-            monitor._doubts = tuple(told["doubts"])
-            monitor._unwatched = {int(one): str(why) for one, why in told["unwatched"]}
-            columns = np.arange(int(told["sensors"]))
+            stored = json.loads(head)
+            monitor._arl0, monitor._seed = float(stored["arl0"]), int(stored["seed"])
+            monitor._warnings = tuple(stored["warnings"])
+            monitor._unwatched = {int(one): str(why) for one, why in stored["unwatched"]}
+            columns = np.arange(int(stored["sensors"]))
             monitor._watched = ~np.isin(columns, list(monitor._unwatched))
-            monitor._sizes = np.array(told["sizes"], dtype=float)
-            monitor._signature = np.array(told["signature"], dtype=float)
+            monitor._sizes = np.array(stored["sizes"], dtype=float)
+            monitor._signature = np.array(stored["signature"], dtype=float)
             sensors = monitor._statistics.recent().shape[1:]
             shapes = {monitor._sizes.shape, monitor._signature.shape, sensors}
             if shapes != {(monitor._watched.sum(),)}:
@@ -222,7 +222,7 @@ class SyncMonitor:
         self._statistics = reference.statistics(simulated.thresholds(arl0), ROWS_KEPT)
         self._arl0, self._seed = float(arl0), int(seed)
         self._sizes, self._signature = reference.sizes, reference.signature
-        self._doubts = ()
+        self._warnings = ()
 
 
 def rows_between(

@@ -21,7 +21,7 @@ STREAMS = 128
 LEAST_ROWS, MOST_ROWS = 2_000, 10_000
 #: blocks of a stream, whose largest values are looked at
 BLOCKS = 20
-#: how many of the largest of these values tell how a tail falls: a twentieth of all, and a fifth
+#: how many of the largest of these values show how a tail falls: a twentieth of all, and a fifth
 TAILS = (STREAMS, 4 * STREAMS)
 #: a statistic that is as large as it can get has no tail: it raises no alarm
 LEAST_SCALE = 0.1

@@ -51,7 +51,7 @@ class CandidateModel:
     unknowns: tuple[UncertainParameter, ...]
 
     @property
-    def doubt(self) -> FloatArray:
+    def spread(self) -> FloatArray:
         """How far a fit may move each unknown [standard deviations], float[unknowns]."""
         of = [unknown.effect for unknown in self.unknowns]
         return np.array([DOUBT if of.count(one) > 1 else 1.0 for one in of])

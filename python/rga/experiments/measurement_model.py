@@ -1,7 +1,7 @@
 """A structure with all that could be measured on it, and what explanations say of it.
 
 A measurement is a contrast, so that no zero of a sensor matters: in operation a reading less the
-mean of its course, in a load test a state less another one.
+mean over time, in a load test a state less another one.
 """
 
 from collections.abc import Mapping, Sequence
@@ -125,8 +125,8 @@ class MeasurementModel:
                     first |= {FACTOR: 0.0, POSITION: test.position}
                     second |= {FACTOR: 1.0, POSITION: test.position}
                 states += [first.get(name, 0.0), second.get(name, 0.0)]
-            course = operation.get(name, np.full(self.operating, still.get(name, 0.0)))
-            table[name] = np.append(course, states)
+            operating = operation.get(name, np.full(self.operating, still.get(name, 0.0)))
+            table[name] = np.append(operating, states)
         return table
 
     def unit(self, column: int) -> str:
@@ -237,7 +237,7 @@ class MeasurementModel:
 
     def _contrasts(self, shown: FloatArray) -> FloatArray:
         """Measurements from what is shown in every state, float[measurements, sensors]."""
-        course, states = shown[: self.operating], shown[self.operating :]
+        operating, states = shown[: self.operating], shown[self.operating :]
         # An instrument is calibrated; a sensor's zero says nothing.
-        zero = np.where(self._calibrated, 0.0, course.mean(0))
-        return np.concatenate([course - zero, states[1::2] - states[::2]])
+        zero = np.where(self._calibrated, 0.0, operating.mean(0))
+        return np.concatenate([operating - zero, states[1::2] - states[::2]])

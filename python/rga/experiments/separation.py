@@ -18,13 +18,13 @@ from rga.arrays import FloatArray
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import Errors, MeasurementModel
 
-#: chance of a clear success from which on two explanations count as told apart
+#: chance of a clear success from which on two explanations count as separated
 LIKELY = 0.9
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Two explanations that are to be told apart.
+    """Two explanations that are to be separated.
 
     Attributes:
         cause, rival: the two.
@@ -41,8 +41,8 @@ class Pair:
     @property
     def loose(self) -> FloatArray:
         """`unknown`, as far as a fit may move the unknowns."""
-        doubt = np.concatenate([self.cause.doubt, self.rival.doubt])
-        return np.asarray(self.unknown * doubt[:, None, None])
+        spread = np.concatenate([self.cause.spread, self.rival.spread])
+        return np.asarray(self.unknown * spread[:, None, None])
 
     @property
     def difference(self) -> FloatArray:

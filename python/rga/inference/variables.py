@@ -21,9 +21,9 @@ class Variables:
         latent: those of them that are inferred, in the same order.
         ranges: (smallest, largest) of each of `contexts`, in its unit.
 
-    >>> some = Variables(("D1",), ("warmth", "crowd"), ("crowd",), ((-20.0, 40.0), (0.0, 5.0)))
+    >>> some = Variables(("D1",), ("temperature", "crowd"), ("crowd",), ((-20.0, 40.0), (0.0, 5.0)))
     >>> some.measured
-    ('warmth',)
+    ('temperature',)
     >>> some.together(np.array([[7.0]]), np.array([[2.5]]))
     array([[7. , 2.5]])
     """

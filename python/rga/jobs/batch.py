@@ -91,7 +91,7 @@ def diagnose_many(
         workers: processes at work on this machine.
         dask: address of the scheduler of a Dask cluster, whose workers do the work instead; they
             need rga, and none of the files.
-        progress: told a stage and the share of it that is done.
+        progress: called with a stage and the share of it that is done.
 
     Returns:
         A summary for each bridge, in the order of the list.
@@ -105,22 +105,22 @@ def diagnose_many(
     _make(output)
     errors: dict[str, Exception] = {}
     faults: list[ReportError] = []
-    told: dict[str, Summary] = {}
+    summary_of: dict[str, Summary] = {}
     for task, future in finished(_work, _tasks(listed, seed, errors), workers=workers, dask=dask):
         error = future.exception()
         if isinstance(error, Exception):
             errors[task.name] = error
         else:
             done: _Done = future.result()
-            told[task.name] = _keep(task.name, done, output / task.name)
+            summary_of[task.name] = _keep(task.name, done, output / task.name)
             faults += (
                 [] if done.fault is None else [ReportError(done.fault.reason, output / task.name)]
             )
         if progress is not None:
-            progress("diagnosing bridges", len({*told, *errors}) / len(listed))
+            progress("diagnosing bridges", len({*summary_of, *errors}) / len(listed))
     for name, error in errors.items():
-        told[name] = Summary(name, error=" ".join(str(error).split()) or type(error).__name__)
-    summaries = [told[bridge.name] for bridge in listed]
+        summary_of[name] = Summary(name, error=" ".join(str(error).split()) or type(error).__name__)
+    summaries = [summary_of[bridge.name] for bridge in listed]
     frame = pl.DataFrame([asdict(one) for one in summaries], infer_schema_length=None)
     write_whole({output / SUMMARY: frame.write_csv().encode()})
     for error in errors.values():
@@ -197,7 +197,7 @@ def _read(path: Path) -> list[_Bridge]:
                 table.where(number, "name"),
                 "leave out slashes, colons and a dot in front",
             )
-        # Disks that do not tell capitals apart would mix up their results.
+        # Disks that do not distinguish capitals would mix up their results.
         if (first := seen.setdefault(name.casefold(), number)) < number:
             raise InputError(
                 f"the name {name!r} stands twice",

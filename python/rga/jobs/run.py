@@ -38,8 +38,8 @@ def run(
         settings: level of integration and the rest.
         seed: of everything random.
         repository: URL of a PostgreSQL database, instead of the file in the directory.
-        progress: told a stage and the share of it that is done.
-        watch: told after every step where the run stands.
+        progress: called with a stage and the share of it that is done.
+        watch: called after every step where the run stands.
 
     Returns:
         The findings of the closing diagnosis, and the history; both are in the directory too.

@@ -1,1 +1,1 @@
-"""Planning: the sensors and load tests that best tell rival explanations apart."""
+"""Planning: the sensors and load tests that best separate rival explanations."""

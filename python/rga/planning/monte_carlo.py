@@ -47,7 +47,7 @@ class Judge:
         self, site: MeasurementModel, one: CandidateModel, present: FloatArray, factor: FloatArray
     ):
         self._site, self._one, self._present, self._factor = site, one, present > 0, factor
-        self._precision = one.doubt**-2.0
+        self._precision = one.spread**-2.0
         self._start = np.zeros(len(one.unknowns))
         self._at_start = self.predicted(self._start)
         self._slope_at_start = self._slope(self._start)

@@ -32,7 +32,7 @@ from rga.simulation import Simulator
 SENSORS, POSITIONS = 2, 3
 #: as-built scatter that is reckoned with: a deviation above what a diagnosis expects [-]
 LEVELS = np.array([level.median * np.exp(level.spread) for level in random_effects.LEVELS])
-#: a truck that strains the structure so much more than its loads is told
+#: a truck that strains the structure so much more than its loads is reported
 HEAVY = 1.1
 Progress = Callable[[str, float], None]
 
@@ -65,7 +65,7 @@ def plan(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Plan:
-    """Choose the sensors and load tests that best separate what findings cannot tell apart.
+    """Choose the sensors and load tests that best separate what findings cannot separate.
 
     Args:
         model: the model that was diagnosed.
@@ -76,7 +76,7 @@ def plan(
             structure as its own loads do.
         paths: of nodes that share the truck alike; none: those that the model's loads show.
         seed: of the drawn readings.
-        progress: told a stage and the share of it that is done.
+        progress: called with a stage and the share of it that is done.
 
     Returns:
         The plan, with the separation that it gives and a check of it by simulation.
@@ -282,15 +282,15 @@ def _checked(
 
 
 def _sentence(separations: Sequence[Separation], site: MeasurementModel, choice: Choice) -> str:
-    told = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
-    told += [f"test: {site.tests[one].words}" for one in choice.tests]
-    words = "; ".join(told)
-    told = [f"{words[0].upper()}{words[1:]}."] if told else []
+    sentences = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
+    sentences += [f"test: {site.tests[one].words}" for one in choice.tests]
+    words = "; ".join(sentences)
+    sentences = [f"{words[0].upper()}{words[1:]}."] if sentences else []
     done = [one for one in separations if one.separated]
     if done:
         worst = min(one.simulated.clearly for one in done)
         whom = "each explanation" if len(done) == len(separations) else "what it tells apart"
-        told.append(
+        sentences.append(
             f"With readings drawn, {whom} then wins by {RIVAL:g} log-odds in {100 * worst:.0f} % "
             "of the draws in which it is true, or more."
         )
@@ -298,11 +298,11 @@ def _sentence(separations: Sequence[Separation], site: MeasurementModel, choice:
         limit = f"everything that was thought of gives d_perp {one.d_perp_at_best:.2g}"
         both = f"{one.one} from {one.other}"
         if not one.separated and success(one.d_perp_at_best, RIVAL) < LIKELY:
-            told.append(f"Nothing affordable tells {both}: {limit}.")
+            sentences.append(f"Nothing affordable tells {both}: {limit}.")
         elif not one.separated:
             share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"
-            told.append(f"This budget does not tell {both} ({share}): {limit}.")
-    return " ".join(told)
+            sentences.append(f"This budget does not tell {both} ({share}): {limit}.")
+    return " ".join(sentences)
 
 
 def _truck(truck: Truck, lane: Lane) -> PlannedTruck:

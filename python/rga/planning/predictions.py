@@ -1,4 +1,4 @@
-"""What planned measurements tell: the readings in which explanations differ most."""
+"""What planned measurements will show: the readings in which explanations differ most."""
 
 from collections.abc import Sequence
 
@@ -12,20 +12,20 @@ from rga.experiments.separation import Pair
 from rga.planning.result import PlannedSensor, PlannedTest, Says, Telling
 from rga.planning.selection import Choice
 
-#: readings of a test that are told
-TOLD = 3
+#: readings of a test that are shown
+SHOWN = 3
 
 
 def planned_sensor(
     site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], choice: Choice, column: int
 ) -> PlannedSensor:
-    """A chosen sensor, with the change of its readings in operation that tells most."""
+    """A chosen sensor, with the change of its readings in operation that separates them most."""
     one = site.added[column - site.standing]
-    course = slice(0, site.operating)
-    apart = sum(np.abs(pair.difference[course, column]) for pair in pairs)
-    lead = max(pairs, key=lambda pair: float(np.ptp(pair.difference[course, column])))
-    first = int(np.argmin(lead.difference[course, column]))
-    last = int(np.argmax(lead.difference[course, column]))
+    operating = slice(0, site.operating)
+    apart = sum(np.abs(pair.difference[operating, column]) for pair in pairs)
+    lead = max(pairs, key=lambda pair: float(np.ptp(pair.difference[operating, column])))
+    first = int(np.argmin(lead.difference[operating, column]))
+    last = int(np.argmax(lead.difference[operating, column]))
     weights = np.zeros(len(errors.noise))
     tells = []
     if np.any(apart):
@@ -47,7 +47,7 @@ def planned_sensor(
 def planned_test(
     site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], choice: Choice, number: int
 ) -> PlannedTest:
-    """A chosen test, with the readings of it that tell most."""
+    """A chosen test, with the readings of it that separate them most."""
     test: LoadTest = site.tests[number]
     row = site.operating + number
     spread = np.sqrt(errors.noise[row] ** 2 + errors.gain[row] ** 2)
@@ -60,7 +60,7 @@ def planned_test(
         contexts=test.at,
         against=test.against,
         cost=test.cost,
-        tells=[_of_test(site, errors, pairs, number, k) for k in order[:TOLD]],
+        tells=[_of_test(site, errors, pairs, number, k) for k in order[:SHOWN]],
     )
 
 
@@ -91,17 +91,17 @@ def _telling(
         half = HALF_WIDTH * float(np.sqrt(shared + gain + noise + own))
         return Says(explanation=words, value=value, ci90=(value - half, value + half))
 
-    told: dict[str, Says] = {}
+    predictions: dict[str, Says] = {}
     for pair in pairs:
         count = len(pair.cause.unknowns)
         for one, predicted, unknown in (
             (pair.cause, pair.predicted[0], pair.unknown[:count]),
             (pair.rival, pair.predicted[1], pair.unknown[count:]),
         ):
-            told.setdefault(one.words, says(one.words, predicted, unknown))
+            predictions.setdefault(one.words, says(one.words, predicted, unknown))
     return Telling(
         sensor=site.sensors[column],
         unit=site.unit(column),
         change=change,
-        says=list(told.values()),
+        says=list(predictions.values()),
     )

@@ -49,7 +49,7 @@ class PlannedSensor(PlanPart):
         context: that an instrument measures.
         noise: standard deviation of a reading [unit].
         cost: in strain gauges put on.
-        tells: where it tells most.
+        tells: the readings that separate explanations most.
     """
 
     words: str
@@ -69,7 +69,7 @@ class PlannedTest(PlanPart):
         position: of the truck's first axle along its path [m]; None without a truck.
         contexts, against: that are brought about in the two states.
         cost: in strain gauges put on.
-        tells: the readings that tell most.
+        tells: the readings that separate explanations most.
     """
 
     words: str
@@ -109,7 +109,7 @@ class Separation(PlanPart):
         d_perp: difference that is left once either has imitated the other, in units of all errors.
         expected: chance that the true one wins by 4.6 log-odds.
         d_perp_at_best: with every sensor and every test that were thought of.
-        separated: the plan is to tell them apart: it wins clearly in nine of ten draws.
+        separated: the plan is to separate them: it wins clearly in nine of ten draws.
         simulated: the check of that.
     """
 
@@ -128,7 +128,7 @@ class Advised(PlanPart):
     Attributes:
         words: what it is.
         planned: it is part of the plan.
-        d_perp: with it alone, the smallest of the explanations that can be told apart.
+        d_perp: with it alone, the smallest of the explanations that can be separated.
     """
 
     words: str
@@ -137,7 +137,7 @@ class Advised(PlanPart):
 
 
 class Plan(PlanPart):
-    """What to measure next, so that rival explanations are told apart.
+    """What to measure next, so that rival explanations are separated.
 
     Attributes:
         sentence: in plain words.

@@ -12,7 +12,7 @@ from rga.findings.phrases import effect_words
 from rga.findings.schema import Cause, Findings
 from rga.model import Effect, Model, read_effect
 
-#: rivals of a cause that are told apart, and alternatives against which one without is confirmed
+#: rivals of a cause that are separated, and alternatives against which one without is confirmed
 NEAREST = 4
 FAULT = "sensor_fault"
 
@@ -55,7 +55,7 @@ def working_sensors(model: Model, findings: Findings) -> list[str]:
 
 
 def _advised_against(cause: Cause, rival: Mapping[str, Any]) -> bool:
-    """Whether it is this rival from which the findings advise how to tell the cause."""
+    """Whether it is this rival from which the findings advise how to recognise the cause."""
     return cause.separated_by.startswith(f"against {effect_words(rival)}:")
 
 

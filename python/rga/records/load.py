@@ -199,15 +199,15 @@ def _doubts(name: str, values: FloatArray, model: Model) -> list[str]:
     margin = CHANCE * (model.context[name].noise or 0.0)
     outside = int(((values < low - margin) | (values > high + margin)).sum())
     missing = int(np.isnan(values).sum())
-    doubts = []
+    warnings = []
     if outside:
-        doubts.append(
+        warnings.append(
             f"{name} lies outside its range {low:g}..{high:g} {unit} in {outside} of {len(values)} "
             f"rows (it runs from {np.nanmin(values):g} to {np.nanmax(values):g})"
         )
     if missing:
-        doubts.append(f"{name} is missing in {missing} of {len(values)} rows")
-    return doubts
+        warnings.append(f"{name} is missing in {missing} of {len(values)} rows")
+    return warnings
 
 
 def _quoted(names: list[str]) -> str:

@@ -89,7 +89,7 @@ class RealityGapAnalysis:
         standing.interval = self._policy.interval
         standing.share = calibration.scatter_share(0, standing.row)
         words = f"calibrated on {standing.row} rows, scatter of the model {standing.share:.1%}"
-        words = "; ".join([words, *self.synchrony.doubts])
+        words = "; ".join([words, *self.synchrony.warnings])
         self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
         standing.stage = "watch"
 

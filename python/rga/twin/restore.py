@@ -28,7 +28,7 @@ def replay(view: RunView, channels: tuple[str, ...]) -> TwinState:
         channels: sensors of the station.
 
     Raises:
-        InputError: what the repository keeps is not what the log tells of.
+        InputError: what the repository keeps is not what the log records.
     """
     state = TwinState()
     last: R5 | None = None

@@ -61,7 +61,7 @@ class RowBuffer:
         """Squares of the residuals, float[rows, channels]."""
         return np.asarray(self.residuals**2)
 
-    def told(self, middle: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    def last_measured(self, middle: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Measured contexts with the last known value where one is missing, and complete rows.
 
         Args:

@@ -46,7 +46,7 @@ def taken_up(
         place: of the repository: a file, a directory that holds `twin.sqlite`, or a URL.
         settings: level of integration and the rest.
         seed: of everything random.
-        progress: told a stage and the share of it that is done.
+        progress: called with a stage and the share of it that is done.
 
     Raises:
         InputError: the repository cannot be used.
@@ -66,7 +66,7 @@ class Running:
         kept: the run in the repository.
         settings: level of integration and the rest.
         seed: of everything random.
-        progress: told a stage and the share of it that is done.
+        progress: called with a stage and the share of it that is done.
 
     Attributes:
         resumed_at: row at which an interrupted run was taken up; None for a new one.

@@ -10,7 +10,7 @@ from rga.detection import SyncMonitor
 
 
 def doubted(rows: Rows) -> bool:
-    return bool(SyncMonitor(rows, arl0=1000).doubts)
+    return bool(SyncMonitor(rows, arl0=1000).warnings)
 
 
 @pytest.mark.parametrize("world", WORLDS)

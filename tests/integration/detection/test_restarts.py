@@ -49,5 +49,5 @@ def test_cuts_and_restarts_leave_the_same_bits(
             assert np.array_equal(found, alarms[start - 300 : end - 300])
     assert in_parts.to_bytes() == stored.to_bytes() == one_by_one.to_bytes()
     assert in_parts.alarm == stored.alarm == one_by_one.alarm
-    assert stored.doubts == one_by_one.doubts
+    assert stored.warnings == one_by_one.warnings
     assert (stored.rows, stored.arl0) == (200, 200.0)

@@ -159,7 +159,7 @@ def test_load_tests_make_it_surer_and_are_the_only_labels(model: Model, other: M
     tests = Rows(labelled, measured(other, labelled, 11))
     without = infer_jointly(unknowns, readings, noise, source)
     beside = infer_jointly(unknowns, readings, noise, source, load_tests=tests)
-    assert np.trace(beside.doubt) < np.trace(without.doubt)
+    assert np.trace(beside.uncertainty) < np.trace(without.uncertainty)
     again = infer_jointly(unknowns, readings, noise, source)
     np.testing.assert_array_equal(without.values, again.values)
 

@@ -100,7 +100,7 @@ def test_channels_without_readings_are_never_told() -> None:
     detector = Monitored(("a", "b"), Settings())
     detector.begin_again(0, rows[:40])
     assert watched(detector, rows, 40, 10) is None
-    assert detector.doubts == ()
+    assert detector.warnings == ()
 
 
 def test_settings_choose_the_detector() -> None:

@@ -259,16 +259,16 @@ def test_a_logger_that_is_silent_raises_no_alarm(sensors: int) -> None:
 
 def test_sensors_that_repeat_others_are_doubted() -> None:
     rows = np.random.default_rng(1).normal(size=(400, 4))
-    assert SyncMonitor(rows, arl0=500).doubts == ()
+    assert SyncMonitor(rows, arl0=500).warnings == ()
     copied = np.c_[rows, rows[:, 1]]
-    (doubt,) = SyncMonitor(copied, arl0=500).doubts
-    assert doubt.startswith("sensors 1, 4 read nearly what others of them read")
+    (warning,) = SyncMonitor(copied, arl0=500).warnings
+    assert warning.startswith("sensors 1, 4 read nearly what others of them read")
 
 
 def test_coarse_readings_are_doubted() -> None:
     rows = np.random.default_rng(2).normal(size=(400, 2))
     coarse = np.c_[rows[:, 0], np.round(rows[:, 1] / 2.0)]
-    assert "sensor 1 reads mostly one value" in " ".join(SyncMonitor(coarse, arl0=500).doubts)
+    assert "sensor 1 reads mostly one value" in " ".join(SyncMonitor(coarse, arl0=500).warnings)
 
 
 def test_masked_readings_are_missing() -> None:

@@ -234,10 +234,10 @@ def test_noise_is_estimated_where_it_is_not_stated() -> None:
     np.testing.assert_allclose(noise_of([0.5, None], readings), [0.5, 0.2], rtol=0.05)
 
 
-def test_missing_contexts_are_carried_on_and_told() -> None:
+def test_missing_contexts_are_carried_on_and_reported() -> None:
     ledger = RowBuffer.empty(1, 2, 2)
     ledger.measured = np.array([[np.nan, 1.0], [5.0, np.nan], [np.nan, 3.0]])
-    told, complete = ledger.told(np.array([9.0, 9.0]))
+    told, complete = ledger.last_measured(np.array([9.0, 9.0]))
     np.testing.assert_array_equal(told, [[9, 1], [5, 1], [5, 3]])
     np.testing.assert_array_equal(complete, [False, False, False])
 

@@ -74,12 +74,12 @@ class Reference:
         deviations = baseline - level
         weights = predictors(deviations)
         innovations = after_prediction(deviations, weights)
-        units, offset, slope, knots, bends, largest = normal_scores(innovations)
+        units, offset, slope, knots, bends, largest = fit_normal_scores(innovations)
         none = np.eye(len(level))
         plain = cls(
             level, weights, units, offset, slope, knots, bends, none, np.ones(len(level)), largest
         )
-        mixing = independence(plain.bent(innovations))
+        mixing = independence(plain.normal_scores(innovations))
         rise = np.nanstd(deviations, axis=0) * (1.0 - weights.sum(axis=0)) * plain.steepness
         signature = mixing @ rise
         length = np.linalg.norm(signature)
@@ -89,7 +89,7 @@ class Reference:
 
     @property
     def steepness(self) -> FloatArray:
-        """Scores per reading in the middle of the distribution, float[sensors]."""
+        """Scores per reading at the median, float[sensors]."""
         inner = self.bends[: (len(self.bends) + 1) // 2].sum(axis=0)
         return np.asarray((self.slope + inner) * self.units)
 
@@ -99,9 +99,9 @@ class Reference:
         remembered = 1.0 - self.weights.sum(axis=0)
         return np.asarray(1.0 / (self.steepness * remembered * np.diag(self.mixing)))
 
-    def bent(self, innovations: FloatArray) -> FloatArray:
+    def normal_scores(self, innovations: FloatArray) -> FloatArray:
         """Scores before they are mixed, float[rows, sensors]."""
-        return bent(
+        return normal_scores(
             innovations * self.units,
             self.offset,
             self.slope,
@@ -132,7 +132,7 @@ def after_prediction(deviations: FloatArray, weights: FloatArray) -> FloatArray:
     return found
 
 
-def normal_scores(
+def fit_normal_scores(
     innovations: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, float]:
     """A function of the readings of each sensor, linear between knots, whose values are normal.
@@ -145,7 +145,7 @@ def normal_scores(
 
     Returns:
         Units per reading, offset, slope, knots [units], bends, and the largest score that a
-        baseline of this length can tell.
+        baseline of this length can show.
     """
     ordered = np.sort(innovations, axis=0)  # NaN last
     count = np.isfinite(innovations).sum(axis=0)
@@ -166,12 +166,12 @@ def normal_scores(
     # At the first knot the score is the first of the scores; max(units, knot) is the knot below it.
     offset = scores[0] - slopes[0] * knots[0] - (bends * knots).sum(axis=0)
     largest = min(LARGEST, float(norm.ppf(1.0 - 0.5 / np.median(count))))
-    found = bent(innovations * units, offset, slopes[0], knots, bends, largest)
+    found = normal_scores(innovations * units, offset, slopes[0], knots, bends, largest)
     mean, rms = np.nanmean(found, axis=0), np.nanstd(found, axis=0)
     return units, (offset - mean) / rms, slopes[0] / rms, knots, bends / rms, largest
 
 
-def bent(
+def normal_scores(
     units: FloatArray,
     offset: FloatArray,
     slope: FloatArray,

@@ -23,7 +23,7 @@ def independence(scores: FloatArray) -> FloatArray:
     correlation, chance = correlations(scores)
     if chance > CHANCE:
         return np.eye(len(correlation))
-    # Half the rows tell by how much the other half's matrix leaves their variance too large;
+    # Half the rows show by how much the other half's matrix leaves their variance too large;
     # from all rows the excess is half of that.
     parts = [correlations(scores[first::2]) for first in (0, 1)]
     others = [inverse_root(drawn_in(*part)) for part in parts[::-1]]

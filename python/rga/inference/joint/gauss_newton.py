@@ -28,8 +28,8 @@ SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 1e-3
 HELD_BY, GUESS = 30.0, 5.0
 
 
-class Beforehand(NamedTuple):
-    """What is known of the parameters beforehand, in units of their priors.
+class JointPrior(NamedTuple):
+    """What is known of the parameters before the rows, in units of their standard deviations.
 
     They are normal around something that has changed, each by Student's distribution.
 
@@ -46,21 +46,21 @@ class Beforehand(NamedTuple):
     first: FloatArray
 
     @classmethod
-    def fresh(cls, unknowns: Unknowns, sensors: int) -> "Beforehand":
+    def fresh(cls, unknowns: Unknowns, sensors: int) -> "JointPrior":
         """Unknowns as their priors say; sensors are sound, but for some."""
         own = np.repeat([1.0, 0.0], [len(unknowns.centre), 2 * sensors])
         mean = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
         return cls(mean, np.diag(own), 1.0 - own, 1.0 - own)
 
     @classmethod
-    def later(cls, mean: FloatArray, covariance: FloatArray, unknowns: int) -> "Beforehand":
+    def later(cls, mean: FloatArray, covariance: FloatArray, unknowns: int) -> "JointPrior":
         """What was found earlier, with its covariance."""
         first = np.repeat(FIRST, [unknowns, len(mean) - unknowns])
         return cls(mean, covariance, np.full(len(mean), CHANGE), first)
 
 
 class LinearisedRows(NamedTuple):
-    """Rows as straight in contexts and parameters, each reading in units of its deviation.
+    """Rows as linear in contexts and parameters, each reading in units of its deviation.
 
     Attributes:
         off: what readings differ by from the twin, float[rows, sensors].
@@ -83,7 +83,7 @@ class Search:
         readings: measured rows, float[n, sensors], NaN where missing.
         noise: standard deviation of each sensor's noise, float[sensors].
         load_tests: measured rows whose contexts are known.
-        beforehand: what is known of the parameters.
+        prior: of the parameters.
 
     Attributes:
         contexts: of measured rows, then of load tests, float[rows, contexts].
@@ -100,7 +100,7 @@ class Search:
         readings: FloatArray,
         noise: FloatArray,
         load_tests: Rows | None,
-        beforehand: Beforehand,
+        prior: JointPrior,
     ) -> None:
         self.unknowns, self.noise, self.many = unknowns, noise, len(readings)
         ranges = np.array([one.range for one in unknowns.model.context.values()])
@@ -113,8 +113,8 @@ class Search:
         self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
         self.count = len(unknowns.centre)
         self.unit = np.concatenate([unknowns.spread, np.full(len(noise), GAIN), OFFSET * noise])
-        self.beforehand, self.centre, self.tails = beforehand, beforehand.mean, TAILS
-        self._suppose(beforehand.first**2)
+        self.prior, self.centre, self.tails = prior, prior.mean, TAILS
+        self._suppose(prior.first**2)
         self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
         self.population = np.zeros(len(ranges)), np.ones(len(ranges))
         self.seen_population = self.population
@@ -165,13 +165,13 @@ class Search:
         that a structure that is too soft would be found (Neyman and Scott, Econometrica 16, 1948).
         The likelihood of the unknowns alone has the determinant beside it (Laplace).
         """
-        here, bent = self.unknowns.sample
+        here, slopes = self.unknowns.sample
         root = self.scale / np.sqrt(self.variance)[:, None]
-        here, bent = here * root, bent * root
+        here, slopes = here * root, slopes * root
         turned = here.transpose(0, 2, 1)
         spread = np.linalg.inv(turned @ here + np.diag(1.0 / self.population[1] ** 2))
         back = here @ spread
-        of_unknowns = np.einsum("nsc,knsc->k", back, bent, optimize=True)
+        of_unknowns = np.einsum("nsc,knsc->k", back, slopes, optimize=True)
         of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
         slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])
         return np.asarray(slope * self.many / len(here))
@@ -272,7 +272,7 @@ class Search:
         return float((off**2 / self.variance).sum() + prior)
 
     def _standard(self, value: FloatArray) -> FloatArray:
-        """What parameters differ by from what is known of them beforehand, in their units."""
+        """What parameters differ by from their prior means, in their units."""
         return np.asarray((value - self.centre) / self.unit)
 
     def _weigh(self, off: FloatArray, freedom: float) -> None:
@@ -291,7 +291,7 @@ class Search:
         """
         if np.isinf(self.tails):
             return
-        own, scale = np.diag(self.beforehand.covariance), self.beforehand.change
+        own, scale = np.diag(self.prior.covariance), self.prior.change
         share = self.changed / np.where(self.changed > 0, self.changed + own, 1.0)
         moved = self._standard(self.value) ** 2 + np.diag(self.covariance)
         square = share**2 * moved + share * own
@@ -300,7 +300,7 @@ class Search:
     def _suppose(self, changed: FloatArray) -> None:
         """That parameters have changed by so much: variances in units of their priors."""
         self.changed = changed
-        self.precision = np.linalg.inv(self.beforehand.covariance + np.diag(changed))
+        self.precision = np.linalg.inv(self.prior.covariance + np.diag(changed))
 
     def _bounds(self) -> tuple[FloatArray, FloatArray]:
         wide = np.full(2 * len(self.noise), np.inf)

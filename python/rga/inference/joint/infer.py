@@ -1,6 +1,6 @@
 """Contexts of all rows and unknowns of the structure, inferred together.
 
-Unknowns are the same in all rows, contexts are not: rows without any label tell both, as far as
+Unknowns are the same in all rows, contexts are not: rows without any label show both, as far as
 sensors outnumber contexts. Rows whose contexts are known, load tests, join in with them.
 """
 
@@ -18,7 +18,7 @@ from rga.inference.joint.checked_input import (
     joint_rows,
     table_of,
 )
-from rga.inference.joint.gauss_newton import Beforehand, Search
+from rga.inference.joint.gauss_newton import JointPrior, Search
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
@@ -29,7 +29,7 @@ from rga.simulation import Simulator
 #: rounds in which rows are given another chance to leave a wrong mode, steps of each; steps from an
 #: earlier result
 ROUNDS, STEPS, AGAIN = 3, 8, 3
-#: rounds and steps from what is known beforehand
+#: rounds and steps from a prior
 LATER = 2, 6
 
 
@@ -45,7 +45,7 @@ class Joint:
         sure: covariance of unknowns, gains and offsets in units of their priors,
             float[parameters, parameters].
         variance: of what readings still differ by from the twin, float[sensors].
-        doubt: covariance of readings because unknowns are not sure, float[sensors, sensors].
+        uncertainty: covariance of readings because unknowns are not sure, float[sensors, sensors].
         rows: measured rows with the contexts found; load tests are not among them.
         source: contexts to start from, float[m, contexts].
     """
@@ -56,7 +56,7 @@ class Joint:
     offsets: FloatArray
     sure: FloatArray
     variance: FloatArray
-    doubt: FloatArray
+    uncertainty: FloatArray
     rows: Rows
     source: FloatArray
 
@@ -91,7 +91,7 @@ class Joint:
     @property
     def covariance(self) -> FloatArray:
         """Of what readings differ by from the twin, float[sensors, sensors]."""
-        return np.asarray(np.diag(self.variance) + self.doubt)
+        return np.asarray(np.diag(self.variance) + self.uncertainty)
 
 
 def infer_jointly(
@@ -119,9 +119,9 @@ def infer_jointly(
         load_tests: measured rows whose contexts are known.
         start: an earlier result, about which unknowns are looked for again. Its rows are among the
             measured ones: a sensor that has changed since weighs less, and is not corrected.
-        prior: an earlier result that is known beforehand: the rows that it came from need not be
+        prior: an earlier result, taken as prior: the rows that it came from need not be
             among the measured ones. Since then unknowns may have moved, and sensors may lie.
-        progress: told the share that is done.
+        progress: called with the share that is done.
 
     Raises:
         InputError: a table of another shape or no numbers, no row, a noise that is not positive,
@@ -133,10 +133,10 @@ def infer_jointly(
     _check_earlier(unknowns, start, prior)
     for table in (readings, *([] if load_tests is None else [load_tests.readings])):
         check_plausible(unknowns, table, noise)
-    beforehand = Beforehand.fresh(unknowns, len(noise))
+    known = JointPrior.fresh(unknowns, len(noise))
     if prior is not None:
-        beforehand = Beforehand.later(prior.parameters, prior.sure, len(prior.values))
-    search = Search(unknowns, readings, noise, load_tests, beforehand)
+        known = JointPrior.later(prior.parameters, prior.sure, len(prior.values))
+    search = Search(unknowns, readings, noise, load_tests, known)
     rounds, steps = (ROUNDS, STEPS) if prior is None else LATER
     if start is not None:
         search.begin(start.parameters, start.variance)
@@ -153,7 +153,7 @@ def infer_jointly(
 
 def _check_earlier(unknowns: Unknowns, start: Joint | None, prior: Joint | None) -> None:
     if start is not None and prior is not None:
-        problem = "an earlier result cannot be both begun from and known beforehand"
+        problem = "an earlier result cannot be both the start and the prior"
         raise InputError(problem, PLACE, "give start or prior")
     for earlier in (start, prior):
         if earlier is None:
@@ -178,7 +178,7 @@ def _told(search: Search, source: FloatArray) -> Joint:
         offsets=offsets,
         sure=sure,
         variance=search.variance,
-        doubt=moved @ moved.T / max(len(search.slopes), 1),
+        uncertainty=moved @ moved.T / max(len(search.slopes), 1),
         rows=Rows(search.contexts[: search.many], search.readings[: search.many]),
         source=source,
     )

@@ -9,10 +9,10 @@ BENDING, SLIGHT = "bending beside pins", 1e-6
 def with_bending(model: Model) -> Model:
     """The model with a member that bends, and does nothing else, beside each pinned member.
 
-    A share of its stiffness stands for the rigidity of the joints: stiffnesses are straight in it,
+    A share of its stiffness stands for the rigidity of the joints: stiffnesses are linear in it,
     which they are not in springs at the ends of a member.
     """
-    bent = {}
+    bending = {}
     sections = dict(model.sections)
     for name, member in model.members.items():
         section = model.sections[member.section]
@@ -24,11 +24,11 @@ def with_bending(model: Model) -> Model:
                 "section": f"{member.section}, {BENDING}",
                 "groups": [BENDING, *(f"bending of {group}" for group in member.groups[:1])],
             }
-            bent[f"{name}, {BENDING}"] = member.model_copy(update=changed)
+            bending[f"{name}, {BENDING}"] = member.model_copy(update=changed)
     return Model.model_validate(
         {
             **{key: getattr(model, key) for key in Model.model_fields},
             "sections": sections,
-            "members": {**model.members, **bent},
+            "members": {**model.members, **bending},
         }
     )

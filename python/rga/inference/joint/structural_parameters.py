@@ -45,7 +45,7 @@ class StructuralParameter:
         centre, spread: of its normal prior.
         bounds: beyond which it makes no sense.
         follows: context that it is a rate of; None where it is constant.
-        straight: whether readings are straight in it.
+        linear: whether readings are linear in it.
     """
 
     name: str
@@ -56,7 +56,7 @@ class StructuralParameter:
     spread: float
     bounds: tuple[float, float]
     follows: str | None = None
-    straight: bool = False
+    linear: bool = False
 
     def at(self, value: float) -> dict[str, Any]:
         """The effect with the unknown at a value."""
@@ -144,16 +144,16 @@ class Unknowns:
             float[n, sensors], float[n, sensors, contexts] and float[n, sensors, unknowns].
         """
         count, rates = contexts.shape[1], self._rates
-        straight = [number for number, part in enumerate(self.parts) if part.straight]
-        driven = [number for number, part in enumerate(self.parts) if not part.straight]
+        linear = [number for number, part in enumerate(self.parts) if part.linear]
+        driven = [number for number, part in enumerate(self.parts) if not part.linear]
         readings = self.predict(contexts, values)
         by_unknowns = np.empty((*readings.shape, len(values)))
-        # Where readings are straight, a difference is the derivative. That it changes with
+        # Where readings are linear, a difference is the derivative. That it changes with
         # contexts is left out: it hardly does.
-        moved = np.vstack([values, values + np.diag(self.spread)[straight]])
+        moved = np.vstack([values, values + np.diag(self.spread)[linear]])
         one = np.tile(contexts.mean(axis=0), (len(moved), 1))
         there = self.predict(one, moved)
-        by_unknowns[:, :, straight] = (there[1:] - there[0]).T / self.spread[straight]
+        by_unknowns[:, :, linear] = (there[1:] - there[0]).T / self.spread[linear]
         slopes = self._of_driven.jacobian(self._table(contexts, values, driven))
         by_contexts, by_unknowns[:, :, driven] = slopes[:, :, :count].copy(), slopes[:, :, count:]
         for number, followed in rates.items():
@@ -199,7 +199,7 @@ class Unknowns:
 
         here = slopes(self.centre)
         moved = [
-            np.zeros_like(here) if part.straight else slopes(self.centre + step) - here
+            np.zeros_like(here) if part.linear else slopes(self.centre + step) - here
             for part, step in zip(self.parts, np.diag(BENT * self.spread), strict=True)
         ]
         return here, np.stack(moved) / BENT
@@ -210,7 +210,7 @@ class Unknowns:
 
     @cached_property
     def _of_driven(self) -> Simulator:
-        return self._driven([part for part in self.parts if not part.straight])
+        return self._driven([part for part in self.parts if not part.linear])
 
     def _driven(self, parts: Sequence[StructuralParameter]) -> Simulator:
         """The simulator in which each of some unknowns is a context of its own."""
@@ -279,7 +279,7 @@ def _settlements(model: Model) -> Iterator[StructuralParameter]:
     for name, place in _upright(model, "support_settlement"):
         yield StructuralParameter(
             f"settlement of {name}", place, "displacement", {}, 0.0, SETTLEMENT, (-SUNK, SUNK),
-            straight=True,
+            linear=True,
         )  # fmt: skip
 
 
@@ -309,7 +309,7 @@ def _sides(model: Model) -> Iterator[StructuralParameter]:
     }
     for context in warming:
         yield StructuralParameter(
-            f"warmth of one side with {context}",
+            f"temperature of one side with {context}",
             {"kind": "thermal_gradient", "axis": "lateral"},
             "difference",
             {},

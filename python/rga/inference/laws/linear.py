@@ -43,8 +43,8 @@ def fit_line(
     Returns:
         The line and its standard deviation, float[n] each.
     """
-    tells = np.flatnonzero((information > 0).any(1))
-    clock = time - time[tells].mean() if len(tells) else time - time.mean()
+    informative = np.flatnonzero((information > 0).any(1))
+    clock = time - time[informative].mean() if len(informative) else time - time.mean()
     width = span[1] - span[0]
     centre, variance = [sum(span) / 2], [width**2 / 12]
     if rate is not None:
@@ -52,10 +52,10 @@ def fit_line(
         variance.append((rate[1] - rate[0]) ** 2 / 12)
     basis = np.column_stack([np.ones(len(time)), clock])[:, : len(centre)]
     rows = _Rows(
-        basis[tells], value[tells], information[tells], share[tells], width,
+        basis[informative], value[informative], information[informative], share[informative], width,
         np.array(centre), 1.0 / np.array(variance), rate, reversed_,
     )  # fmt: skip
-    if len(tells) == 0:
+    if len(informative) == 0:
         covariance = np.diag(variance)
         line = rows.centre
     else:

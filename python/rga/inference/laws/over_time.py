@@ -76,9 +76,9 @@ def without_prior(
         whole = 1.0 / np.square(spreads)
         information = whole - prior
         value = (low + high) / 2 + (estimates - (low + high) / 2) * whole / information
-    tells = np.isfinite(value) & np.isfinite(information)
-    tells &= information > LEAST_INFORMATION * prior
-    return np.where(tells, value, (low + high) / 2), np.where(tells, information, 0.0)
+    informative = np.isfinite(value) & np.isfinite(information)
+    informative &= information > LEAST_INFORMATION * prior
+    return np.where(informative, value, (low + high) / 2), np.where(informative, information, 0.0)
 
 
 def _level(
@@ -115,13 +115,13 @@ def _filter(
     mean, variance, ahead = (np.empty(len(value)) for _ in range(3))
     level, own = start
     cost = 0.0
-    for row, (seen, tells) in enumerate(zip(value, information, strict=True)):
+    for row, (seen, informative) in enumerate(zip(value, information, strict=True)):
         own += drift[row]
         ahead[row] = own
-        if tells > 0:
-            off, total = seen - level, own + 1.0 / tells
+        if informative > 0:
+            off, total = seen - level, own + 1.0 / informative
             cost += 0.5 * (off * off / total + np.log(total))
             level += own / total * off
-            own /= 1.0 + own * tells
+            own /= 1.0 + own * informative
         mean[row], variance[row] = level, own
     return mean, variance, ahead, float(cost)

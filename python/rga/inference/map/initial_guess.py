@@ -30,7 +30,7 @@ class QuadraticGuess:
         shown = source.readings / noise
         self._mean = shown.mean(axis=0)
         _, size, ways = thin_svd(shown - self._mean)
-        # What varies by less than the noise tells nothing.
+        # What varies by less than the noise shows nothing.
         size = size / np.sqrt(len(shown))
         self._size, self._ways = size[size > 1.0], ways[size > 1.0].T
         noisy = source.readings + noise * np.random.default_rng(seed).standard_normal(shown.shape)
@@ -45,7 +45,7 @@ class QuadraticGuess:
         return np.asarray(self._middle + self._scale * np.clip(guessed, -EDGE, EDGE))
 
     def _features(self, readings: FloatArray) -> FloatArray:
-        """Scores of principal components, as the sensors seen tell them, and products of scores."""
+        """Scores of principal components, as the sensors seen give them, and products of scores."""
         seen = np.isfinite(readings)
         off = np.where(seen, readings / self._noise - self._mean, 0.0)
         scores = np.empty((len(readings), len(self._size)))

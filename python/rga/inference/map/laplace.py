@@ -100,7 +100,7 @@ def covering_factor(errors: FloatArray, spreads: FloatArray, level: float = LEVE
 def birge_ratio(gaps: FloatArray, noise: FloatArray) -> FloatArray:
     """Factor on the spreads of a row whose gap its noise does not explain (Birge, 1932).
 
-    A model that is wrong pulls its contexts along; how far, the gap that stays tells. One broken
+    A model that is wrong pulls its contexts along; how far, the gap that stays shows. One broken
     channel is not held against a row, as the networks learned to pass it over.
 
     Args:

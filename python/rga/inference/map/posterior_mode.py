@@ -54,7 +54,7 @@ def posterior_mode(
         covariance: of what readings may differ by from the simulation, float[sensors, sensors].
         ranges: smallest and largest of each context, float[contexts, 2].
         start: contexts to start from, float[n, contexts].
-        steps: at most; 0 tells the spread at the start.
+        steps: at most; 0 gives the spread at the start.
 
     >>> slopes = np.array([[1.0, 2.0], [0.5, -1.0], [0.0, 1.0]])
     >>> found = posterior_mode(

@@ -18,8 +18,8 @@ def perceptron(inputs: int, width: int, outputs: int) -> nn.Sequential:
 class Encoder(nn.Module):
     """theta_f: from one row of channels (sensors, then measured contexts) to features.
 
-    Channels are standardised, and turned into directions in the order of what they tell beyond
-    their noise. A missing one enters as zero, and a mask tells so; one far beyond
+    Channels are standardised, and turned into directions in the order of what they show beyond
+    their noise. A missing one enters as zero, and a mask says so; one far beyond
     anything simulated fades into a missing one, smoothly. Beside the perceptron a linear map
     carries what needs no curvature.
 
@@ -41,7 +41,7 @@ class Encoder(nn.Module):
         self.register_buffer("limit", torch.full((channels,), 10.0))
         self.register_buffer("rotation", torch.eye(channels))
         self.curved = perceptron(2 * channels, width, features)
-        self.straight = nn.Linear(2 * channels, features)
+        self.linear = nn.Linear(2 * channels, features)
 
     def standardise(self, channels: Tensor) -> Tensor:
         """Standardised channels and how missing each is (0..1), float[n, 2 channels]."""
@@ -54,7 +54,7 @@ class Encoder(nn.Module):
     def forward(self, channels: Tensor) -> Tensor:
         """Features, float[n, features]."""
         inputs = self.standardise(channels)
-        features: Tensor = self.curved(inputs) + self.straight(inputs)
+        features: Tensor = self.curved(inputs) + self.linear(inputs)
         return features
 
 
@@ -76,7 +76,7 @@ class ContextPredictor(nn.Module):
         super().__init__()
         self.contexts, self.modes, self.ways = contexts, modes * ways, ways
         self.curved = perceptron(features, width, self.modes * (2 * contexts + 1))
-        self.straight = nn.Linear(features, contexts)
+        self.linear = nn.Linear(features, contexts)
 
     def forward(self, features: Tensor) -> "Mixture":
         """Candidates of every row."""
@@ -84,7 +84,7 @@ class ContextPredictor(nn.Module):
         correction, spread = out[..., :-1].chunk(2, dim=2)
         # A spread of the whole range says that nothing is known; more there is none to say.
         log_spread = -nn.functional.softplus(-spread).clamp(max=9.0)
-        value = self.straight(features)[:, None] + correction
+        value = self.linear(features)[:, None] + correction
         return Mixture(value, log_spread, out[..., -1].log_softmax(1))
 
 
@@ -138,14 +138,14 @@ class ReducedSimulator(nn.Module):
         self.register_buffer("centre", torch.zeros(sensors))
         self.register_buffer("scale", torch.ones(sensors))
         self.curved = perceptron(contexts + ways - 1, width, sensors)
-        self.straight = nn.Linear(contexts + ways - 1, sensors)
+        self.linear = nn.Linear(contexts + ways - 1, sensors)
 
     def standard(self, contexts: Tensor, backwards: Tensor) -> Tensor:
         """Standardised readings, float[n, sensors], of rows that go backwards (1) or not (0)."""
         inputs = (contexts - self.middle) / self.unit
         if self.ways == 2:
             inputs = torch.cat([inputs, 2.0 * backwards[:, None] - 1.0], dim=1)
-        readings: Tensor = self.curved(inputs) + self.straight(inputs)
+        readings: Tensor = self.curved(inputs) + self.linear(inputs)
         return readings
 
     def forward(self, contexts: Tensor) -> Tensor:
@@ -187,7 +187,7 @@ def start_from_line(layer: nn.Linear, inputs: Tensor, outputs: Tensor) -> None:
 
 
 def telling_directions(channels: Tensor, noise: Tensor) -> Tensor:
-    """The directions of channels that vary more than their noise, each scaled by how much it tells.
+    """The directions of channels that vary more than their noise, each scaled by how much it shows.
 
     Directions of about unit variance let a small network learn what hangs on small differences of
     large readings; one that holds noise alone is scaled to nothing.

@@ -57,14 +57,14 @@ def begin(
 
     # Only what is curved is left to learn when the linear map stands at the beginning.
     wanted = network.standard(torch.from_numpy(latent[:ROWS]))
-    start_from_line(encoder.straight, encoder.standardise(corrupt(channels[:ROWS])), wanted)
+    start_from_line(encoder.linear, encoder.standardise(corrupt(channels[:ROWS])), wanted)
     contexts = wanted.shape[1]
     with torch.no_grad():
         _last(encoder.curved).weight[:contexts] *= HUSHED**2
         _last(predictor.curved).weight *= HUSHED
-        predictor.straight.weight.zero_()
-        predictor.straight.weight[:, :contexts] = torch.eye(contexts)
-        predictor.straight.bias.zero_()
+        predictor.linear.weight.zero_()
+        predictor.linear.weight[:, :contexts] = torch.eye(contexts)
+        predictor.linear.bias.zero_()
     return network
 
 

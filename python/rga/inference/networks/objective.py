@@ -74,7 +74,7 @@ class Objective:
         """Infer the target as far as that is learned now.
 
         Each real row finds a simulated one in a like context: contexts over their whole ranges
-        against those that happened to occur would be told apart by the contexts themselves, and
+        against those that happened to occur would be distinguished by the contexts themselves, and
         the encoder would be made to forget them.
         """
         if len(self._target) == 0:

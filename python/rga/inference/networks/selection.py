@@ -1,6 +1,6 @@
-"""Which settings to train with, told without contexts of real rows.
+"""Which settings to train with, found without contexts of real rows.
 
-Sensors tell how well the simulation at the inferred contexts meets them, and the source tells
+Sensors show how well the simulation at the inferred contexts meets them, and the source shows
 whether contexts are still inferred well where they are known. The first alone would choose a
 network that hides what the model lacks in the contexts; the second alone one that learns nothing
 from real rows.

@@ -27,7 +27,7 @@ def pretrain(
         variables: sensors and contexts.
         settings: `reduced_steps`, `reduced_width`, `batch` and `learning_rate` are used.
         seed: of weights and batches.
-        progress: told the share that is done.
+        progress: called with the share that is done.
 
     Returns:
         float[n, contexts] (in the order of the model) -> float[ways, n, sensors], in `eval` mode;
@@ -58,7 +58,7 @@ def pretrain(
         inputs = (contexts - reduced.middle) / reduced.unit
         if ways == 2:
             inputs = torch.cat([inputs, 2.0 * backwards[:, None] - 1.0], dim=1)
-        start_from_line(reduced.straight, inputs, wanted)
+        start_from_line(reduced.linear, inputs, wanted)
         optimiser = torch.optim.Adam(reduced.parameters(), lr=settings.learning_rate, fused=True)
         for step in range(settings.reduced_steps):
             done = step / settings.reduced_steps

@@ -62,9 +62,9 @@ def train(
             of rows that stand alone, which is followed along its tangents; left out, it is
             pre-trained on the source where the settings say "reduced".
         start: an earlier network to fine-tune; its input scaling is kept.
-        held_out: what tells of a network how wrong it is, on rows that it does not learn from. The
+        held_out: measures how wrong a network is, on rows that it does not learn from. The
             network where that was least is kept, and the training ends once it no longer falls.
-        progress: told the share that is done.
+        progress: called with the share that is done.
 
     Raises:
         InputError: samples or a network to start from that do not fit the variables, or "exact"

@@ -31,7 +31,7 @@ class ContextCapture:
         model: as it was given.
         settings: of the run.
         seed: of networks and simulations.
-        progress: told a stage and the share of it that is done.
+        progress: called with a stage and the share of it that is done.
     """
 
     def __init__(
@@ -158,7 +158,7 @@ class ContextCapture:
         self.send(first, end)
 
     def send(self, first: int, end: int) -> None:
-        """Q5: tell the twin the contexts of rows, and keep what it simulates there."""
+        """Q5: give the twin the contexts of rows, and keep what it simulates there."""
         ledger, rows, past = self.ledger, slice(first, end), slice(0, first)
         version = self._exchange.twin.state.version
         answer = self._exchange.ask(
@@ -193,7 +193,7 @@ class ContextCapture:
         return [self._names.index(name) for name in self._station.measured]
 
     def _told(self) -> tuple[FloatArray, NDArray[np.bool_]]:
-        return self.ledger.told(self.ranges.mean(axis=1)[self._measured])
+        return self.ledger.last_measured(self.ranges.mean(axis=1)[self._measured])
 
     def _draw(self) -> int:
         self.draws += 1

@@ -74,7 +74,7 @@ class DataDrivenModel:
             seed: of everything random.
             start: a model to refine; None: from new networks.
             clock: time [s] that effects with an onset go by.
-            progress: told the share that is done.
+            progress: called with the share that is done.
         """
         simulation: SimulationModel = data.simulation
         model = simulation.model
@@ -87,9 +87,9 @@ class DataDrivenModel:
             data.falling if data.falling.any() else None,
         )
         unheld = np.arange(len(source)) % HELD_OUT != HELD_OUT - 1
-        told = np.tile(variables.middle, (len(data.real), 1))
+        contexts = np.tile(variables.middle, (len(data.real), 1))
         columns = [variables.contexts.index(name) for name in simulation.station.measured]
-        told[:, columns] = data.real_contexts
+        contexts[:, columns] = data.real_contexts
         known = [model.context[name].noise or 0.0 for name in variables.measured]
         level = np.concatenate([np.where(np.isnan(noise), 1.0, noise), known])
         kind = settings.physics if start is None else settings.fine_physics
@@ -103,7 +103,7 @@ class DataDrivenModel:
                 physics = EitherWay(physics, variables.latent_columns[0])
         network = train(
             source.rows(unheld),
-            Samples(np.where(faulty, np.nan, data.real), told[:, variables.measured_columns]),
+            Samples(np.where(faulty, np.nan, data.real), contexts[:, variables.measured_columns]),
             settings,
             variables=variables,
             noise=level,
@@ -212,7 +212,7 @@ class DataDrivenModel:
     ) -> tuple[FloatArray, FloatArray]:
         """The line of a context where the simulation follows it best, or an end of its range.
 
-        Rows without load tell a network nothing of where a train is, and a line through nothing
+        Rows without load show a network nothing of where a train is, and a line through nothing
         may well stand on the bridge. What the rows show decides.
         """
         chosen = np.unique(np.linspace(0, len(time) - 1, ROWS_COMPARED).astype(int))

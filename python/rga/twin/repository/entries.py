@@ -18,7 +18,7 @@ Time = str | float
 
 @dataclass(frozen=True)
 class Identity:
-    """What tells one run from another: the same identity resumes, another begins anew.
+    """What distinguishes one run from another: the same identity resumes, another begins anew.
 
     Attributes:
         model_sha256, record_sha256: hashes of the model as given and of the record.

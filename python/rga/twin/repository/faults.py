@@ -1,4 +1,4 @@
-"""What a database driver complains of, told to the user."""
+"""What a database driver complains of, as an error for the user."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from sqlalchemy.exc import DBAPIError, OperationalError
 from rga.errors import InputError
 
 # By the beginning of SQLite's name of the error, and by PostgreSQL's state.
-_TOLD = {
+_MENDED = {
     "SQLITE_NOTADB": ("the file is no repository", "name a file that rga wrote, or a new one"),
     "SQLITE_CORRUPT": ("the repository is damaged", "restore it from a copy"),
     "SQLITE_BUSY": ("the repository is locked by another process", "wait for it, or end it"),
@@ -29,14 +29,14 @@ _TOLD = {
 
 
 @contextmanager
-def told(where: str) -> Iterator[None]:
+def as_input_errors(where: str) -> Iterator[None]:
     """Turns what a user can mend into an InputError; other faults pass."""
     try:
         yield
     except DBAPIError as error:
         name = getattr(error.orig, "sqlite_errorname", None)
         name = name or getattr(error.orig, "sqlstate", None) or ""
-        for beginning, (what, remedy) in _TOLD.items():
+        for beginning, (what, remedy) in _MENDED.items():
             if name.startswith(beginning):
                 raise InputError(what, where, remedy) from error
         if isinstance(error, OperationalError) and not name.startswith("SQLITE_"):

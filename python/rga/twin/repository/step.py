@@ -17,7 +17,7 @@ class Transaction:
     """What one transaction stores; `Run.step` begins and ends it.
 
     Where a method takes `row`, it is the row of the record at which something was decided; where
-    it takes `first_row`, the row that the arrays begin with. A ValueError tells of arrays that do
+    it takes `first_row`, the row that the arrays begin with. A ValueError reports arrays that do
     not fit one another and of bodies that JSON cannot hold.
 
     Attributes:

@@ -12,7 +12,7 @@ from rga.errors import InputError
 from rga.twin.repository import migrations, tables
 from rga.twin.repository.database import Database, database
 from rga.twin.repository.entries import Identity
-from rga.twin.repository.faults import told
+from rga.twin.repository.faults import as_input_errors
 from rga.twin.repository.source import Source
 from rga.twin.repository.step import Transaction, now
 from rga.twin.repository.view import RunView
@@ -37,7 +37,7 @@ class Run(RunView):
         Raises:
             InputError: the disk is full, the server is lost, or the like.
         """
-        with told(self._where), self._transaction():
+        with as_input_errors(self._where), self._transaction():
             step = Transaction(self._connection, self._source.run_id)
             yield step
             step.end()
@@ -56,7 +56,7 @@ class Run(RunView):
 
     @contextmanager
     def _reading(self) -> Iterator[Connection]:
-        with told(self._where), ExitStack() as own:
+        with as_input_errors(self._where), ExitStack() as own:
             if not self._connection.in_transaction():
                 own.enter_context(self._transaction())
             yield self._connection
@@ -111,7 +111,7 @@ class Repository:
         kept_in = self._database
         if kept_in.read_only:
             raise InputError("nothing can be written", kept_in.where, "open it for writing")
-        with told(kept_in.where), ExitStack() as held:
+        with as_input_errors(kept_in.where), ExitStack() as held:
             connection = held.enter_context(kept_in.writer(identity.key))
             of_identity = select(tables.run).where(tables.run.c.key == identity.key)
             with connection.begin():
@@ -141,7 +141,7 @@ class Repository:
 
     @contextmanager
     def _reading(self) -> Iterator[Connection]:
-        with told(self._database.where), self._database.engine.begin() as connection:
+        with as_input_errors(self._database.where), self._database.engine.begin() as connection:
             yield connection
 
     def _prepare(self) -> None:
@@ -158,7 +158,7 @@ class Repository:
             raise InputError("the repository is older than this rga", where, remedy)
         if state in ("empty", "older"):
             with (
-                told(where),
+                as_input_errors(where),
                 self._database.writer("migration") as connection,
                 connection.begin(),
             ):

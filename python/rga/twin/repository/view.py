@@ -206,9 +206,9 @@ class RunView:
 
     def story(self) -> tuple[StoredMessage | Event, ...]:
         """Messages and events together, in the order in which they were stored."""
-        told = zip(self._source.entries(tables.message), self.messages(), strict=True)
+        messages = zip(self._source.entries(tables.message), self.messages(), strict=True)
         happened = zip(self._source.entries(tables.event), self.events(), strict=True)
-        both: list[tuple[Row[Any], StoredMessage | Event]] = [*told, *happened]
+        both: list[tuple[Row[Any], StoredMessage | Event]] = [*messages, *happened]
         return tuple(what for entry, what in sorted(both, key=lambda one: _place(one[0])))
 
     def kept(self, name: str) -> bytes | None:

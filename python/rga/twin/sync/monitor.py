@@ -60,9 +60,9 @@ class Monitored:
         self._learn(residuals)
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Reasons why alarms may come without a change."""
-        return () if self._monitor is None else self._monitor.doubts
+        return () if self._monitor is None else self._monitor.warnings
 
     def to_bytes(self) -> bytes:
         """The state."""

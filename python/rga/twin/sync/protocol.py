@@ -46,7 +46,7 @@ class Synchrony(Protocol):
         """
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Reasons why alarms may come without a change."""
 
     def to_bytes(self) -> bytes:

@@ -19,7 +19,7 @@ class WindowRule:
     """
 
     #: of its alarms the rule promises nothing
-    doubts: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     def __init__(self, channels: Sequence[str], settings: Settings) -> None:
         self._channels, self._settings = channels, settings
