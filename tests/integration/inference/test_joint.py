@@ -302,5 +302,5 @@ def test_an_earlier_result_is_taken_in_one_way(model: Model) -> None:
     given = np.zeros((3, 24)), noise_of(model), drawn(model, 40, 24)
     unknowns = Unknowns(model)
     first = infer_jointly(unknowns, measured(model, drawn(model, 20, 25), 26), *given[1:])
-    with pytest.raises(InputError, match="begun from and known"):
+    with pytest.raises(InputError, match="both the start and the prior"):
         infer_jointly(unknowns, *given, start=first, prior=first)
