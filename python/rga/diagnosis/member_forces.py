@@ -12,8 +12,6 @@ from rga.model.effect import Effect, Values
 from rga.model.schema import Model, Sensor
 from rga.simulation import Simulator
 
-#: kinds whose restraint may let go at any time, and is normally not credited
-NOT_CREDITED = frozenset({"support_spring", "bearing_friction", "support_gap"})
 #: share of the largest amplitude below which a member carries too little for a ratio
 IDLE = 0.01
 
@@ -69,7 +67,7 @@ def member_forces(account: DiagnosisArrays) -> Forces | None:
     def forces(chosen: Mapping[str, Effect]) -> FloatArray:
         return _forces(given.extended(dict(chosen)), account.contexts)
 
-    held = {name for name, effect in causes.items() if effect.kind in NOT_CREDITED}
+    held = {name for name, effect in causes.items() if effect.may_let_go}
     try:
         whole = forces(causes)
         base = forces({})

@@ -46,7 +46,7 @@ def doubts_of(
         gained: gap of the held-out rows.
     """
     fallen = [
-        f"{place_words([one.name.replace('_', ' '), *one.place.values()])} would explain the "
+        f"{place_words([one.kind.title, *one.place.values()])} would explain the "
         "readings fitted, and rows and channels left out do not confirm it"
         for one in dropped
     ]

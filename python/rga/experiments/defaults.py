@@ -6,7 +6,6 @@ from rga.arrays import FloatArray
 from rga.experiments.candidates import rest
 from rga.experiments.truck import FACTOR, POSITION, Lane, Truck
 from rga.model.effect import Values
-from rga.model.effects.loading import LOAD_KINDS
 from rga.model.schema import ContextVariable, Model, Sensor
 from rga.simulation import Simulator
 
@@ -17,8 +16,6 @@ GOLDEN = (1 + 5**0.5) / 2
 STATES = 64
 #: axle load where the model has no load to compare with [kN]; spacing of the axles [m]
 AXLE, SPACING = 50.0, 4.0
-#: loads that act on others
-CHANGES = ("load_scale", "load_position", "load_eccentricity")
 
 
 def usual_operation(model: Model) -> Values:
@@ -59,7 +56,7 @@ def strain_share(model: Model, lane: Lane, truck: Truck) -> float:
     moved = {
         context
         for effect in model.effects.values()
-        if effect.kind in (*LOAD_KINDS, *CHANGES)
+        if effect.is_load or any(mark.of == "effect" for mark in effect.place_fields().values())
         for context in effect.drivers()
     }
     places = lane.stands(truck)

@@ -14,7 +14,7 @@ from rga.experiments.candidates import Added, LoadTest, context_noise, rest, sen
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.truck import FACTOR, POSITION, Lane, Truck
 from rga.model.effect import Effect, Values
-from rga.model.effects.stiffness import MemberStiffness
+from rga.model.effects.members.member_stiffness import MemberStiffness
 from rga.model.schema import ContextVariable, Model
 from rga.simulation import Simulator
 from rga.simulation.perturbation.trials import Vicinity

@@ -9,8 +9,8 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.effect import Effect
-from rga.model.effects.axles import AxleLoad
-from rga.model.effects.loads import NodalLoad
+from rga.model.effects.loads.axle_load import AxleLoad
+from rga.model.effects.loads.nodal_load import NodalLoad
 from rga.model.parameter import Driven
 from rga.model.schema import Model
 from rga.model.structure import HELD_BY_PLANE

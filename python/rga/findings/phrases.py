@@ -8,9 +8,6 @@ from rga.model import Effect
 if TYPE_CHECKING:
     from rga.findings.schema import Cause, Findings
 
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
-#: units whose large values read better with a prefix
-SCALED = ("N/m", "N m/rad", "N")
 RIVALS = 3
 
 
@@ -21,21 +18,22 @@ def effect_words(effect: Mapping[str, Any]) -> str:
     >>> effect_words({"kind": "sensor_gain", "sensor": "S1", "factor": factor})
     'sensor gain of S1: factor 1.25 [1.2, 1.3]'
     """
-    kind = Effect.vocabulary.get(effect["kind"])
-    places = list(kind.place_fields()) if kind else []
-    place = place_words(effect[name] for name in places if effect.get(name) is not None)
-    values = "; ".join(
-        f"{name.replace('_', ' ')} {quantity(effect[name], kind.unit(name, effect))}"
-        for name in (kind.parameters() if kind else ())
-        if kind and effect.get(name) is not None
+    kind = Effect.vocabulary.get(effect["kind"], Effect)
+    place = place_words(
+        effect[name] for name in kind.place_fields() if effect.get(name) is not None
     )
-    mode = f" ({effect['mode']})" if "mode" in effect else ""
     of = f" of {place}" if place else ""
-    return (
-        f"{effect['kind'].replace('_', ' ')}{of}{mode}"
-        + (f": {values}" if values else "")
-        + _onset(effect)
-    )
+    return f"{kind_words(effect['kind'])}{of}{kind.size_words(effect)}{_onset(effect)}"
+
+
+def kind_words(kind: str) -> str:
+    """A kind in words, one that is not known too.
+
+    >>> kind_words("sensor_gain"), kind_words("of_my_own")
+    ('sensor gain', 'of my own')
+    """
+    known = Effect.vocabulary.get(kind)
+    return known.title if known else kind.replace("_", " ")
 
 
 def place_words(places: Iterable[Any]) -> str:
@@ -45,23 +43,6 @@ def place_words(places: Iterable[Any]) -> str:
     'east, ux'
     """
     return ", ".join(_place(place) for place in places)
-
-
-def quantity(value: Any, unit: str) -> str:
-    """A value with its interval and unit, three digits."""
-    if isinstance(value, Mapping) and "value" in value:
-        low, high = value["ci90"]
-        scale, prefix = _prefix(abs(value["value"]), unit)
-        shown = f"{value['value'] / scale:.3g} [{low / scale:.3g}, {high / scale:.3g}]"
-    elif isinstance(value, int | float):
-        scale, prefix = _prefix(abs(value), unit)
-        shown = f"{value / scale:.3g}"
-    else:
-        return str(value)
-    if unit in ("-", "unit", ""):
-        return shown
-    # That of a sensor's effect is counted in the sensor's own unit.
-    return f"{shown} {prefix}{unit.replace('unit/', 'per ')}"
 
 
 def verdict_sentence(findings: "Findings") -> str:
@@ -128,11 +109,3 @@ def _place(place: Any) -> str:
             return f"{place[0]} and {len(place) - 1} more"
         return " and ".join(str(one) for one in place)
     return str(place)
-
-
-def _prefix(size: float, unit: str) -> tuple[float, str]:
-    if unit in SCALED:
-        for scale, prefix in PREFIXES:
-            if size >= scale:
-                return scale, prefix
-    return 1.0, ""

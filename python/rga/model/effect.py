@@ -9,7 +9,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, field_validator, model_validator
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
+from rga.model.action import Action
 from rga.model.parameter import Driven, Estimated, Parameter, Place, Prior, marks, resolve
+from rga.model.quantities import value_words
 
 if TYPE_CHECKING:
     from rga.model.readings import Readings
@@ -24,9 +27,15 @@ TURNING = {"N/m": "N m/rad", "m": "rad"}
 class Effect(BaseModel):
     """One physical influence. A subclass with a `kind` joins the vocabulary when it is defined.
 
-    A subclass declares its place and its parameters as fields marked with `Place` and `Parameter`,
-    says with `places` where in a model it may act and with `priors` what is known of its
-    parameters, and overrides those of the `change_...` methods and `loads` that it needs.
+    All that is known of a kind is in its class. It declares its place and its parameters as fields
+    marked with `Place` and `Parameter`, says with `places` where in a model it may act and with
+    `priors` what is known of its parameters, and overrides those of the `change_...` methods and
+    `loads` that it needs: the mechanism. With `title` and `size_words` it says how sentences name
+    it, with `action` what it calls for, with `usual` where its priors come from. Its docstring is
+    the text of its entry in docs/vocabulary.md.
+
+    Raises (when a subclass is defined):
+        InputError: the vocabulary has another class of this kind.
 
     Attributes:
         onset: time at which the effect begins, as in the record [s or ISO 8601]; None: always.
@@ -42,6 +51,18 @@ class Effect(BaseModel):
     end: float | str | None = None
     profile: Literal["step", "ramp"] = "step"
 
+    #: Name in prose; left out, the kind with spaces.
+    title: ClassVar[str] = ""
+    #: What a cause of this kind calls for.
+    action: ClassVar[Action] = Action(
+        "{place}", "what the model says of {place}", "{vehicle}, near {place}"
+    )
+    #: What size is usual, in words: what `priors` say, and where it comes from.
+    usual: ClassVar[str] = ""
+    #: True for what loads the structure by design: other effects scale, shift or keep it.
+    is_load: ClassVar[bool] = False
+    #: True for a restraint that may let go at any time, so that it is normally not credited.
+    may_let_go: ClassVar[bool] = False
     #: True where the parameters change the structure itself.
     structural: ClassVar[bool] = False
     #: True where the effect changes nothing but what sensors show.
@@ -56,8 +77,18 @@ class Effect(BaseModel):
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         kind = cls.model_fields["kind"].default
-        if isinstance(kind, str):
-            Effect.vocabulary[kind] = cls
+        if not isinstance(kind, str):
+            return
+        if kind in Effect.vocabulary:
+            first = Effect.vocabulary[kind]
+            raise InputError(
+                f"the kind {kind!r} is that of {first.__module__}.{first.__qualname__} already",
+                f"class {cls.__qualname__}",
+                "give it a kind of its own",
+            )
+        if "title" not in vars(cls):
+            cls.title = kind.replace("_", " ")
+        Effect.vocabulary[kind] = cls
 
     @field_validator("onset", "end")
     @classmethod
@@ -121,6 +152,20 @@ class Effect(BaseModel):
         unit = cls.parameters()[parameter].unit
         turns = str(place.get("dof", "")).startswith("r")
         return TURNING.get(unit, unit) if turns else unit
+
+    @classmethod
+    def size_words(cls, effect: Mapping[str, Any]) -> str:
+        """How large an effect is, as it follows its place in a sentence.
+
+        Args:
+            effect: its keys and values as in a model file.
+        """
+        values = "; ".join(
+            f"{name.replace('_', ' ')} {value_words(effect[name], cls.unit(name, effect))}"
+            for name in cls.parameters()
+            if effect.get(name) is not None
+        )
+        return values and f": {values}"
 
     @property
     def place(self) -> dict[str, Any]:

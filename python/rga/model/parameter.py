@@ -43,6 +43,8 @@ class Estimated(BaseModel):
     ci90: tuple[float, float]
 
 
+#: 95 % point of the standard normal distribution
+NORMAL_90 = 1.6448536269514722
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Value = Number | Driven | Estimated
 
@@ -107,13 +109,20 @@ class Normal:
     def trials(self) -> tuple[float, ...]:
         return (0.1,)
 
+    def times(self, scale: float) -> "Normal":
+        """The same of a value that is counted in a scale."""
+        return Normal(self.centre * scale, self.spread * scale)
+
+    def __str__(self) -> str:
+        return _likely(self)
+
 
 @dataclass(frozen=True)
 class Factor:
     """A positive factor, log-normal about one.
 
-    >>> round(Factor(0.3).value(0.0), 3)
-    1.0
+    >>> Factor(0.3).value(0.0), str(Factor(0.3))
+    (1.0, '0.61 to 1.6')
     """
 
     spread: float
@@ -127,6 +136,9 @@ class Factor:
     @property
     def trials(self) -> tuple[float, ...]:
         return (-1.0, 1.0)
+
+    def __str__(self) -> str:
+        return _likely(self)
 
 
 @dataclass(frozen=True)
@@ -149,6 +161,19 @@ class Positive:
 
     def z(self, value: float) -> float:
         return float(np.log(value / self.median)) / self.spread
+
+    def times(self, scale: float) -> "Positive":
+        """The same of a value that is counted in a scale."""
+        return Positive(self.median * scale, self.spread, self.trials)
+
+    def __str__(self) -> str:
+        return _likely(self)
+
+
+def _likely(prior: Prior) -> str:
+    """The central 90 % of a prior, two digits."""
+    low, high = (float(f"{prior.value(z):.2g}") for z in (-NORMAL_90, NORMAL_90))
+    return f"{low:g} to {high:g}"
 
 
 def resolve(value: Value, contexts: Mapping[str, FloatArray], rows: int) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rga.model.effect import Effect
-from rga.model.effects.joints import JointRigidity
+from rga.model.effects.joints.joint_rigidity import JointRigidity
 from rga_bench.synthetic import BRIDGES, Case
 
 

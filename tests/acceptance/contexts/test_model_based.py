@@ -10,7 +10,7 @@ from context_problems import coverage, easy, error, measured
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
 from rga.inference.rows import Rows
-from rga.model.effects.bearings import SupportFlexibility
+from rga.model.effects.supports.support_flexibility import SupportFlexibility
 from rga_bench.contexts.methods.discrepancy import smooth_discrepancy
 from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
 from rga_bench.contexts.methods.iterated_kalman import iterated_kalman

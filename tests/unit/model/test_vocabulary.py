@@ -122,6 +122,23 @@ def test_no_kind_is_left_out() -> None:
     assert {case.kind for case in CASES} | loads | no_value == set(Effect.vocabulary)
 
 
+def test_a_kind_is_one_file_that_says_all_of_it() -> None:
+    homes = {
+        kind: known.__module__
+        for kind, known in Effect.vocabulary.items()
+        if known.__module__.startswith("rga.")
+    }
+    assert {kind: home.rpartition(".")[2] for kind, home in homes.items()} == {k: k for k in homes}
+    model = bridge()
+    for kind in homes:
+        known = Effect.vocabulary[kind]
+        assert known.__doc__
+        if places := list(known.places(model)):
+            assert known.action is not Effect.action
+            sizes = [form for place in places for form in known.forms(model, place)]
+            assert bool(known.usual) == any(sizes)
+
+
 @every
 def test_each_place_shows_and_a_neutral_value_does_not(case: Case) -> None:
     plain = readings(bridge())

@@ -17,7 +17,7 @@ from rga.findings.schema import (
     Cause,
 )
 from rga.model.effect import Effect
-from rga.model.effects.sensors import SensorFault
+from rga.model.effects.sensors.sensor_fault import SensorFault
 from rga.records import Record
 
 FAULT_NATS = float(np.log(1000.0))

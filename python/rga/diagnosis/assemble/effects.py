@@ -6,12 +6,12 @@ from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.laplace import Fit
 from rga.diagnosis.search.stepwise import Found
 from rga.model.effect import Effect
-from rga.model.effects.sensors import SensorFault, SensorGain
-from rga.model.parameter import Estimated
+from rga.model.effects.sensors.sensor_fault import SensorFault
+from rga.model.effects.sensors.sensor_gain import SensorGain
+from rga.model.parameter import NORMAL_90, Estimated
 from rga.model.schema import Model
 from rga.records import Record
 
-NORMAL_90 = 1.6448536269514722
 #: gain below which a channel is dead [-]
 DEAD = 0.05
 
@@ -24,7 +24,7 @@ def effects_of(found: Found, record: Record) -> list[Effect]:
 def cause_name(model: Model, effect: Effect) -> str:
     """A name for a cause in the extended model, new to the model."""
     place = " ".join(str(one) for one in effect.place.values() if isinstance(one, str))
-    name = f"{effect.kind.replace('_', ' ')} {place}".strip()
+    name = f"{effect.title} {place}".strip()
     return name if name not in model.effects else f"{name} (found)"
 
 

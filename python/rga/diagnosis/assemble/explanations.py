@@ -101,7 +101,7 @@ def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
     if np.isfinite(one.gap_unseen) and one.gap_unseen > UNHELPFUL * nothing.gap_unseen:
         remarks.append("does not help channels that it was not fitted to")
     remarks += [
-        f"{hypothesis.name.replace('_', ' ')} would need an unlikely value"
+        f"{hypothesis.kind.title} would need an unlikely value"
         for hypothesis, where in zip(one.fit.hypotheses, one.fit.slices(), strict=True)
         if np.abs(one.fit.z[where]).max(initial=0.0) > UNLIKELY
     ]

@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.covariance import Covariance, RandomEffects
-from rga.model.effects.stiffness import MemberStiffness
+from rga.model.effects.members.member_stiffness import MemberStiffness
 from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
 

@@ -23,7 +23,7 @@ from rga.diagnosis.preparation.channel_prediction import (
     root_mean_square,
 )
 from rga.diagnosis.preparation.single_channel import BrokenChannel, copied, dead, scaled, silent
-from rga.model.effects.sensors import offset_scale
+from rga.model.effects.sensors.zero_offset import offset_scale
 from rga.model.schema import Model
 
 #: own part of a channel, in its usual size, from which on it is broken. Most sound ones of blind

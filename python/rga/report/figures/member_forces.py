@@ -9,14 +9,15 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
-from rga.diagnosis.member_forces import IDLE, NOT_CREDITED, Forces
+from rga.diagnosis.member_forces import IDLE, Forces
+from rga.findings.phrases import kind_words
+from rga.model.effect import Effect
 from rga.model.schema import Model
 from rga.report.drawing.bridge_drawing import KEY, TITLE, WIDTH, Shades, draw_supports, paint_scale
 from rga.report.drawing.places import Named
 from rga.report.drawing.projection import Projection, views
 from rga.report.figures.bridge import EITHER_WAY
 from rga.report.figures.figure_style import STEEL, inline, label, style
-from rga.report.pages.cards import plain
 from rga.report.text.quantities import DASH, fixed, number
 
 #: change of a force below which a member is left out of the table, and how many are shown
@@ -77,7 +78,8 @@ def restraint_words(forces: Forces, kinds: list[str]) -> str:
     """What the restraint of bearings means for what may be credited; empty where there is none."""
     if forces.credited is None:
         return ""
-    held = " and ".join(sorted({plain(kind) for kind in kinds if kind in NOT_CREDITED}))
+    restraints = {kind for kind in kinds if Effect.vocabulary.get(kind, Effect).may_let_go}
+    held = " and ".join(sorted(map(kind_words, restraints)))
     return (
         f"The restraint of a bearing ({held}) may let go at any time and is normally not credited: "
         "where it relieves a member, count the figure without it; where it adds force, count the "

@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.profiles import Onset, Profile
+from rga.model.parameter import NORMAL_90
 from rga.report.figures.figure_style import AFTER, FAINT, INK, STEEL, grid, inline, label, style
 from rga.report.pages.cards import plain
 from rga.report.text.quantities import duration, scale
 
 #: half width of the 90 % interval in standard deviations, and its depth in log probability
-NORMAL_90 = 1.6448536269514722
 DEPTH = NORMAL_90**2 / 2
 LEAST, MOST_PANELS = -8.0, 3
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from rga.findings.phrases import kind_words
 from rga.findings.schema import Cause
 from rga.model.effect import Effect
 from rga.model.schema import Model
@@ -10,7 +11,7 @@ from rga.report.drawing.places import place_names
 from rga.report.text.quantities import DASH, number, quantity, short
 
 #: keys of an effect that are neither place nor parameter
-OTHER = {"kind", "onset", "end", "profile", "mode"}
+OTHER = {"kind", "onset", "end", "profile"}
 D_PRIME = "d\N{PRIME}"
 LOG_ODDS = (
     "natural logarithm of how much better the data are explained with this cause than without it, "
@@ -52,7 +53,7 @@ def card(cause: Cause, model: Model, words: str, rivals: list[str]) -> Card:
     """The card of a cause, given its words and those of its rivals."""
     effect = cause.effect
     return Card(
-        title=plain(str(effect.get("kind", "cause"))),
+        title=kind_words(str(effect.get("kind", "cause"))),
         words=words,
         status=cause.status,
         place=place(effect),

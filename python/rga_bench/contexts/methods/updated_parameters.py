@@ -8,9 +8,10 @@ import numpy as np
 from rga.inference.joint.joint_stiffness_surrogate import BENDING
 from rga.model import Model
 from rga.model.effect import Effect
-from rga.model.effects.bearings import SupportFlexibility
-from rga.model.effects.stiffness import ElasticModulus, MemberStiffness
-from rga.model.effects.thermal import ThermalExpansion
+from rga.model.effects.members.elastic_modulus import ElasticModulus
+from rga.model.effects.members.member_stiffness import MemberStiffness
+from rga.model.effects.supports.support_flexibility import SupportFlexibility
+from rga.model.effects.temperature.thermal_expansion import ThermalExpansion
 from rga.model.parameter import Driven, Factor, Positive
 
 #: fixity of joints beforehand: share of the bending stiffness of rigid ones, and its log spread

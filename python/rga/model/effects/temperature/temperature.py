@@ -1,28 +1,31 @@
 """The temperature of members."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.model.effect import Effect, Values
 from rga.model.parameter import Driven, Number, Parameter, Value
+from rga.model.schema import Model
 from rga.model.structure import Load, Structure
-
-if TYPE_CHECKING:
-    from rga.model.schema import Model
 
 
 class Temperature(Effect):
-    """Warming of groups of members: kelvin per group times delta."""
+    """Temperature change of groups of members.
+
+    Attributes:
+        groups: kelvin of each group per unit of delta.
+        delta: what they are multiplied by.
+    """
 
     kind: Literal["temperature"] = "temperature"
     loads_by_geometry = True
     groups: dict[str, Number]
     delta: Annotated[Value, Parameter("K", 0.0)] = 1.0
 
-    def check(self, model: "Model") -> None:
+    def check(self, model: Model) -> None:
         """ValueError where groups are missing or overlap, or delta follows a logarithm."""
         if isinstance(self.delta, Driven) and self.delta.log10:
             raise ValueError("delta: a temperature follows its context straight, not by log10")

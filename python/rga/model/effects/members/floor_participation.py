@@ -1,36 +1,18 @@
-"""Floors and decks that carry a share of the force of a chord."""
+"""Floors that carry a share of the force of a chord."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from rga.model.action import Action
 from rga.model.effect import Effect
+from rga.model.effects.members.scales import axial_stiffness, mean_area
 from rga.model.parameter import Parameter, Place, Positive, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Structure
 
-
-class AddedAxialArea(Effect):
-    """Area [m2] parallel to the members of a group, fully tied: a deck that shares the force."""
-
-    kind: Literal["added_axial_area"] = "added_axial_area"
-    structural = True
-    group: Annotated[str | list[str], Place("group")]
-    area: Annotated[Value, Parameter("m2", 0.0, least=0.0)] = 0.0
-
-    @classmethod
-    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        yield from ({"group": group} for group in model.groups)
-
-    @classmethod
-    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        return {"area": Positive(0.3 * _mean_area(model, place["group"]), 1.0)}
-
-    def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
-        chosen = structure.named(None, self.group)
-        if value["area"] > 0:
-            structure.add_bars(structure.arrays["ends"][chosen], value["area"], chosen)
+AREA, TIES = Positive(0.3, 1.0), Positive(0.03, 2.0)
 
 
 class FloorParticipation(Effect):
@@ -45,6 +27,23 @@ class FloorParticipation(Effect):
     """
 
     kind: Literal["floor_participation"] = "floor_participation"
+    action = Action(
+        inspect=(
+            "stringers and cross girders along {place} and their connections: a share of the "
+            "chord's force runs through them, and they were seldom designed for it"
+        ),
+        check=(
+            "whether the drawings show expansion joints in the floor, and whether these still move"
+        ),
+        test=(
+            "{vehicle}, with gauges on the stringers beside {place} and on the end panels of the "
+            "chord"
+        ),
+    )
+    usual = (
+        f"area {AREA} times the mean area of the group, connector stiffness {TIES} times the mean "
+        "EA/L of its members: a judgement"
+    )
     structural = True
     group: Annotated[str | list[str], Place("group")]
     area: Annotated[Value, Parameter("m2", 0.0, least=0.0)] = 0.0
@@ -59,11 +58,11 @@ class FloorParticipation(Effect):
 
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
-        area = _mean_area(model, place["group"])
-        chord = np.mean([_axial_stiffness(model, name) for name in model.groups[place["group"]]])
+        area = mean_area(model, place["group"])
+        chord = np.mean([axial_stiffness(model, name) for name in model.groups[place["group"]]])
         return {
-            "area": Positive(0.3 * area, 1.0),
-            "connector_stiffness": Positive(0.03 * float(chord), 2.0),
+            "area": AREA.times(area),
+            "connector_stiffness": TIES.times(float(chord)),
         }
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
@@ -81,14 +80,3 @@ class FloorParticipation(Effect):
         ties = np.column_stack([beside, parallel])
         structure.add_springs(ties, along, value["connector_stiffness"])
         structure.add_bars(parallel[numbers.reshape(-1, 2)], value["area"], chosen)
-
-
-def _mean_area(model: Model, group: str) -> float:
-    return float(np.mean([model.sections[model.members[m].section].A for m in model.groups[group]]))
-
-
-def _axial_stiffness(model: Model, name: str) -> float:
-    member = model.members[name]
-    ends = [np.array(model.nodes[node]) for node in member.nodes]
-    modulus = model.materials[member.material].E
-    return float(modulus * model.sections[member.section].A / np.linalg.norm(ends[1] - ends[0]))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,10 +11,8 @@ from rga.arrays import FloatArray
 from rga.model.axes import local_axes
 from rga.model.effect import Effect, Values
 from rga.model.parameter import Number, Parameter, Value
+from rga.model.schema import Model
 from rga.model.structure import Load, Spread, Structure, check_direction, unit_vector
-
-if TYPE_CHECKING:
-    from rga.model.schema import Model
 
 #: places along a member that carries axles itself, between which the lever rule shares an axle.
 #: The worst deflection of a simply supported beam drawn as one member is then 0.6 % too small;
@@ -33,13 +31,16 @@ class AxleLoad(Effect):
 
     Attributes:
         path: nodes in order; the position counts along it from the first [m].
-        forces: axle loads [N], acting along `direction`.
+        forces: axle loads [N].
         offsets: distance of each axle behind the first [m].
+        direction: in which they act, in global axes.
         carried_by: what carries an axle between two nodes: these `nodes`, or frame `members`.
+        factor: on all of the forces.
         position: where the first axle stands [m]; when it falls with time the train is reversed.
     """
 
     kind: Literal["axle_load"] = "axle_load"
+    is_load = True
     of_all_rows = frozenset({"heading"})
     loads_by_geometry = True
     path: Annotated[list[str], Field(min_length=2)]
@@ -64,7 +65,7 @@ class AxleLoad(Effect):
         """Nodes that must be in the model."""
         return self.path
 
-    def check(self, model: "Model") -> None:
+    def check(self, model: Model) -> None:
         joined = {
             frozenset(member.nodes) for member in model.members.values() if member.kind == "frame"
         }

@@ -1,8 +1,7 @@
-"""Loads at nodes and along members."""
+"""Loads along members."""
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from rga.model.effect import Effect, Values
@@ -12,47 +11,20 @@ from rga.model.structure import Load, Spread, Structure
 LOCAL = ("x", "y", "z")
 
 
-class NodalLoad(Effect):
-    """Forces [N] and moments [N m] at nodes, times a factor."""
-
-    kind: Literal["nodal_load"] = "nodal_load"
-    loads_by_geometry = True
-    forces: dict[str, list[Number]]
-    factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
-
-    @model_validator(mode="after")
-    def _components(self) -> "NodalLoad":
-        for node, force in self.forces.items():
-            if len(force) not in (3, 6):
-                raise ValueError(f"forces.{node}: give [fx, fy, fz] or [fx, fy, fz, mx, my, mz]")
-        return self
-
-    @property
-    def nodes(self) -> list[str]:
-        """Nodes that must be in the model."""
-        return list(self.forces)
-
-    def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        forces = structure.once(
-            lambda: {
-                structure.nodes[node]: np.array([*force, 0.0, 0.0, 0.0][:6])
-                for node, force in self.forces.items()
-            },
-            self,
-        )
-        return [Load(values["factor"], forces=forces, permanent=not self.drivers())]
-
-
 class MemberLoad(Effect):
     """A load along a member, in its local axes: uniform, trapezoidal or at a point.
 
     Attributes:
         uniform: [wx, wy, wz] over the whole member [N/m].
-        trapezoid: axis, from x1 to x2 [m], growing from w1 to w2 [N/m].
-        point: [Px, Py, Pz] at x [m] from the first node [N].
+        axis: along which a trapezoid acts.
+        trapezoid: [x1, x2, w1, w2]: from x1 to x2 [m], growing from w1 to w2 [N/m].
+        point: [Px, Py, Pz] at x from the first node [N].
+        x: place of the point load [m].
+        factor: on the load.
     """
 
     kind: Literal["member_load"] = "member_load"
+    is_load = True
     loads_by_geometry = True
     member: Annotated[str | list[str], Place("member")]
     uniform: tuple[Number, Number, Number] | None = None

@@ -6,17 +6,29 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from rga.errors import InputError
+from rga.model.action import Action
 from rga.model.effect import Effect, Values
-from rga.model.effects.bearings import Direction, Supports, directions, supported
+from rga.model.effects.supports.directions import Direction, Supports, directions, supported
 from rga.model.parameter import Normal, Parameter, Prior, Value
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure
+
+USUAL, SHARE = Normal(0.0, 1.0), 5000
 
 
 class SupportSettlement(Effect):
     """A displacement [m or rad] of a direction that the support holds."""
 
     kind: Literal["support_settlement"] = "support_settlement"
+    action = Action(
+        inspect="pier or abutment at {place}: scour, cracks, tilt, and the ground about it",
+        check="levels of the bearings against a bench mark away from the bridge",
+        test="level the bearings again after some weeks: has it stopped?",
+    )
+    usual = (
+        f"displacement {USUAL} times 1/{SHARE} of the largest dimension of the structure: a "
+        "judgement, below the 1/500 between supports that many structures bear (EN 1997-1, annex H)"
+    )
     support: Supports
     dof: Direction
     displacement: Annotated[Value, Parameter("m", 0.0)] = 0.0
@@ -30,7 +42,7 @@ class SupportSettlement(Effect):
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         points = np.array(list(model.nodes.values()))
-        return {"displacement": Normal(0.0, float(np.ptp(points, axis=0).max()) / 5000)}
+        return {"displacement": USUAL.times(float(np.ptp(points, axis=0).max()) / SHARE)}
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
         dof = DOFS.index(self.dof)

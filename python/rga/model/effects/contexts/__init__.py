@@ -1,0 +1,1 @@
+"""Measurements of the contexts that are off."""

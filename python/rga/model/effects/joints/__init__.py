@@ -1,0 +1,1 @@
+"""Joints between members: how far they turn, and how far they slip."""

@@ -1,0 +1,1 @@
+"""Loads, and what is wrong about them."""

@@ -1,0 +1,1 @@
+"""Members: how stiff they are, and what carries along with them."""

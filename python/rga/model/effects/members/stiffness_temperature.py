@@ -1,0 +1,87 @@
+"""Members whose stiffness follows the temperature."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.model.action import Action
+from rga.model.effect import Effect, Values
+from rga.model.effects.members.positive import positive
+from rga.model.effects.temperature.temperature import Temperature
+from rga.model.parameter import Driven, Normal, Parameter, Place, Prior, Value
+from rga.model.schema import Model
+from rga.model.structure import Structure
+
+USUAL = Normal(0.0, 0.003)
+
+
+class StiffnessTemperature(Effect):
+    """EA that follows the temperature: times 1 + rate * (T - kink) where T is above the kink.
+
+    T is the context that drives the model's `temperature` effects, of which there must be exactly
+    one, late where a `thermal_lag` makes the members late. EI stays as it is.
+
+    Attributes:
+        rate: [1/K] of EA; negative where a higher temperature softens.
+        kink: temperature from which on the rate holds, EA being as modelled below it [degC].
+            Left out, the rate holds at all temperatures, and EA is as modelled at the one
+            that warms nothing.
+    """
+
+    kind: Literal["stiffness_temperature"] = "stiffness_temperature"
+    action = Action(
+        inspect="joints and surfacing of {place} when it is cold and when it is warm",
+        check="the temperature sensor, and whether the deck or its surfacing bears a share",
+        test="the same vehicle on a cold and on a warm day",
+    )
+    usual = f"rate {USUAL} 1/K: a judgement"
+    structural = True
+    group: Annotated[str | list[str], Place("group")]
+    rate: Annotated[Value, Parameter("1/K", 0.0)] = 0.0
+    kink: Annotated[Value | None, Parameter("degC", None)] = None
+
+    def check(self, model: Model) -> None:
+        driven = _driven_temperatures(model)
+        contexts = sorted({delta.context for delta in driven})
+        if len(contexts) != 1:
+            raise ValueError(
+                "stiffness_temperature follows the one context that drives the temperature "
+                f"effects, and here it is {' and '.join(contexts) or 'none'}"
+            )
+        if self.kink is None and len({delta.minus for delta in driven}) > 1:
+            raise ValueError(
+                "kink [degC] must be given: the temperature effects warm nothing at different "
+                "temperatures"
+            )
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        driven = _driven_temperatures(model)
+        if len({(delta.context, delta.minus) for delta in driven}) == 1:
+            yield from ({"group": group} for group in model.groups)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        return {"rate": USUAL}
+
+    def change_values(
+        self, all_values: dict[str, Values], values: Values, time: FloatArray
+    ) -> None:
+        # The factor itself is the parameter of the structure: stiffnesses are straight in it.
+        warm = next(other for other in all_values.values() if "reference" in other)
+        above = warm["temperature"] - values.pop("kink", warm["reference"])
+        if self.kink is not None:
+            above = np.maximum(above, 0.0)
+        values["factor"] = 1.0 + values.pop("rate") * above
+
+    def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
+        positive(self, value["factor"], "reduce the rate, or give another kink")
+        structure.arrays["A"][structure.named(None, self.group)] *= value["factor"]
+
+
+def _driven_temperatures(model: Model) -> list[Driven]:
+    """What drives the temperature effects of a model."""
+    deltas = (one.delta for one in model.effects.values() if isinstance(one, Temperature))
+    return [delta for delta in deltas if isinstance(delta, Driven)]

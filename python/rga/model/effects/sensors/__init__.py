@@ -1,0 +1,1 @@
+"""Sensors that do not show what they should."""

@@ -1,0 +1,1 @@
+"""Supports: bearings and bases that hold more or less than they should, or have moved."""

@@ -1,0 +1,72 @@
+"""Directions of supports as places of effects."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from rga.model.bending import bending_at
+from rga.model.parameter import Place, listed
+from rga.model.schema import DOFS, Dof, Model
+from rga.model.structure import HELD_BY_PLANE, Structure
+
+Supports = Annotated[str | list[str], Place("support")]
+Direction = Annotated[Dof, Place("")]
+
+
+def directions(
+    model: Model, *, held: bool, axes: tuple[str, ...] = ("ux", "uy", "uz")
+) -> Iterator[dict[str, Any]]:
+    """Support directions that are held, or free: one by one, by lines across the bridge, all."""
+    for dof in (axis for axis in _in_plane(model, DOFS[:3]) if axis in axes):
+        yield from _alone_and_together(model, dof, _acting(model, dof, held))
+
+
+def rotations(model: Model, *, held: bool) -> Iterator[dict[str, Any]]:
+    """The same of rotations that bend a frame member there: that of a pin means nothing."""
+    for dof in _in_plane(model, DOFS[3:]):
+        bent = [
+            name
+            for name in _acting(model, dof, held)
+            if bending_at(model, model.supports[name].node, dof) > 0
+        ]
+        yield from _alone_and_together(model, dof, bent)
+
+
+def turns(dof: str) -> bool:
+    """Whether a dof is a rotation."""
+    return DOFS.index(dof) >= 3
+
+
+def only_free(model: Model, support: str | list[str], dof: str) -> None:
+    """ValueError where one of the supports holds the direction."""
+    for name in listed(support):
+        if dof in model.supports[name].fixed:
+            raise ValueError(f"support {name!r} holds {dof}: name a free direction")
+
+
+def supported(structure: Structure, support: str | list[str]) -> list[int]:
+    """Nodes of the supports of a place."""
+    return [structure.supports[name] for name in listed(support)]
+
+
+def _in_plane(model: Model, dofs: tuple[str, ...]) -> list[str]:
+    held = [DOFS[k] for k in HELD_BY_PLANE.get(model.plane or "", ())]
+    return [dof for dof in dofs if dof not in held]
+
+
+def _acting(model: Model, dof: str, held: bool) -> list[str]:
+    """Supports that hold a dof, or leave it free."""
+    return [
+        name
+        for name, support in model.supports.items()
+        if (dof in support.fixed) == held and support.along is None
+    ]
+
+
+def _alone_and_together(model: Model, dof: str, names: list[str]) -> Iterator[dict[str, Any]]:
+    """A dof of supports one by one, by lines across the bridge, and of all."""
+    yield from ({"support": name, "dof": dof} for name in names)
+    lines: dict[float, list[str]] = {}
+    for name in names:
+        lines.setdefault(round(model.nodes[model.supports[name].node][0], 3), []).append(name)
+    together = [*lines.values(), names] if len(lines) > 1 else [names]
+    yield from ({"support": line, "dof": dof} for line in together if len(line) > 1)

@@ -1,0 +1,70 @@
+"""Supports that give way."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from rga.model.action import Action
+from rga.model.effect import Effect
+from rga.model.effects.members.scales import mean_axial_stiffness
+from rga.model.effects.supports.bases import BASE_WORDS, base_stiffness
+from rga.model.effects.supports.directions import (
+    Direction,
+    Supports,
+    directions,
+    rotations,
+    supported,
+    turns,
+)
+from rga.model.parameter import Parameter, Positive, Prior, Value, listed
+from rga.model.schema import DOFS, Model
+from rga.model.structure import Structure
+
+ALONG = Positive(0.3, 1.5)
+
+
+class SupportFlexibility(Effect):
+    """A stiffness [N/m or N m/rad] in place of a rigid direction of a support.
+
+    Soft ground, or a column base that turns. A rotation is proposed where a frame member bends with
+    it.
+    """
+
+    kind: Literal["support_flexibility"] = "support_flexibility"
+    action = Action(
+        inspect=(
+            "bearing, bedding and masonry at {place}: loose anchor bolts, cracked mortar, soft "
+            "ground"
+        ),
+        check="any displacement sensor whose reference stands on the same pier",
+        test="{vehicle}, over the support {place}, with its movement measured against firm ground",
+    )
+    usual = f"stiffness {ALONG} times the mean EA/L of the members: a judgement; {BASE_WORDS}"
+    structural = True
+    support: Supports
+    dof: Direction
+    stiffness: Annotated[Value, Parameter("N/m", float("inf"), least=0.0)] = float("inf")
+
+    def check(self, model: Model) -> None:
+        for name in listed(self.support):
+            if self.dof not in model.supports[name].fixed:
+                raise ValueError(f"support {name!r} leaves {self.dof} free: name a held direction")
+
+    @classmethod
+    def places(cls, model: Model) -> Iterator[dict[str, Any]]:
+        yield from directions(model, held=True)
+        yield from rotations(model, held=True)
+
+    @classmethod
+    def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
+        along = ALONG.times(mean_axial_stiffness(model))
+        return {"stiffness": base_stiffness(model, place) if turns(place["dof"]) else along}
+
+    def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
+        if np.isinf(value["stiffness"]):
+            return
+        dof = DOFS.index(self.dof)
+        for node in supported(structure, self.support):
+            structure.arrays["fixed"][node, dof] = False
+            structure.add_spring(node, -1, dof, value["stiffness"])

@@ -1,0 +1,1 @@
+"""Temperature: what warms, how much, how fast, and how far it makes members expand."""
