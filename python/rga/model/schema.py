@@ -19,6 +19,7 @@ from rga.errors import InputError
 from rga.model.effect import Effect, check_moment
 from rga.model.parameter import Number, listed
 from rga.model.units import UNITS
+from rga.model.vocabulary import field_texts, kind_text
 
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
@@ -357,11 +358,16 @@ def model_schema() -> dict[str, Any]:
     kinds: Any = Union[tuple(Effect.vocabulary.values())]  # noqa: UP007
     effects = TypeAdapter(kinds).json_schema()
     for definition in effects["$defs"].values():
-        for entry in definition.get("properties", {}).values():
+        properties = definition.get("properties", {})
+        for entry in properties.values():
             if entry.get("default") == float("inf"):
                 del entry["default"]  # JSON has no infinity
-        if "kind" in definition.get("properties", {}):
+        if "kind" in properties:
+            kind = Effect.vocabulary[properties["kind"]["default"]]
             definition["required"] = sorted({"kind", *definition.get("required", [])})
+            definition["description"] = kind_text(kind)
+            for name, text in field_texts(kind).items():
+                properties[name]["description"] = text
     schema["$defs"] = {**schema["$defs"], **effects.pop("$defs")}
     schema["$defs"].pop("Effect", None)
     schema["properties"]["effects"]["additionalProperties"] = effects
