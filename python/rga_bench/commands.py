@@ -196,9 +196,9 @@ def policies(
     from rga.cli.measured import measured
     from rga_bench.machine import machine, versions
     from rga_bench.policies import table
-    from rga_bench.policies.play import PolicyResult
     from rga_bench.policies.run import compare
     from rga_bench.policies.setting import PolicySetting, shorter
+    from rga_bench.policies.twin_run import PolicyResult
 
     def draw(played: Sequence[PolicyResult], folder: Path) -> None:
         from rga_bench.policies.plot import plot

@@ -24,7 +24,7 @@ from rga_bench.diagnosis.field_design import (
     draw_of,
 )
 from rga_bench.diagnosis.judge import judge
-from rga_bench.diagnosis.spared_effects import Spared
+from rga_bench.diagnosis.permitted_causes import PermittedCauses
 from rga_bench.diagnosis.tables import tables
 from rga_bench.field import INSIDE, KINDS, OUTSIDE, STRUCTURES, Options, draw_field, fits
 from rga_bench.field.as_built import as_built
@@ -278,13 +278,15 @@ def test_a_diagnosis_of_the_field_is_judged() -> None:
 
 def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     model = {"members": {n: {"material": "steel", "groups": ["chord"]} for n in ("a", "b")}}
-    known = Spared(("joint_rigidity",), "S1", {"a": 0.9, "b": 0.9}, model)
+    known = PermittedCauses(("joint_rigidity",), "S1", {"a": 0.9, "b": 0.9}, model)
     modulus = {"kind": "elastic_modulus", "material": "steel", "factor": {"value": 0.91}}
     assert known.has(modulus)
     assert not known.has({**modulus, "factor": 1.08})
     assert not known.has({**modulus, "factor": 0.7})
     assert not known.has({**modulus, "onset": 3.0})
-    assert not Spared(stiffness={"a": 1.01, "b": 1.0}, model=model).has({**modulus, "factor": 1.01})
+    assert not PermittedCauses(stiffness={"a": 1.01, "b": 1.0}, model=model).has(
+        {**modulus, "factor": 1.01}
+    )
     member = {"kind": "member_stiffness", "member": "a", "factor": 0.9}
     assert known.has(member)
     assert not known.has({**member, "factor": 0.5})
@@ -292,7 +294,7 @@ def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     assert known.has({"kind": "joint_rigidity", "group": "chord"})
     assert known.has({"kind": "sensor_swap", "sensors": ["S2", "S1"]})
     assert not known.has({"kind": "sensor_bias", "sensor": "S2"})
-    assert not Spared().has({"kind": "sensor_bias", "sensor": "S1"})
+    assert not PermittedCauses().has({"kind": "sensor_bias", "sensor": "S1"})
 
 
 @pytest.mark.parametrize("name", ["field-2031-outside-8", "field-2033-single-31-null"])

@@ -14,10 +14,10 @@ import pytest
 from rga import _core
 from rga_bench.measurement import Measurement
 from rga_bench.solver import cores, large, refactored, run, table
-from rga_bench.solver.anew import Anew
 from rga_bench.solver.box_bridge import box_bridge, samples
 from rga_bench.solver.data_set import data_set_cost
 from rga_bench.solver.double_layer_grid import double_layer_grid
+from rga_bench.solver.from_scratch import FromScratch
 from rga_bench.solver.peers.cholmod import Cholmod, least_operations
 from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.peers.pynite import PyNite
@@ -51,7 +51,7 @@ def test_a_peer_agrees(name: str) -> None:
     bridge = box_bridge(seed=4)
     peer = solver(name, bridge, LinearSystem(bridge))
     factors, q = samples(bridge, 3, seed=5)
-    expected = Anew(bridge).respond(factors, q)
+    expected = FromScratch(bridge).respond(factors, q)
     for rows in (slice(0, 3), slice(1, 2)):
         found = peer.respond(factors[rows], q[rows])
         assert np.abs(found - expected[rows]).max() <= 1e-9 * np.abs(expected).max()
@@ -72,7 +72,7 @@ class Off:
 @pytest.mark.parametrize("name", ["ours", *NAMES])
 def test_a_solver_that_is_wrong_is_refused(name: str) -> None:
     bridge = box_bridge()
-    right = Anew(bridge) if name == "ours" else solver(name, bridge, LinearSystem(bridge))
+    right = FromScratch(bridge) if name == "ours" else solver(name, bridge, LinearSystem(bridge))
     found = refactored.rates(bridge, {"right": Off(right, 1e-11), "absent": None}, LITTLE)
     assert found.keys() == {"right"}
     with pytest.raises(ArithmeticError, match=r"the wrong one is off by 2\.0e-09 of the largest"):
@@ -86,7 +86,9 @@ def test_a_grid_that_is_wrong_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
 
     def wrong(*given: Any) -> Any:
         names, _ = real(*given)
-        return names, [lambda: Anew(double_layer_grid(6)).respond(*given[1:]) * (1 + 2e-8)] * 2
+        return names, [
+            lambda: FromScratch(double_layer_grid(6)).respond(*given[1:]) * (1 + 2e-8)
+        ] * 2
 
     monkeypatch.setattr(large, "_cholmod", wrong)
     with pytest.raises(ArithmeticError, match=r"the grid is off by 2\.0e-08"):

@@ -14,12 +14,12 @@ from rga_bench.contexts.methods.domain_adaptation import skada_coral, skada_dann
 from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
 from rga_bench.contexts.methods.iterated_kalman import iterated_kalman
 from rga_bench.contexts.methods.joint import joint_posterior
-from rga_bench.contexts.methods.knows_frame import knows_the_frame
 from rga_bench.contexts.methods.low_rank import low_rank_discrepancy
 from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.methods.neural_posterior import neural_posterior
-from rga_bench.contexts.methods.polished import polished_network
+from rga_bench.contexts.methods.oracle import oracle_posterior
 from rga_bench.contexts.methods.prior import prior_mean
+from rga_bench.contexts.methods.refined_network import refined_network
 from rga_bench.contexts.methods.unscented_kalman import unscented_kalman
 from rga_bench.contexts.methods.updated_model import updated_model
 from rga_bench.contexts.setting import ContextsTask
@@ -60,7 +60,7 @@ class Row:
 _IN_ORDER = ("smooth",)
 
 METHODS: dict[str, Row] = {
-    "knows the frame": Row(knows_the_frame, oracle=True, manners=MANNERS),
+    "knows the frame": Row(oracle_posterior, oracle=True, manners=MANNERS),
     "prior mean": Row(prior_mean),
     "source only": Row(networks.source_only),
     "residual network": Row(networks.residual_network),
@@ -69,7 +69,7 @@ METHODS: dict[str, Row] = {
     "DANN + physics, frozen network": Row(networks.adversarial_reduced_physics),
     "DANN + physics, exact simulator": Row(networks.adversarial_exact_physics),
     "physics only": Row(networks.physics_only, manners=MANNERS),
-    "network + polish": Row(polished_network, manners=MANNERS),
+    "network + polish": Row(refined_network, manners=MANNERS),
     "MAP": Row(maximum_posterior),
     "MAP, smooth discrepancy": Row(smooth_discrepancy, manners=MANNERS),
     "MAP, low-rank discrepancy (EM)": Row(low_rank_discrepancy),
@@ -105,7 +105,7 @@ PAPERS = {
 }
 
 
-def plays(task: ContextsTask) -> bool:
+def applies(task: ContextsTask) -> bool:
     """Whether the row of a task is played under its manner of contexts."""
     row = METHODS.get(task.row)
     return row is None or row.manners is None or task.manner in row.manners

@@ -7,9 +7,9 @@ from typing import Any
 
 from rga.errors import InputError
 from rga_bench.contexts.floors import FLOORS
-from rga_bench.contexts.play import TaskOutcome, play
-from rga_bench.contexts.rows import METHODS, plays
+from rga_bench.contexts.rows import METHODS, applies
 from rga_bench.contexts.setting import ContextsSetting
+from rga_bench.contexts.task_run import TaskOutcome, run_task
 from rga_bench.ledger import outcomes_of
 from rga_bench.machine import machine, versions
 
@@ -66,8 +66,8 @@ def measure(
     }
     rows = tuple(name for name in wanted if name not in absent)
     outcomes = outcomes_of(
-        play,
-        [task for task in setting.tasks(rows) if plays(task)],
+        run_task,
+        [task for task in setting.tasks(rows) if applies(task)],
         TaskOutcome,
         folder=folder,
         workers=workers,

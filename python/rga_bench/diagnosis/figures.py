@@ -10,7 +10,7 @@ from scipy.stats import binomtest, bootstrap
 from rga_bench.diagnosis.design import NULLS
 from rga_bench.diagnosis.field_design import FIELD_NULLS
 from rga_bench.diagnosis.judge import DrawOutcome
-from rga_bench.diagnosis.yardstick import NORMAL_90
+from rga_bench.diagnosis.reference_fit import NORMAL_90
 
 #: bounds of d_perp between which effects count alike; found above `PLAIN`, mostly above `FAINT`
 FAINT, PLAIN = 5.0, 8.0

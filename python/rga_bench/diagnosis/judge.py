@@ -19,9 +19,9 @@ from rga.records import load_record
 from rga_bench.diagnosis.design import Draw
 from rga_bench.diagnosis.field_design import draw_of
 from rga_bench.diagnosis.hidden import Truth
-from rga_bench.diagnosis.spared_effects import STIFF_JOINTS, Spared
+from rga_bench.diagnosis.permitted_causes import STIFF_JOINTS, PermittedCauses
+from rga_bench.diagnosis.reference_fit import ReferenceFit
 from rga_bench.diagnosis.unseen import unseen_gaps
-from rga_bench.diagnosis.yardstick import Yardstick
 from rga_bench.synthetic import Case
 
 #: rivals that a cause may have and still say where to look
@@ -97,20 +97,20 @@ def judge(draw: Draw) -> DrawOutcome:
     seconds = time.perf_counter() - begun
 
     truths = Truth.of(case)
-    spared = Spared.of(case)
-    causes = [cause for cause in findings.causes if not spared.has(cause.effect)]
+    permitted = PermittedCauses.of(case)
+    causes = [cause for cause in findings.causes if not permitted.has(cause.effect)]
     hidden, deviations, gaps = [], {}, None
     if truths:
         with threadpool_limits(1):
-            yardstick = Yardstick(case, model, record)
-            sizes = yardstick.sizes()
+            reference = ReferenceFit(case, model, record)
+            sizes = reference.sizes()
             joints = any(cause.effect["kind"] in STIFF_JOINTS for cause in findings.causes)
-            deviations = yardstick.deviations(joints)
+            deviations = reference.deviations(joints)
             gaps = unseen_gaps(case, _added(findings))
         for truth, size in zip(truths, sizes, strict=True):
             number = _cause_of(truth, causes)
             if number is not None:
-                told = yardstick.deviations_told(truth, causes[number].effect)
+                told = reference.deviations_reported(truth, causes[number].effect)
                 deviations |= {truth.kind: told} if told else {}
             hidden.append(
                 {
@@ -139,10 +139,10 @@ def judge(draw: Draw) -> DrawOutcome:
         onsets=_onsets(case, truths, causes),
         gaps=None if gaps is None else vars(gaps).copy(),
         gain_covered=_gain_covered(case, findings) if findings.causes else None,
-        chances=_chances(findings, truths, spared),
+        chances=_chances(findings, truths, permitted),
         seconds=seconds,
         model_sha256=findings.model_sha256,
-        broken_told=spared.told(findings),
+        broken_told=permitted.told(findings),
     )
 
 
@@ -214,11 +214,13 @@ def _gain_covered(case: Case, findings: Findings) -> bool:
     return bool(low <= float((off[0] - off[1])[seen].mean()) <= high)
 
 
-def _chances(findings: Findings, truths: list[Truth], spared: Spared) -> list[tuple[float, bool]]:
+def _chances(
+    findings: Findings, truths: list[Truth], permitted: PermittedCauses
+) -> list[tuple[float, bool]]:
     """Chances of the explanations that were tried, the likeliest first, and which are the truth."""
     tried: dict[str, tuple[float, bool]] = {}
     for one in findings.explanations:
-        effects = [effect for effect in one.effects if not spared.has(effect)]
+        effects = [effect for effect in one.effects if not permitted.has(effect)]
         right = len(effects) == len(truths) and all(
             any(truth.is_at(effect) for effect in effects) for truth in truths
         )

@@ -19,7 +19,7 @@ from rga_bench.diagnosis.figures import (
     singles,
 )
 from rga_bench.diagnosis.judge import DrawOutcome
-from rga_bench.diagnosis.yardstick import NORMAL_90
+from rga_bench.diagnosis.reference_fit import NORMAL_90
 from rga_bench.field import INSIDE
 
 #: standard deviations beyond which an estimate is listed as a failure

@@ -6,8 +6,8 @@ Plain NumPy and SciPy; what solves it shares no code with the simulator.
 """
 
 from rga_bench.field.case import draw_field, fits
+from rga_bench.field.healthy_case import Options
 from rga_bench.field.hidden import INSIDE, KINDS, OUTSIDE
-from rga_bench.field.stage import Options
 from rga_bench.field.structures import STRUCTURES
 
 __all__ = ["INSIDE", "KINDS", "OUTSIDE", "STRUCTURES", "Options", "draw_field", "fits"]

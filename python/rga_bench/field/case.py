@@ -9,10 +9,17 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rga_bench.faults.library import FAULTS, Scale
+from rga_bench.field.healthy_case import (
+    PLAIN,
+    HealthyCase,
+    Options,
+    healthy_case,
+    reading_covariance,
+    tare_rows,
+)
 from rga_bench.field.hidden import KINDS, FieldSetting
 from rga_bench.field.inject import ONSETS, FieldEffect, hide, readings
 from rga_bench.field.solver import Array
-from rga_bench.field.stage import PLAIN, Options, Stage, account_of, put_up, tare_rows
 from rga_bench.field.structure import FieldStructure
 from rga_bench.field.structures import STRUCTURES
 from rga_bench.field.world import FieldWorld
@@ -58,10 +65,10 @@ def draw_field(
         names = list(STRUCTURES)
         name = structure or names[int(stream(seed, "which").integers(len(names)))]
         place = STRUCTURES[name](stream(seed, "structure"))
-        stage = put_up(seed, place, welded, rows, options)
-        account = account_of(seed, place, welded, stage)
-        hidden = [hide(seed, one, stage, account, options, aims) for one in kinds]
-        return _case(seed, name, stage, hidden, options)
+        healthy = healthy_case(seed, place, welded, rows, options)
+        account = reading_covariance(seed, place, welded, healthy)
+        hidden = [hide(seed, one, healthy, account, options, aims) for one in kinds]
+        return _case(seed, name, healthy, hidden, options)
 
 
 def fits(kind: str, structure: str) -> bool:
@@ -73,25 +80,25 @@ def fits(kind: str, structure: str) -> bool:
 
 
 def _case(
-    seed: int, name: str, stage: Stage, hidden: Sequence[FieldEffect], options: Options
+    seed: int, name: str, healthy: HealthyCase, hidden: Sequence[FieldEffect], options: Options
 ) -> Case:
-    site, record = stage.site, stage.record
-    place = stage.world.structure
-    clean = readings(stage, hidden)
+    site, record = healthy.site, healthy.record
+    place = healthy.world.structure
+    clean = readings(healthy, hidden)
     shown = site.logger.logged(clean)[record]
     shown[stream(seed, "missing").random(shown.shape) < 0.002] = np.nan
     sensors = list(place.model["sensors"])
     mapping, tare = None, None
     if options.tared:
         shown = shown + site.logger.offset
-        tare = tare_rows(seed, stage)
+        tare = tare_rows(seed, healthy)
         step = site.time[1]
         mapping = f"zero = [0.0, {site.time[tare[-1]] + 0.5 * step - site.time[record[0]]}]\n"
     broken = _break(seed, place, shown, hidden) if options.broken else None
     first = site.time[record[0]]
     rows = np.concatenate([record, np.arange(record[-1] + 1, len(site.time))])
     signatures = [
-        readings(stage, hidden) - readings(stage, [o for o in hidden if o is not one])
+        readings(healthy, hidden) - readings(healthy, [o for o in hidden if o is not one])
         for one in hidden
     ]
 
@@ -113,15 +120,15 @@ def _case(
         clean=told(clean),
         unseen=unseen,
         signatures=[told(one) for one in signatures],
-        together=told(clean - stage.clean),
+        together=told(clean - healthy.clean),
     )
     channels = dict(zip(sensors, shown.T, strict=True))
-    channels |= {key: course[record] for key, course in stage.told.items()}
+    channels |= {key: course[record] for key, course in healthy.told.items()}
     truth = {
         **head,
         "bridge": name,
         "joint_stiffness": None,
-        **stage.facts,
+        **healthy.facts,
         "tared": options.tared,
         "broken": broken,
         "beside": beside,

@@ -9,9 +9,9 @@ import numpy as np
 
 from rga_bench.field.channels import observe
 from rga_bench.field.effect_size import ReadingCovariance
+from rga_bench.field.healthy_case import HealthyCase, Options, tare_rows
 from rga_bench.field.hidden import KINDS, FieldSetting, FieldSpan
 from rga_bench.field.solver import Array
-from rga_bench.field.stage import Options, Stage, tare_rows
 from rga_bench.synthetic.noise import stream
 
 #: rows where an effect begins late, as a share of the record
@@ -47,7 +47,7 @@ class FieldEffect(NamedTuple):
 def hide(
     seed: int,
     kind: str,
-    stage: Stage,
+    healthy: HealthyCase,
     account: ReadingCovariance,
     options: Options,
     aims: tuple[float, float],
@@ -55,19 +55,19 @@ def hide(
     """Draw a place that can be seen, then the value whose d' meets a drawn aim."""
     rng = stream(seed, f"hidden {kind}")
     how = KINDS[kind]
-    time = stage.site.time
+    time = healthy.site.time
     late = rng.random() < how.late or (options.tared and how.needs_onset)
-    row = stage.record[int(rng.uniform(*ONSETS) * len(stage.record))]
+    row = healthy.record[int(rng.uniform(*ONSETS) * len(healthy.record))]
     onset = float(time[row]) if late else None
     aim = float(np.exp(rng.uniform(*np.log(aims))))
-    setting = FieldSetting(stage.world, time, stage.clean)
+    setting = FieldSetting(healthy.world, time, healthy.clean)
 
     def size(span: FieldSpan, value: float) -> float:
         one = FieldEffect(kind, span, value, onset)
-        change = readings(stage, [one]) - stage.clean
+        change = readings(healthy, [one]) - healthy.clean
         if options.tared:
-            change = change - change[tare_rows(seed, stage)].mean(axis=0)
-        return account.d_prime(change[stage.record])
+            change = change - change[tare_rows(seed, healthy)].mean(axis=0)
+        return account.d_prime(change[healthy.record])
 
     best: tuple[float, FieldSpan] | None = None
     for _ in range(_PLACES):
@@ -94,18 +94,18 @@ def hide(
     return FieldEffect(kind, span, value, onset, size(span, value))
 
 
-def readings(stage: Stage, hidden: Sequence[FieldEffect]) -> Array:
+def readings(healthy: HealthyCase, hidden: Sequence[FieldEffect]) -> Array:
     """The channels without noise with effects, [n, c]."""
-    time = stage.site.time
+    time = healthy.site.time
     begun = np.array([-np.inf if one.onset is None else one.onset for one in hidden])
     on = time[:, None] >= begun
-    out = stage.clean.copy()
+    out = healthy.clean.copy()
     for state in np.unique(on, axis=0):
-        world = stage.world.copy()
+        world = healthy.world.copy()
         for one, there in zip(hidden, state, strict=True):
             if there:
                 one.span.act(world, one.value, one.onset)
         if state.any():
             rows = (on == state).all(axis=1)
-            out[rows] = observe(world, stage.site)[rows]
+            out[rows] = observe(world, healthy.site)[rows]
     return out

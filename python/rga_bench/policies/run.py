@@ -6,8 +6,8 @@ from dataclasses import fields
 import numpy as np
 
 from rga.parallel import finished
-from rga_bench.policies.play import PolicyResult, play
 from rga_bench.policies.setting import PolicySetting
+from rga_bench.policies.twin_run import PolicyResult, run_twin
 
 #: of a policy on all streams of a sort: the means of what was measured
 Means = dict[str, float]
@@ -31,7 +31,7 @@ def compare(
     """
     tasks = setting.tasks()
     known: dict[tuple[str, int, str], PolicyResult] = {}
-    for task, played in finished(play, tasks, workers=workers):
+    for task, played in finished(run_twin, tasks, workers=workers):
         known[task.stream, task.seed, task.policy] = played.result()
         progress(len(known) / len(tasks))
     return [known[task.stream, task.seed, task.policy] for task in tasks]

@@ -7,8 +7,8 @@ from rich.table import Table
 from rich.text import Text
 
 from rga_bench.machine import machine, versions
-from rga_bench.policies.play import PolicyResult
 from rga_bench.policies.run import Means, means
+from rga_bench.policies.twin_run import PolicyResult
 
 #: measure and format of each column
 COLUMNS = {

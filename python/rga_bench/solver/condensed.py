@@ -7,8 +7,8 @@ from rga.arrays import FloatArray
 from rga.simulation.paths.condensation import Condensation
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
-from rga_bench.solver.anew import Anew, whole_factors
 from rga_bench.solver.box_bridge import box_bridge
+from rga_bench.solver.from_scratch import FromScratch, whole_factors
 from rga_bench.solver.roofs import Roofs
 from rga_bench.solver.setting import SolverSetting
 from rga_bench.timing import shortest
@@ -47,7 +47,7 @@ def few_stiffnesses_vary(setting: SolverSetting, roofs: Roofs) -> list[Measureme
     q = setting.draw(rows, len(bridge.loads["forces"]))
     factors = 1.0 + 0.5 * setting.draw(rows, len(ours.stiffness))
     stiffness = factors * ours.stiffness
-    plain = Anew(bridge).respond(whole_factors(bridge, factors[:few]), q[:few])
+    plain = FromScratch(bridge).respond(whole_factors(bridge, factors[:few]), q[:few])
     agree("C2", ours.respond(q[:few], stiffness[:few]), plain)
     agree("NumPy Woodbury", woodbury(ours, q[:few], stiffness[:few]), plain)
     found = np.empty((rows, plain.shape[1]))

@@ -11,8 +11,8 @@ from rga.arrays import FloatArray
 from rga_bench.installed import present
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
-from rga_bench.solver.anew import Anew
 from rga_bench.solver.double_layer_grid import double_layer_grid
+from rga_bench.solver.from_scratch import FromScratch
 from rga_bench.solver.peers.cholmod import Cholmod
 from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.roofs import Roofs
@@ -42,7 +42,7 @@ def grid(panels: int, setting: SolverSetting, roofs: Roofs) -> list[Measurement]
     solver = _core.Refactored(truss.structure, truss.loads, truss.outputs)
     ours: list[Solve] = [
         partial(solver.respond, factors, q),
-        partial(Anew(truss).respond, factors, q),
+        partial(FromScratch(truss).respond, factors, q),
     ]
     known_as, theirs = _cholmod(system, factors, q)
     solved = [task() for task in (*ours, *theirs)]

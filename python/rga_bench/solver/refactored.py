@@ -7,9 +7,8 @@ from rga import _core
 from rga_bench.installed import present
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
-from rga_bench.solver.anew import Anew
 from rga_bench.solver.box_bridge import BoxBridge, box_bridge, samples
-from rga_bench.solver.lanes import Lanes
+from rga_bench.solver.from_scratch import FromScratch
 from rga_bench.solver.peers import Peer
 from rga_bench.solver.peers.cholmod import Cholmod, fastest_cholmod, least_operations
 from rga_bench.solver.peers.linear_system import LinearSystem
@@ -17,6 +16,7 @@ from rga_bench.solver.peers.pynite import PyNite
 from rga_bench.solver.peers.superlu import SuperLU
 from rga_bench.solver.roofs import Roofs
 from rga_bench.solver.setting import SolverSetting
+from rga_bench.solver.simd_batch import SimdBatch
 from rga_bench.timing import shortest
 
 #: samples that are compared before anything is timed
@@ -30,16 +30,18 @@ def one_span(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     """The bridge of 84 nodes, by instruction set; the best beside all peers and the roof."""
     bridge = box_bridge(setting.seed)
     system = LinearSystem(bridge)
-    lanes = {name: Lanes(bridge, name) for name in _core.instructions()}
-    best = next(iter(lanes))
+    by_instructions = {name: SimdBatch(bridge, name) for name in _core.instructions()}
+    best = next(iter(by_instructions))
     cholmod, known_as = _cholmod(system, setting)
-    fast = rates(bridge, {**lanes, known_as: cholmod, "SciPy splu": SuperLU(system)}, setting)
+    fast = rates(
+        bridge, {**by_instructions, known_as: cholmod, "SciPy splu": SuperLU(system)}, setting
+    )
     slow = rates(
         bridge,
         {
-            best: lanes[best],
+            best: by_instructions[best],
             "PyNite": present(lambda: PyNite(bridge, system)),
-            "rga, the structure anew": Anew(bridge),
+            "rga, the structure anew": FromScratch(bridge),
         },
         setting,
     )
@@ -48,7 +50,9 @@ def one_span(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     def ours(name: str) -> Measurement:
         return Measurement(case, name, fast[name], "/s")
 
-    figures = [ours(name).beside(known_as, fast.get(known_as), LEAST.get(name)) for name in lanes]
+    figures = [
+        ours(name).beside(known_as, fast.get(known_as), LEAST.get(name)) for name in by_instructions
+    ]
     figures.append(ours(best).beside("SciPy splu", fast["SciPy splu"]))
     again = Measurement(case, best, slow[best], "/s")
     figures += [
@@ -71,7 +75,7 @@ def ten_spans(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     system = LinearSystem(bridge)
     best = _core.instructions()[0]
     cholmod, known_as = _cholmod(system, setting)
-    solvers = {best: Lanes(bridge, best, 256), known_as: cholmod, "SciPy splu": SuperLU(system)}
+    solvers = {best: SimdBatch(bridge, best, 256), known_as: cholmod, "SciPy splu": SuperLU(system)}
     found = rates(bridge, solvers, setting)
     ours = Measurement(f"C3, ten spans, {system.size} DOFs", best, found[best], "/s")
     return [
@@ -90,7 +94,7 @@ def rates(
     """
     there = {name: solver for name, solver in solvers.items() if solver is not None}
     factors, q = samples(bridge, max(one.rows for one in there.values()), setting.seed)
-    plain = Anew(bridge).respond(factors[:COMPARED], q[:COMPARED])
+    plain = FromScratch(bridge).respond(factors[:COMPARED], q[:COMPARED])
     for name, solver in there.items():
         few = min(COMPARED, solver.rows)
         agree(name, solver.respond(factors[:few], q[:few]), plain[:few])

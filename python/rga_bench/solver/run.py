@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from rga_bench.machine import machine, versions
 from rga_bench.measurement import Measurement
-from rga_bench.solver import condensed, cores, derivatives, large, refactored, whole
+from rga_bench.solver import condensed, cores, derivatives, end_to_end, large, refactored
 from rga_bench.solver.roofs import Roofs, measure_roofs
 from rga_bench.solver.setting import SolverSetting
 
@@ -61,9 +61,9 @@ def measure(
         cores.two_cores,
         *(partial(large.grid, panels) for panels in setting.panels),
         derivatives.derivatives,
-        whole.large_displacements,
-        whole.whole_model,
-        whole.data_set,
+        end_to_end.large_displacements,
+        end_to_end.whole_model,
+        end_to_end.data_set,
     ]
     figures: list[Measurement] = []
     with threadpool_limits(1):

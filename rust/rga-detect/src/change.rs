@@ -23,11 +23,11 @@ use statistics::{Banks, Found};
 pub use reference::{Reference, ReferenceArrays};
 pub use statistics::STATISTICS;
 
-/// Rows of a beat.
-const BEAT: usize = 4;
+/// Rows of a block.
+const BLOCK_ROWS: usize = 4;
 
-/// Sixteen sensors in the rows of a beat.
-type Block = [[f32; SIXTEEN]; BEAT];
+/// Sixteen sensors in the rows of a block.
+type Block = [[f32; SIXTEEN]; BLOCK_ROWS];
 
 /// Beyond this a reading is taken for a fault of its source.
 const LARGEST: f64 = 1e60;
@@ -178,7 +178,7 @@ impl OnSixteen for Advance<'_> {
         let own = self.statistics;
         let sensors = own.reference.sensors();
         let mut work = Work::new(&own.reference);
-        let mut found = [[0.0; _]; BEAT];
+        let mut found = [[0.0; _]; BLOCK_ROWS];
         while !alarms.is_empty() {
             let count = own.banks.rows_to_beat().min(alarms.len());
             let (readings, alarm);
@@ -197,7 +197,7 @@ impl OnSixteen for Advance<'_> {
 }
 
 impl ChangeStatistics {
-    /// Takes rows of one beat.
+    /// Takes rows of one block.
     #[inline(always)]
     fn take<L: Lanes>(
         &mut self,

@@ -11,10 +11,10 @@ from rga_bench.contexts.data import CalibrationData, calibration_of
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.methods.joint import joint_posterior
-from rga_bench.contexts.methods.knows_frame import knows_the_frame
 from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.methods.networks import NETWORKS, learn
-from rga_bench.contexts.methods.polished import polished_network
+from rga_bench.contexts.methods.oracle import oracle_posterior
+from rga_bench.contexts.methods.refined_network import refined_network
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import ContextsTask, Sizes
 
@@ -37,7 +37,7 @@ def full() -> CalibrationData:
 
 
 def test_the_joint_posterior_comes_near_the_floor(full: CalibrationData) -> None:
-    floor = scored(knows_the_frame(full.problem, full.usual.twin), full)
+    floor = scored(oracle_posterior(full.problem, full.usual.twin), full)
     blind = scored(maximum_posterior(full.problem), full)
     joint = joint_posterior(full.problem)
     found = scored(joint, full)
@@ -57,7 +57,7 @@ def test_the_joint_posterior_comes_near_the_floor(full: CalibrationData) -> None
 
 def test_the_polished_network_leaves_hardly_more_than_the_noise() -> None:
     data = known("noise only")
-    found = scored(polished_network(data.problem), data)
+    found = scored(refined_network(data.problem), data)
     noise = float((data.test.noise**2).mean())
     assert found.rg is not None
     assert found.rg < 1.2 * noise
@@ -73,7 +73,7 @@ def test_nothing_but_load_tests_is_labelled(full: CalibrationData) -> None:
     few = {"steps": 40, "fine_steps": 10, "reduced_steps": 20, "width": 16}
     short = partial(learn, NETWORKS["source_only"].model_copy(update=few))
     alone, beside = (
-        polished_network(problem, short).infer(full.test.readings[:5]).value
+        refined_network(problem, short).infer(full.test.readings[:5]).value
         for problem in (full.problem, with_tests)
     )
     np.testing.assert_array_equal(alone, beside)

@@ -11,12 +11,12 @@ from rga_bench.contexts.data import CalibrationData, calibration_of
 from rga_bench.contexts.examination import Examination
 from rga_bench.contexts.methods import networks
 from rga_bench.contexts.methods.networks import NETWORKS
-from rga_bench.contexts.methods.polished import polished_network
+from rga_bench.contexts.methods.refined_network import refined_network
 from rga_bench.contexts.rows import METHODS
 from rga_bench.contexts.setting import ContextsTask, Sizes
 
-#: methods whose tests are in other files: test_loi_networks, _model_based, _peers and _joint
-ELSEWHERE = {*(getattr(networks, name) for name in NETWORKS), *UNLABELLED, *NEEDS, polished_network}
+#: methods whose tests are in test_networks, test_model_based, test_joint and the peers
+ELSEWHERE = {*(getattr(networks, name) for name in NETWORKS), *UNLABELLED, *NEEDS, refined_network}
 #: rows of all other methods
 HERE = [name for name, row in METHODS.items() if row.learn not in ELSEWHERE]
 

@@ -17,8 +17,8 @@ from rga_bench.diagnosis.figures import ChallengeFigure, figures, rate
 from rga_bench.diagnosis.hidden import Truth
 from rga_bench.diagnosis.judge import DrawOutcome
 from rga_bench.diagnosis.plots import plot
+from rga_bench.diagnosis.reference_fit import ReferenceFit
 from rga_bench.diagnosis.tables import failures, tables
-from rga_bench.diagnosis.yardstick import Yardstick
 from rga_bench.ledger import NAME, Ledger
 from rga_bench.synthetic import Case, Conditions, draw_case
 
@@ -199,7 +199,7 @@ def loaded(case: Case, folder: Path) -> tuple[Model, Record]:
     return model, load_record(folder / "record.csv", model)
 
 
-def test_the_yardstick_knows_size_and_place_of_the_truth(tmp_path: Path) -> None:
+def test_the_reference_fit_knows_size_and_place_of_the_truth(tmp_path: Path) -> None:
     case = draw_case(
         4,
         bridge="footbridge",
@@ -208,17 +208,17 @@ def test_the_yardstick_knows_size_and_place_of_the_truth(tmp_path: Path) -> None
         conditions=Conditions(scatter=0.01, later=20, unseen=0.2),
         aims=(20.0, 30.0),
     )
-    yardstick = Yardstick(case, *loaded(case, tmp_path))
-    (size,) = yardstick.sizes()
+    reference = ReferenceFit(case, *loaded(case, tmp_path))
+    (size,) = reference.sizes()
     # Both accounts of noise and scatter are rough; they are of one size.
     assert case.truth["d_prime"] / 3 < size.d_prime < 3 * case.truth["d_prime"]
     assert size.d_perp <= size.d_prime
-    off = yardstick.deviations(beside_joints=False)["load_scale"]["factor"]
+    off = reference.deviations(beside_joints=False)["load_scale"]["factor"]
     assert abs(off) < 4
     (truth,) = Truth.of(case)
     value = truth.values["factor"]
     told = {"value": value, "ci90": (value / 1.1, value * 1.1)}
-    assert yardstick.deviations_told(truth, {"factor": told})["factor"] == pytest.approx(
+    assert reference.deviations_reported(truth, {"factor": told})["factor"] == pytest.approx(
         0, abs=1e-9
     )
 

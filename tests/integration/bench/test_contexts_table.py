@@ -11,7 +11,6 @@ from context_tasks import SIZES, nearest, task
 from rga.errors import InputError
 from rga_bench.contexts import setting
 from rga_bench.contexts.context_regime import MANNERS
-from rga_bench.contexts.play import TaskOutcome, play
 from rga_bench.contexts.rows import ORACLE, PAPERS, Row
 from rga_bench.contexts.run import ContextsResult, measure
 from rga_bench.contexts.score import Score
@@ -20,6 +19,7 @@ from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.sheets_levels import order
 from rga_bench.contexts.tables.table import about, markdown
 from rga_bench.contexts.tables.targets import asked
+from rga_bench.contexts.task_run import TaskOutcome, run_task
 from rga_bench.ledger import NAME
 from rga_bench.machine import machine, versions
 
@@ -163,7 +163,7 @@ def test_the_command(
     content = json.loads(file.read_text(encoding="utf-8"))
     assert content["command"] == "rga benchmark loi --quick --seed 3"
     assert {one["row"] for one in content["outcomes"]} == {"noise", "nearest"}
-    monkeypatch.setattr("rga_bench.contexts.run.play", play_nothing)
+    monkeypatch.setattr("rga_bench.contexts.run.run_task", play_nothing)
     assert rga("benchmark", "loi", *given).code == 0
     wrong = rga("benchmark", "loi", "--quick", "--repository", "attic")
     assert wrong.code == 2
@@ -175,7 +175,7 @@ def play_nothing(task: ContextsTask) -> None:
 
 
 def test_a_method_that_learned_is_timed(few_methods: dict[str, Row]) -> None:
-    outcome = play(task("same"))
+    outcome = run_task(task("same"))
     assert outcome.learning is not None
     assert outcome.inference is not None
-    assert outcome == play(task("same"))
+    assert outcome == run_task(task("same"))

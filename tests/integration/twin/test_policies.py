@@ -20,9 +20,8 @@ from rga.twin.runner import taken_up
 from rga.twin.settings import Pace
 from rga.twin.sync.policy import Policy
 from rga_bench.policies import run, setting
-from rga_bench.policies.play import PolicyResult
-from rga_bench.policies.play import play as play_task
 from rga_bench.policies.setting import STREAMS, PolicySetting
+from rga_bench.policies.twin_run import PolicyResult, run_twin
 
 Stream = Callable[..., Path]
 POLICIES = ("event", "time", "hybrid", "adaptive")
@@ -227,7 +226,7 @@ def test_the_comparison(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         assert 0 <= one["out_of_sync"] <= 1
     # The same seed gives the same, whatever was played before.
     for task in replace(LITTLE, seed=3).tasks()[-2:]:
-        assert play_task(task) == PolicyResult(**found[task.stream, task.policy])
+        assert run_twin(task) == PolicyResult(**found[task.stream, task.policy])
 
 
 def test_a_comparison_that_cannot_be_written_is_not_begun(

@@ -5,11 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rga_bench.contexts.floors import FLOORS
-from rga_bench.contexts.play import TaskOutcome
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import DRIFTING
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.spread import Mean
+from rga_bench.contexts.task_run import TaskOutcome
 
 #: a number of each split
 Values = Mapping[int, float]

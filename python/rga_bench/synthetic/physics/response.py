@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from rga_bench.synthetic.physics.clearance import slips, stops
 from rga_bench.synthetic.physics.frame import DOFS, Array, Frame, FrameSpring, Solution
 from rga_bench.synthetic.physics.friction import slide
-from rga_bench.synthetic.physics.play import slips, stops
 from rga_bench.synthetic.physics.world import World
 
 Contexts = dict[str, Array]

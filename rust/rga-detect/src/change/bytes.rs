@@ -71,7 +71,7 @@ impl ChangeStatistics {
             rows,
             alarm,
             statistic,
-            beats,
+            blocks,
         ] = header;
         let whole = |count: u64| usize::try_from(count).ok().filter(|n| *n <= bytes.len());
         let (Some(sensors), Some(order), Some(knots), Some(kept)) =
@@ -86,7 +86,7 @@ impl ChangeStatistics {
             filled == ring && next < ring.max(1)
         };
         let raised = alarm == NONE || (alarm < rows && statistic < STATISTICS as u64);
-        if mark != MARK || sensors == 0 || !placed || !raised || rows.max(beats) > MOST {
+        if mark != MARK || sensors == 0 || !placed || !raised || rows.max(blocks) > MOST {
             return Err(foreign());
         }
         let unsettled = rest.counts(sensors)?;
@@ -111,7 +111,7 @@ impl ChangeStatistics {
         })?;
         (reference.past, reference.unsettled) = (past, unsettled);
         let mut banks = Banks::new(sensors);
-        banks.rows = beats;
+        banks.rows = blocks;
         let mut recent = Recent::new(sensors, kept);
         (recent.next, recent.filled) = (next as usize, filled as usize);
         let (mut thresholds, mut peaks) = ([0.0; _], [0.0; _]);

@@ -11,7 +11,7 @@ mod normal_scores;
 use rga_simd::Array;
 use rga_simd::f32::{Lanes, SIXTEEN, sixteens};
 
-use crate::change::{BEAT, Block};
+use crate::change::{BLOCK_ROWS, Block};
 use crate::refusal::Refusal;
 use autoregression::any_missing;
 
@@ -204,7 +204,7 @@ impl Reference {
         self.weights.len() / self.sensors()
     }
 
-    /// Independent scores of rows, those of a beat at most, NaN where they are missing; and whether
+    /// Independent scores of rows, those of a block at most, NaN where they are missing; and whether
     /// any is. `missing`: readings may be.
     #[inline(always)]
     pub(crate) fn scores<L: Lanes>(
@@ -235,8 +235,8 @@ impl Reference {
                 self.remember(readings, &mut work.expected);
             }
         }
-        if rows == BEAT && !gaps {
-            self.finish::<L, BEAT, false>(lanes, work, 0);
+        if rows == BLOCK_ROWS && !gaps {
+            self.finish::<L, BLOCK_ROWS, false>(lanes, work, 0);
             return false;
         }
         for row in 0..rows {
@@ -292,7 +292,7 @@ fn scaled(
     scores
 }
 
-/// What the rows of a beat are worked out in.
+/// What the rows of a block are worked out in.
 #[derive(Debug, Clone)]
 pub(crate) struct Work {
     /// Readings that predict the next ones are known.

@@ -13,10 +13,10 @@
 //!   and Siegmund, 2013), the product of 1 - q + q f(u). For f, the likelihood ratio of a shift by
 //!   3.2, e^(3.2 |u| - 5.12) / 2, a power stands that follows it where it decides.
 //!
-//! What is slow is looked at in beats of a few rows.
+//! What is slow is looked at in blocks of a few rows.
 
-mod beats;
 mod likelihood;
+mod row_blocks;
 mod rows;
 mod sums;
 
@@ -24,16 +24,16 @@ use std::slice;
 
 use rga_simd::f32::{Lanes, SIXTEEN, sixteens};
 
-use crate::change::{BEAT, Block};
+use crate::change::{BLOCK_ROWS, Block};
 use likelihood::Several;
 
-/// Beats of a bar.
-const BAR: u64 = 2;
+/// Blocks of a long block.
+const LONG_BLOCK: u64 = 2;
 
-/// Steps d in the scores of rows, of beats and of bars.
+/// Steps d in the scores of rows, of blocks and of long blocks.
 const ROW_STEPS: [f32; 3] = [1.0, 2.0, 4.0];
-const BEAT_STEP: f32 = 0.5;
-const BAR_STEP: f32 = 0.25;
+const BLOCK_STEP: f32 = 0.5;
+const LONG_BLOCK_STEP: f32 = 0.25;
 /// Steps in sums.
 const SUM_STEPS: [f32; 4] = [0.5, 1.0, 2.0, 4.0];
 /// Sums that are watched: of all that rise alike, and of the squares of all.
@@ -41,9 +41,9 @@ const SUMS: usize = 2;
 /// Factors on the standard deviation: sqrt(2), 2, 1/2.
 const SPREADS: usize = 3;
 
-/// What an average of rows, or of beats, forgets with each, and after how many it is looked at.
+/// What an average of rows, or of blocks, forgets with each, and after how many it is looked at.
 const ROW_AVERAGES: [(f32, u64); 3] = [(1.0 / 2.0, 1), (1.0 / 4.0, 1), (1.0 / 8.0, 2)];
-const BEAT_AVERAGES: [(f32, u64); 5] = [
+const BLOCK_AVERAGES: [(f32, u64); 5] = [
     (1.0 / 4.0, 1),
     (1.0 / 8.0, 1),
     (1.0 / 16.0, 2),
@@ -55,11 +55,11 @@ const BEAT_AVERAGES: [(f32, u64); 5] = [
 /// last; a step in all alike; one in the squares of all.
 pub const STATISTICS: usize = SIXTEEN + SUMS * SUM_STEPS.len();
 const STEPS: usize = 2 + ROW_STEPS.len();
-const AVERAGES: usize = ROW_AVERAGES.len() + BEAT_AVERAGES.len();
+const AVERAGES: usize = ROW_AVERAGES.len() + BLOCK_AVERAGES.len();
 const _: () = assert!(STEPS + SPREADS + AVERAGES == SIXTEEN);
 const _: () = assert!(2 * SUMS * SUM_STEPS.len() == SIXTEEN);
 
-/// Where statistics of rows begin among all; those of beats lie before the steps, and behind the
+/// Where statistics of rows begin among all; those of blocks lie before the steps, and behind the
 /// averages.
 const OF_ROW_STEPS: usize = STEPS - ROW_STEPS.len();
 const OF_SPREADS: usize = STEPS;
@@ -68,9 +68,9 @@ const OF_AVERAGES: usize = STEPS + SPREADS;
 /// Two sixteens; what is behind the last statistic means nothing.
 pub(super) type Found = [f32; 2 * SIXTEEN];
 
-/// Vectors of sixteen sensors: what every row changes, and what beats change.
+/// Vectors of sixteen sensors: what every row changes, and what blocks change.
 const QUICK: usize = 3 + ROW_AVERAGES.len() + 2 * ROW_STEPS.len();
-const SLOW: usize = 1 + 2 + 2 + SPREADS + BEAT_AVERAGES.len();
+const SLOW: usize = 1 + 2 + 2 + SPREADS + BLOCK_AVERAGES.len();
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Banks {
@@ -98,12 +98,12 @@ impl Banks {
         }
     }
 
-    /// Rows until a beat is full.
+    /// Rows until a block is full.
     pub(super) fn rows_to_beat(&self) -> usize {
-        BEAT - (self.rows % BEAT as u64) as usize
+        BLOCK_ROWS - (self.rows % BLOCK_ROWS as u64) as usize
     }
 
-    /// Takes the scores of rows of one beat, NaN where they are missing, and gives the statistics
+    /// Takes the scores of rows of one block, NaN where they are missing, and gives the statistics
     /// of each; one that is not looked at in a row is 0.
     #[inline(always)]
     pub(super) fn advance<L: Lanes>(
@@ -115,9 +115,9 @@ impl Banks {
         found: &mut [Found],
     ) {
         found.fill([0.0; _]);
-        if found.len() == BEAT && !gaps {
-            self.take::<L, BEAT, false>(lanes, scores, signature, 0, found);
-            self.watch_beat::<L, true>(lanes, &mut found[BEAT - 1]);
+        if found.len() == BLOCK_ROWS && !gaps {
+            self.take::<L, BLOCK_ROWS, false>(lanes, scores, signature, 0, found);
+            self.watch_block::<L, true>(lanes, &mut found[BLOCK_ROWS - 1]);
             return;
         }
         for (row, found) in found.iter_mut().enumerate() {
@@ -127,13 +127,13 @@ impl Banks {
             } else {
                 self.take::<L, 1, false>(lanes, scores, signature, row, one);
             }
-            if self.rows.is_multiple_of(BEAT as u64) {
-                self.watch_beat::<L, false>(lanes, found);
+            if self.rows.is_multiple_of(BLOCK_ROWS as u64) {
+                self.watch_block::<L, false>(lanes, found);
             }
         }
     }
 
-    /// N rows, one or all of a beat, from one on. `GAPS`: some scores are missing.
+    /// N rows, one or all of a block, from one on. `GAPS`: some scores are missing.
     #[inline(always)]
     fn take<L: Lanes, const N: usize, const GAPS: bool>(
         &mut self,

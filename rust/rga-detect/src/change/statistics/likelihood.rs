@@ -3,7 +3,7 @@
 use rga_simd::f32::Lanes;
 
 use super::SPREADS;
-use crate::change::BEAT;
+use crate::change::BLOCK_ROWS;
 use crate::change::exponentials::powers;
 
 /// Number of sensors that q stands for.
@@ -45,8 +45,8 @@ pub(super) fn replaced<L: Lanes>(
 }
 
 /// Likelihood ratios of a standard deviation s of sqrt(2), 2 and 1/2 times what it was, from the
-/// sum T of the squares of so many scores of a beat: s^-count times powers of e whose exponents are
-/// T / 4, 3 T / 8 and - 3 T / 2. `WHOLE`: the scores are those of all rows of the beat.
+/// sum T of the squares of so many scores of a block: s^-count times powers of e whose exponents are
+/// T / 4, 3 T / 8 and - 3 T / 2. `WHOLE`: the scores are those of all rows of the block.
 #[inline(always)]
 pub(super) fn spread_ratios<L: Lanes, const WHOLE: bool>(
     lanes: L,
@@ -61,9 +61,9 @@ pub(super) fn spread_ratios<L: Lanes, const WHOLE: bool>(
         lanes.mul(square(lanes, shrink_4), shrink_4),
     ];
     for (ratio, factor) in ratios.iter_mut().zip([0.5f32.sqrt(), 0.5, 2.0]) {
-        let mut power = lanes.splat(factor.powi(BEAT as i32));
+        let mut power = lanes.splat(factor.powi(BLOCK_ROWS as i32));
         if !WHOLE {
-            for fewer in 1..BEAT as i32 {
+            for fewer in 1..BLOCK_ROWS as i32 {
                 let same = lanes.equal(count, lanes.splat(fewer as f32));
                 power = lanes.select(same, lanes.splat(factor.powi(fewer)), power);
             }

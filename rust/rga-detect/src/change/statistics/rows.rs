@@ -5,15 +5,15 @@ use rga_simd::f32::{Lanes, SIXTEEN};
 use super::likelihood::{LARGEST, Several, grown};
 use super::{Banks, Found, OF_AVERAGES, OF_ROW_STEPS, QUICK, ROW_AVERAGES, ROW_STEPS, SUMS};
 use crate::change::exponentials::powers;
-use crate::change::{BEAT, Block};
+use crate::change::{BLOCK_ROWS, Block};
 
 /// Keeps products finite.
 pub(super) const LARGEST_PRODUCT: f32 = 1e30;
 
-/// Keeps the statistics of steps in rows finite until the next beat.
+/// Keeps the statistics of steps in rows finite until the next block.
 const LARGEST_STEPS: [f32; ROW_STEPS.len()] = [LARGEST, LARGEST, 1e10];
 
-/// Sum, sum of squares and missing scores of a beat, averages, and steps of sixteen sensors.
+/// Sum, sum of squares and missing scores of a block, averages, and steps of sixteen sensors.
 const AVERAGES_FROM: usize = 3;
 const STEPS_FROM: usize = AVERAGES_FROM + ROW_AVERAGES.len();
 
@@ -78,7 +78,7 @@ impl Banks {
         let mut sums = [[lanes.splat(0.0); N]; ROW_STEPS.len()];
         let (states, _) = L::vectors_mut(&mut self.quick).as_chunks_mut::<QUICK>();
         let whole = if GAPS { 0 } else { self.sensors / SIXTEEN };
-        let last = N == BEAT || (self.rows + 1).is_multiple_of(BEAT as u64);
+        let last = N == BLOCK_ROWS || (self.rows + 1).is_multiple_of(BLOCK_ROWS as u64);
         for (number, state) in states[..whole].iter_mut().enumerate() {
             let scores = lanes.load(&scores[number], first);
             step::<L, N, true>(lanes, scores, state, &mut sums, last);
@@ -96,7 +96,7 @@ impl Banks {
 }
 
 /// Scores of sixteen sensors in N rows enter the statistics of steps; `WHOLE`: none is missing;
-/// `last`: they are the last of a beat.
+/// `last`: they are the last of a block.
 #[inline(always)]
 fn step<L: Lanes, const N: usize, const WHOLE: bool>(
     lanes: L,
@@ -145,7 +145,7 @@ fn known<L: Lanes>(lanes: L, score: L::Numbers) -> L::Numbers {
 /// Whether an average is looked at after one of N rows, of which so many came before.
 #[inline(always)]
 fn looked<const N: usize>(before: u64, average: usize, row: usize) -> bool {
-    let rows = if N == BEAT {
+    let rows = if N == BLOCK_ROWS {
         row as u64 + 1
     } else {
         before + 1

@@ -5,7 +5,7 @@ from rga.arrays import FloatArray
 from rga_bench.solver.space_truss import SpaceTruss
 
 
-class Lanes:
+class SimdBatch:
     """Samples of a truss of which every stiffness varies.
 
     Args:

@@ -9,7 +9,7 @@ from rga_bench.solver.box_bridge import BoxBridge
 from rga_bench.solver.space_truss import Arrays, SpaceTruss
 
 
-class Anew:
+class FromScratch:
     """A truss built and solved anew, by rga: what the faster paths are checked against."""
 
     rows = 8

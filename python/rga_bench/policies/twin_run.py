@@ -52,7 +52,7 @@ class PolicyResult:
     seconds: float = field(compare=False)
 
 
-def play(task: PolicyTask) -> PolicyResult:
+def run_twin(task: PolicyTask) -> PolicyResult:
     """Draw the stream, and let the twin live through it up to the closing diagnosis.
 
     Nothing is hidden in the structure: a diagnosis that the twin asks for is counted, not made.

@@ -21,7 +21,7 @@ NEAR = 0.5
 
 
 @dataclass(frozen=True)
-class Spared:
+class PermittedCauses:
     """What is true of a case beside what is hidden.
 
     Attributes:
@@ -37,7 +37,7 @@ class Spared:
     model: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, case: Case) -> "Spared":
+    def of(cls, case: Case) -> "PermittedCauses":
         """That of a case of either generator."""
         if "gussets" not in case.truth:
             return cls(STIFF_JOINTS if stiff_joints(case) is not None else ())

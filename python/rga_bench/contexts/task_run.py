@@ -40,8 +40,8 @@ class TaskOutcome:
     inference: float | None = field(default=None, compare=False)
 
 
-def play(task: ContextsTask) -> TaskOutcome:
-    """Play a task; the outcome depends on the task alone, but for the times.
+def run_task(task: ContextsTask) -> TaskOutcome:
+    """Run a task; the outcome depends on the task alone, but for the times.
 
     Raises:
         InputError: no such drift or manner.

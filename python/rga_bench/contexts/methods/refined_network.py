@@ -14,7 +14,7 @@ STEPS = 4
 
 
 @dataclass(frozen=True)
-class Polished:
+class RefinedNetwork:
     """A network whose answers are carried on.
 
     Attributes:
@@ -41,9 +41,9 @@ class Polished:
     def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
         """The same with the network recalibrated."""
         network = self.network.recalibrated(recent, alone=alone)
-        return self if network is self.network else Polished(self.problem, network)
+        return self if network is self.network else RefinedNetwork(self.problem, network)
 
 
-def polished_network(problem: LearningProblem, learn: Method = source_only) -> Calibrated:
+def refined_network(problem: LearningProblem, learn: Method = source_only) -> Calibrated:
     """A network that has learned, and what follows it."""
-    return Polished(problem, learn(problem))
+    return RefinedNetwork(problem, learn(problem))

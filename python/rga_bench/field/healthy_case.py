@@ -48,7 +48,7 @@ class Options:
 PLAIN = Options()
 
 
-class Stage(NamedTuple):
+class HealthyCase(NamedTuple):
     """All of a case that does not depend on what is hidden; rows are those of an even grid."""
 
     world: FieldWorld
@@ -59,8 +59,10 @@ class Stage(NamedTuple):
     facts: dict[str, Any]
 
 
-def put_up(seed: int, place: FieldStructure, welded: bool, rows: int, options: Options) -> Stage:
-    """The stage of a seed; every other context states its noise in the model."""
+def healthy_case(
+    seed: int, place: FieldStructure, welded: bool, rows: int, options: Options
+) -> HealthyCase:
+    """The case of a seed; every other context states its noise in the model."""
     rng = stream(seed, "sampling")
     spread = float(np.exp(rng.uniform(*np.log(_SPREADS))))
     step = float(rng.choice(_STEPS))
@@ -82,7 +84,7 @@ def put_up(seed: int, place: FieldStructure, welded: bool, rows: int, options: O
     healthy = respond(world, contexts)
     errors = logger(place, stream(seed, "logger"), healthy, spread, options.quantised)
     site = FieldSite(time, contexts, errors)
-    return Stage(
+    return HealthyCase(
         world,
         site,
         told,
@@ -92,20 +94,25 @@ def put_up(seed: int, place: FieldStructure, welded: bool, rows: int, options: O
     )
 
 
-def account_of(seed: int, place: FieldStructure, welded: bool, stage: Stage) -> ReadingCovariance:
+def reading_covariance(
+    seed: int, place: FieldStructure, welded: bool, healthy: HealthyCase
+) -> ReadingCovariance:
     """What the scatter of realities of this sort does, and noise, over the rows of the record."""
     rng = stream(seed, "other realities")
-    spread, rows = stage.facts["spread"], stage.record
+    spread, rows = healthy.facts["spread"], healthy.record
     drawn = np.array([influence(as_built(place, rng, welded, spread)) for _ in range(_REALITIES)])
     # Gains of channels scatter as the logger's do: about 1 %.
     gains = 1.0 + 0.01 * spread * rng.standard_normal((_REALITIES, 1, drawn.shape[2]))
     scatter = gains * drawn - drawn.mean(axis=0)
-    blur = respond(stage.world, stage.told)[rows] - respond(stage.world, stage.site.contexts)[rows]
-    variance = stage.site.logger.long_run + (blur**2).mean(axis=0)
-    amounts = amplitudes(stage.world, stage.site.contexts)[rows]
+    blur = (
+        respond(healthy.world, healthy.told)[rows]
+        - respond(healthy.world, healthy.site.contexts)[rows]
+    )
+    variance = healthy.site.logger.long_run + (blur**2).mean(axis=0)
+    amounts = amplitudes(healthy.world, healthy.site.contexts)[rows]
     return ReadingCovariance(variance, amounts, scatter)
 
 
-def tare_rows(seed: int, stage: Stage) -> np.ndarray:
+def tare_rows(seed: int, healthy: HealthyCase) -> np.ndarray:
     """Rows that the channels were zeroed on."""
-    return stage.record[: int(stream(seed, "tare").choice(_TARES))]
+    return healthy.record[: int(stream(seed, "tare").choice(_TARES))]

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rga_bench.contexts.play import TaskOutcome
 from rga_bench.contexts.run import measure
 from rga_bench.contexts.setting import ContextsSetting, Sizes
+from rga_bench.contexts.task_run import TaskOutcome
 from rga_bench.ledger import NAME
 
 SETTING = ContextsSetting(

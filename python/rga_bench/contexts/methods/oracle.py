@@ -17,7 +17,7 @@ STEP = 1e-5
 
 
 @dataclass(frozen=True)
-class TrueFrame(TwinOnArrays):
+class TrueStructure(TwinOnArrays):
     """The physical twin in the place of the simulator.
 
     Attributes:
@@ -42,9 +42,9 @@ class TrueFrame(TwinOnArrays):
         return np.asarray(((ahead - behind) / (2.0 * step[:, None])).transpose(0, 2, 1))
 
 
-def knows_the_frame(problem: LearningProblem, truth: PhysicalTwin) -> Modes:
+def oracle_posterior(problem: LearningProblem, truth: PhysicalTwin) -> Modes:
     """MAP with the physical twin itself."""
-    twin = TrueFrame(problem.simulator, truth)
+    twin = TrueStructure(problem.simulator, truth)
     contexts = problem.source.contexts
     source = Rows(contexts, twin.simulate(contexts))
     guess = QuadraticGuess(source, problem.noise, twin.ranges, problem.seed)

@@ -39,7 +39,7 @@ class Size:
     nearest: dict[str, Any] | None = None
 
 
-class Yardstick:
+class ReferenceFit:
     """A case posed as its diagnosis poses it."""
 
     def __init__(self, case: Case, model: Model, record: Record) -> None:
@@ -98,7 +98,7 @@ class Yardstick:
             for (truth, one), where in zip(chosen, found.slices(), strict=False)
         }
 
-    def deviations_told(self, truth: Truth, effect: dict[str, Any]) -> dict[str, float]:
+    def deviations_reported(self, truth: Truth, effect: dict[str, Any]) -> dict[str, float]:
         """The same of a cause that was named, by its own 90 % interval."""
         one = self._hypothesis(truth)
         if one is None:
