@@ -8,6 +8,7 @@ from rga.lazy import opening
 if TYPE_CHECKING:
     from rga.diagnosis import diagnose
     from rga.findings import Findings
+    from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.io import load_findings
     from rga.jobs.batch import diagnose_many
     from rga.jobs.run import run
@@ -23,6 +24,7 @@ __version__ = version("rga")
 
 # They are opened on first use, so that the command line starts without the heavy parts.
 _HOMES = {
+    "Criteria": "rga.findings.criteria",
     "Effect": "rga.model",
     "Findings": "rga.findings",
     "Model": "rga.model",
@@ -32,6 +34,7 @@ _HOMES = {
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
+    "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
@@ -41,6 +44,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "Criteria",
     "Effect",
     "Findings",
     "Model",
@@ -51,6 +55,7 @@ __all__ = [
     "__version__",
     "diagnose",
     "diagnose_many",
+    "load_criteria",
     "load_findings",
     "load_model",
     "load_record",

@@ -4,7 +4,15 @@ from pathlib import Path
 
 import typer
 
-from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory, RecordFile, Seed
+from rga.cli.options import (
+    CriteriaFile,
+    JsonTarget,
+    MappingFile,
+    ModelFile,
+    OutputDirectory,
+    RecordFile,
+    Seed,
+)
 from rga.errors import ReportError
 
 
@@ -13,26 +21,35 @@ def diagnose(
     record: RecordFile,
     output: OutputDirectory,
     mapping: MappingFile = None,
+    criteria: CriteriaFile = None,
     seed: Seed = 0,
     json: JsonTarget = None,
 ) -> None:
     """Diagnose what the model gets wrong of a record."""
-    diagnose_into(output, model, record, mapping, seed, json)
+    diagnose_into(output, model, record, mapping, criteria, seed, json)
 
 
 def diagnose_into(
-    output: Path, model: Path, record: Path, mapping: Path | None, seed: int, target: str | None
+    output: Path,
+    model: Path,
+    record: Path,
+    mapping: Path | None,
+    criteria: Path | None,
+    seed: int,
+    target: str | None,
 ) -> None:
     """Write findings, extended model and report, and say the verdict."""
     import json
 
     from rga.cli.output import whole_directory, write_json
     from rga.cli.progress import shown_progress
+    from rga.findings.criteria import load_criteria
     from rga.model import load_model
     from rga.records import load_record
 
     structure = load_model(model)
     measured = load_record(record, structure, mapping)
+    chosen = None if criteria is None else load_criteria(criteria)
     for warning in measured.warnings:
         typer.echo(f"warning: {warning}", err=True)
     # Not needed before the input is known to be good, and slow to import.
@@ -41,7 +58,7 @@ def diagnose_into(
     fault: ReportError | None = None
     with whole_directory(output) as draft:
         with shown_progress() as progress:
-            findings = diagnose(structure, measured, seed=seed, progress=progress)
+            findings = diagnose(structure, measured, criteria=chosen, seed=seed, progress=progress)
         try:
             findings.write(draft)
         except ReportError as error:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.options import DaskAddress, JsonTarget, OutputDirectory, Seed, Workers
+from rga.cli.options import CriteriaFile, DaskAddress, JsonTarget, OutputDirectory, Seed, Workers
 from rga.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ def diagnose_many(
     output: OutputDirectory,
     workers: Workers = 2,
     dask: DaskAddress = None,
+    criteria: CriteriaFile = None,
     seed: Seed = 0,
     json: JsonTarget = None,
 ) -> None:
@@ -33,12 +34,20 @@ def diagnose_many(
 
     from rga.cli.output import write_json
     from rga.cli.progress import shown_progress
+    from rga.findings.criteria import load_criteria
     from rga.jobs.batch import SUMMARY
     from rga.jobs.batch import diagnose_many as diagnose
 
+    chosen = None if criteria is None else load_criteria(criteria)
     with shown_progress() as progress:
         summaries = diagnose(
-            bridges, output, seed=seed, workers=workers, dask=dask, progress=progress
+            bridges,
+            output,
+            criteria=chosen,
+            seed=seed,
+            workers=workers,
+            dask=dask,
+            progress=progress,
         )
     if json is not None:
         write_json([asdict(one) for one in summaries], json)

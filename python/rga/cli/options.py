@@ -17,6 +17,14 @@ MappingFile = Annotated[
         help="How to read the record; left out, import.toml beside it, else beside the model.",
     ),
 ]
+CriteriaFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--criteria",
+        metavar="FILE",
+        help="What decides a verdict, where not the default (JSON or TOML); see docs/criteria.md.",
+    ),
+]
 OutputDirectory = Annotated[
     Path, typer.Option("-o", "--output", metavar="DIR", help="Directory for the results.")
 ]

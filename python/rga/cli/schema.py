@@ -14,12 +14,14 @@ class Format(StrEnum):
     model = "model"
     record = "record"
     findings = "findings"
+    criteria = "criteria"
 
 
 def schema(
-    of: Annotated[Format, typer.Argument(metavar="model|record|findings")], json: JsonTarget = "-"
+    of: Annotated[Format, typer.Argument(metavar="model|record|findings|criteria")],
+    json: JsonTarget = "-",
 ) -> None:
-    """Print the JSON Schema of a model file, a record or the findings."""
+    """Print the JSON Schema of a model file, a record, the findings or the criteria."""
     from rga.cli.output import write_json
 
     if of is Format.model:
@@ -30,8 +32,12 @@ def schema(
         from rga.records import record_schema
 
         content = record_schema()
-    else:
+    elif of is Format.findings:
         from rga.findings import Findings
 
         content = Findings.model_json_schema()
+    else:
+        from rga.findings.criteria import Criteria
+
+        content = Criteria.model_json_schema()
     write_json(content, json or "-")

@@ -6,14 +6,13 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
-from rga.diagnosis.search.stepwise import RIVAL
+from rga.diagnosis.search.linearised import Problem
 from rga.errors import InputError
 from rga.experiments.candidates import added_sensors, settings, stands
 from rga.experiments.defaults import usual_truck
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import MeasurementModel
 from rga.experiments.separation import (
-    LIKELY,
     Pair,
     nothing,
     paired,
@@ -27,8 +26,6 @@ from rga.model.schema import Model
 
 #: rows of the record that stand for operation, and places at which a truck may stand
 ROWS, STANDS = 12, 9
-#: separation below which two explanations are alike
-ALIKE = 0.5
 
 
 class Advice:
@@ -38,18 +35,16 @@ class Advice:
 
     Args:
         model: as it was diagnosed.
-        data: the channels that work, and the contexts of operation.
+        problem: gives the channels that work, the contexts of operation, the scatter, and the
+            criteria.
         together: the causes.
-        levels: of the scatter, as `Problem.levels`.
     """
 
-    def __init__(
-        self, model: Model, data: Data, together: CandidateModel, levels: FloatArray
-    ) -> None:
-        self._together = together
+    def __init__(self, model: Model, problem: Problem, together: CandidateModel) -> None:
+        self._together, self._criteria = together, problem.criteria
         self._site: MeasurementModel | None = None
         with suppress(InputError):  # a structure that cannot bear the tests: no advice
-            self._prepare(model, data, levels)
+            self._prepare(model, problem.data, problem.levels)
 
     def _prepare(self, model: Model, data: Data, levels: FloatArray) -> None:
         rows = np.unique(np.linspace(0, len(data.time) - 1, ROWS).astype(int))
@@ -83,15 +78,16 @@ class Advice:
         by_tests = self._by_tests(site, pair)
         separation = np.concatenate([self._by_sensors(site, pair), by_tests]).tolist()
         best = max(range(len(options)), key=lambda k: separation[k])
-        if success(separation[best], RIVAL) >= LIKELY:
-            enough = [k for k, one in enumerate(separation) if success(one, RIVAL) >= LIKELY]
+        least = self._criteria.advice
+        if self._success(separation[best]) >= least.success:
+            enough = [k for k, one in enumerate(separation) if self._success(one) >= least.success]
             best = min(enough, key=lambda k: (options[k][1], -separation[k]))
-            return f"{options[best][0]} tells them apart ({_figures(separation[best])})"
-        if separation[best] < ALIKE:
+            return f"{options[best][0]} tells them apart ({self._figures(separation[best])})"
+        if separation[best] < least.alike:
             return "nothing that could be measured: they predict the same everywhere"
         return (
             "no single added sensor or load test; the best is "
-            f"{options[best][0]} ({_figures(separation[best])})"
+            f"{options[best][0]} ({self._figures(separation[best])})"
         )
 
     def _by_sensors(self, site: MeasurementModel, pair: Pair) -> FloatArray:
@@ -108,6 +104,9 @@ class Advice:
         more = whitened_apart(self._errors, pair, rows, range(site.standing))
         return np.sqrt(with_one_more(nothing(self._errors, pair), more, 0))
 
+    def _success(self, separation: float) -> float:
+        return success(separation, self._criteria.rivals.log_odds)
 
-def _figures(separation: float) -> str:
-    return f"d_perp {separation:.2g}, with a chance of {100 * success(separation, RIVAL):.0f} %"
+    def _figures(self, separation: float) -> str:
+        chance = 100 * self._success(separation)
+        return f"d_perp {separation:.2g}, with a chance of {chance:.0f} %"

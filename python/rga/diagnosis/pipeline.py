@@ -44,24 +44,29 @@ from rga.diagnosis.search.stepwise import (
 from rga.diagnosis.verdict import doubts_of, verdict
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
+from rga.findings.criteria import Criteria
 from rga.model.schema import Model
 from rga.provenance import versions
 from rga.records import Record
 from rga.simulation import Simulator
 
-#: share of the innovations' variance that makes structure worth a word
-STRUCTURE = 0.02
 Progress = Callable[[str, float], None]
 
 
 def diagnose(
-    model: Model, record: Record, *, seed: int = 0, progress: Progress | None = None
+    model: Model,
+    record: Record,
+    *,
+    criteria: Criteria | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Findings:
     """Diagnose what a model gets wrong of a record.
 
     Args:
         model: the structure with its effects and sensors.
         record: measured data.
+        criteria: what decides the verdict; None: the default ones.
         seed: of the bootstrap of the gain.
         progress: told a stage and the share of it that is done.
 
@@ -73,11 +78,16 @@ def diagnose(
     """
     tell_progress = progress or (lambda stage, done: None)
     with threadpool_limits(1):
-        return _diagnose(model, record, seed, tell_progress)
+        return _diagnose(model, record, criteria or Criteria(), seed, tell_progress)
 
 
-def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Findings:
-    prepared = prepare(model, record, lambda done: progress("reading the contexts", done))
+def _diagnose(
+    model: Model, record: Record, criteria: Criteria, seed: int, progress: Progress
+) -> Findings:
+    def read(done: float) -> None:
+        progress("reading the contexts", done)
+
+    prepared = prepare(model, record, read, criteria)
     held_out = held_out_rows(len(prepared.data.time))
     # What a logger took off is a part of the data: a late effect shows whole all the same.
     base = Simulator(model.without_zeros())
@@ -129,7 +139,9 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
     ]
     doubts += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
     structure = (
-        bool(doubts) or share > STRUCTURE or bool(bends(found.problem) or curves(found.problem))
+        bool(doubts)
+        or share > criteria.structure.share
+        or bool(bends(found.problem) or curves(found.problem))
     )
     pattern = spared(
         "what the structure that is left goes with",
@@ -144,7 +156,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
             *(fault_cause(fault, effect) for fault, effect in faults.items()),
             *causes(found, effects, prepared.record, failed),
         ],
-        unidentifiable=unidentifiable(screening.first),
+        unidentifiable=unidentifiable(screening.first, criteria.explanations.smallest_d_prime),
         unexplained={"share": share, "looks_like": "; ".join([*doubts, pattern])},
         explanations=explanations(tried, found, prepared.record),
         groups=groups(account, grouped),
@@ -153,6 +165,7 @@ def _diagnose(model: Model, record: Record, seed: int, progress: Progress) -> Fi
         misfits=list(
             dict.fromkeys([*prepared.apart, *(name for one in off for name in one.channels)])
         ),
+        criteria=criteria,
         seed=seed,
         model_sha256=model.sha256,
         record_sha256=record.sha256,

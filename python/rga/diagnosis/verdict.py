@@ -6,13 +6,13 @@ import numpy as np
 
 from rga.diagnosis.data.held_out import Gain
 from rga.diagnosis.preparation.single_channel import BrokenChannel
-from rga.diagnosis.residuals.lack_of_fit import IMPLAUSIBLE, NEAR_ONE, PLAUSIBLE, Misfit
+from rga.diagnosis.residuals.lack_of_fit import Misfit
 from rga.diagnosis.search.hypothesis import Hypothesis
-from rga.diagnosis.search.stepwise import RIVAL, Found
+from rga.diagnosis.search.stepwise import Found
 from rga.findings.phrases import place_words
 from rga.findings.schema import Verdict
 
-#: misfits that are told in words
+#: misfits that are told in words: a sentence of more is not read; all stand in the findings
 MOST_MISFITS = 5
 
 
@@ -23,7 +23,8 @@ def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
         return "unknown" if structure else "nothing_wrong"
     if structure:
         return "partial" if causes or faults else "unknown"
-    rivals = any(one.behind < RIVAL for ranked in found.alternatives for one in ranked)
+    apart = found.problem.criteria.rivals.log_odds
+    rivals = any(one.behind < apart for ranked in found.alternatives for one in ranked)
     return "ambiguous" if rivals else "named"
 
 
@@ -56,25 +57,27 @@ def doubts_of(
     if len(off) > MOST_MISFITS:
         told.append(f"{len(off) - MOST_MISFITS} more channels or groups are off")
     broken = {fault.sensor for fault in faults}
-    if 2 * len(broken) >= len(channels):
+    criteria = found.problem.criteria.fit
+    if len(broken) >= criteria.broken_share * len(channels):
         told.append(f"{len(broken)} of {len(channels)} channels do not work")
     if found.fit.hypotheses and gained.after >= gained.before:
         told.append(
             "rows that no step saw come no closer by the causes: their gap is "
             f"{gained.before:.3g} times the noise without and {gained.after:.3g} with them"
         )
-    if gained.after > NEAR_ONE:
+    if gained.after > criteria.held_out_gap:
         members, gains = found.problem.levels[:2]
         told.append(
             f"the gap on rows that no step saw is {gained.after:.2g} times the noise: members that "
             f"are off by {members:.1%} and gauges by {gains:.1%}, as they may be as built, would "
             "explain it, and so might something that no kind of effect says"
         )
-    if (found.problem.levels > IMPLAUSIBLE * PLAUSIBLE).any():
-        worst = int(np.argmax(found.problem.levels / PLAUSIBLE))
+    plausible = np.array(criteria.plausible)
+    if (found.problem.levels > criteria.implausible * plausible).any():
+        worst = int(np.argmax(found.problem.levels / plausible))
         of = ("the stiffness of members", "gains of channels", "responses to the loads")[worst]
         told.append(
             f"{of} would have to scatter by {found.problem.levels[worst]:.1%}, and "
-            f"{PLAUSIBLE[worst]:.0%} is plausible"
+            f"{plausible[worst]:.0%} is plausible"
         )
     return told

@@ -18,9 +18,6 @@ from rga.arrays import FloatArray
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import Errors, MeasurementModel
 
-#: chance of a clear success from which on two explanations count as separated
-LIKELY = 0.9
-
 
 @dataclass(frozen=True)
 class Pair:

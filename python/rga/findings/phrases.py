@@ -8,6 +8,7 @@ from rga.model import Effect
 if TYPE_CHECKING:
     from rga.findings.schema import Cause, Findings
 
+#: rivals that a sentence names; it counts the others
 RIVALS = 3
 
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 
 from rga.findings.arrays import DiagnosisArrays
+from rga.findings.criteria import Criteria
 
 Interval = tuple[float, float]
 Verdict = Literal["nothing_wrong", "named", "ambiguous", "partial", "unknown", "unidentifiable"]
@@ -59,8 +60,8 @@ class Cause(FindingsPart):
         log_odds: against leaving this cause out, the number of places and kinds counted.
         d_prime: size of the effect under the whole covariance [-].
         d_perp: the same after projecting off the nearest rival [-].
-        rivals: effects within 4.6 log-odds: the nearest of each other kind, the nearest first, then
-            further places of these kinds and of its own.
+        rivals: effects within `rivals.log_odds` of the criteria: the nearest of each other kind,
+            the nearest first, then further places of these kinds and of its own.
         rivals_omitted: how many more there are.
         separated_by: in words: the sensor or load test that would tell it from its rivals.
         why: in words: what in the data shows it.
@@ -80,7 +81,7 @@ class Cause(FindingsPart):
 
 
 class Unidentifiable(FindingsPart):
-    """A kind and place whose largest physical value stays below d' = 3."""
+    """A kind and place whose largest physical value stays below the smallest d' of the criteria."""
 
     kind: str
     place: str
@@ -128,6 +129,7 @@ class Findings(FindingsPart):
 
     Attributes:
         misfits: sensors that work and do not fit the extended model as their like do.
+        criteria: what decided the verdict; of findings that state none the default ones.
     """
 
     rga_findings: Literal[1] = 1
@@ -141,6 +143,7 @@ class Findings(FindingsPart):
     contexts: dict[str, dict[str, Any]] = {}
     warnings: list[str] = []
     misfits: list[str] = []
+    criteria: Criteria = Criteria()
     seed: int
     model_sha256: str
     record_sha256: str

@@ -11,6 +11,7 @@ from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
 from rga.files import write_whole
 from rga.findings import Findings
+from rga.findings.criteria import Criteria
 from rga.findings.phrases import effect_words
 from rga.model import Model, load_model
 from rga.parallel import finished
@@ -58,6 +59,7 @@ class _Task:
     name: str
     model: Model
     record: Record
+    criteria: Criteria | None
     seed: int
 
 
@@ -73,6 +75,7 @@ def diagnose_many(
     bridges: str | Path,
     output: str | Path,
     *,
+    criteria: Criteria | None = None,
     seed: int = 0,
     workers: int = 1,
     dask: str | None = None,
@@ -87,6 +90,7 @@ def diagnose_many(
         bridges: CSV or Parquet file, a bridge a line: `name`, `model`, `record` and, where wanted,
             `import` (a mapping); files relative to the list.
         output: directory for the results.
+        criteria: what decides each verdict; None: the default ones.
         seed: of each diagnosis.
         workers: processes at work on this machine.
         dask: address of the scheduler of a Dask cluster, whose workers do the work instead; they
@@ -106,7 +110,8 @@ def diagnose_many(
     errors: dict[str, Exception] = {}
     faults: list[ReportError] = []
     summary_of: dict[str, Summary] = {}
-    for task, future in finished(_work, _tasks(listed, seed, errors), workers=workers, dask=dask):
+    tasks = _tasks(listed, criteria, seed, errors)
+    for task, future in finished(_work, tasks, workers=workers, dask=dask):
         error = future.exception()
         if isinstance(error, Exception):
             errors[task.name] = error
@@ -131,7 +136,12 @@ def diagnose_many(
     return summaries
 
 
-def _tasks(bridges: Iterable[_Bridge], seed: int, errors: dict[str, Exception]) -> Iterator[_Task]:
+def _tasks(
+    bridges: Iterable[_Bridge],
+    criteria: Criteria | None,
+    seed: int,
+    errors: dict[str, Exception],
+) -> Iterator[_Task]:
     """Bridges as they are read; errors are kept by the name of the bridge."""
     for bridge in bridges:
         try:
@@ -140,11 +150,11 @@ def _tasks(bridges: Iterable[_Bridge], seed: int, errors: dict[str, Exception]) 
         except Exception as error:
             errors[bridge.name] = error
         else:
-            yield _Task(bridge.name, model, record, seed)
+            yield _Task(bridge.name, model, record, criteria, seed)
 
 
 def _work(task: _Task) -> _Done:
-    findings = diagnose(task.model, task.record, seed=task.seed)
+    findings = diagnose(task.model, task.record, criteria=task.criteria, seed=task.seed)
     fault = None
     with tempfile.TemporaryDirectory() as folder:
         try:

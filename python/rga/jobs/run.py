@@ -50,7 +50,8 @@ def run(
         ReportError: the report could not be drawn; findings and model are there, and the same
             call goes on with the report.
     """
-    check_length(record)
+    settings = settings or Settings()
+    check_length(record, settings.criteria.record)
     directory = made(Path(directory))
     if repository is not None and "://" not in repository:
         raise InputError(
@@ -59,7 +60,7 @@ def run(
             "write postgresql://user@host/database, or leave it out",
         )
     place = repository or directory / FILE
-    with taken_up(model, record, place, settings or Settings(), seed, progress) as running:
+    with taken_up(model, record, place, settings, seed, progress) as running:
         if running.stage == "done" and running.is_written(directory):
             return Outcome(running.stored_findings(), running.history())
         while running.stage not in ("report", "done"):

@@ -9,15 +9,15 @@ from threadpoolctl import threadpool_limits
 
 from rga.arrays import FloatArray
 from rga.diagnosis.noise import random_effects
-from rga.diagnosis.search.stepwise import RIVAL
 from rga.errors import InputError
 from rga.experiments.candidates import LoadTest, added_sensors, settings, stands
 from rga.experiments.defaults import strain_share, usual_operation, usual_truck
 from rga.experiments.explanation import CandidateModel
 from rga.experiments.measurement_model import Errors, MeasurementModel
-from rga.experiments.separation import LIKELY, Pair, paired, success
+from rga.experiments.separation import Pair, paired, success
 from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
 from rga.findings import Findings
+from rga.findings.criteria import Criteria
 from rga.findings.io import findings_sha256
 from rga.model import Model
 from rga.planning.advised import advised
@@ -29,11 +29,10 @@ from rga.planning.selection import Choice, Chooser
 from rga.provenance import versions
 from rga.simulation import Simulator
 
+#: what may be measured where the user says nothing
 SENSORS, POSITIONS = 2, 3
 #: as-built scatter that is reckoned with: a deviation above what a diagnosis expects [-]
 LEVELS = np.array([level.median * np.exp(level.spread) for level in random_effects.LEVELS])
-#: a truck that strains the structure so much more than its loads is reported
-HEAVY = 1.1
 Progress = Callable[[str, float], None]
 
 
@@ -46,12 +45,23 @@ class Scope:
         errors: about the causes.
         pairs: of causes and rivals.
         best: d_perp of each pair with everything measured, float[pairs].
+        criteria: those of the findings.
     """
 
     site: MeasurementModel
     errors: Errors
     pairs: list[Pair]
     best: FloatArray
+    criteria: Criteria
+
+    def success(self, separation: float) -> float:
+        """Chance that the true explanation of a pair wins by the log-odds asked for."""
+        return success(separation, self.criteria.rivals.log_odds)
+
+    def chooser(self, numbers: Sequence[int]) -> Chooser:
+        """Chooses measurements for some of the pairs."""
+        pairs = [self.pairs[one] for one in numbers]
+        return Chooser(self.site, self.errors, pairs, self.criteria.advice.enough)
 
 
 def plan(
@@ -120,7 +130,7 @@ def _planned(
     if lane is not None:
         share = strain_share(model, lane, truck) if truck is not None else 0.0
         truck = truck or usual_truck(model, lane)
-        if share > HEAVY:
+        if share > findings.criteria.advice.heavy_truck:
             warnings.append(
                 f"the truck strains the structure {share:.2g} times as much as its loads at most"
             )
@@ -139,29 +149,29 @@ def _planned(
     progress("simulating what could be measured", 0.0)
     scope = _scope(model, findings, rivalries, lane, truck, warnings)
     progress("choosing measurements", 0.0)
-    chooser = Chooser(scope.site, scope.errors, [scope.pairs[k] for k in _separable(scope)])
+    chooser = scope.chooser(_separable(scope))
     sensors, tests = advised(findings, scope.site.added, scope.site.tests, truck)
     columns = [scope.site.standing + one for one in sensors]
     choice = chooser.best(*budget, (columns, tests))
     beside = _beside(chooser, scope.site, choice, columns, tests)
     least = min(choice.separation, default=0.0)
-    everything = Chooser(scope.site, scope.errors, scope.pairs)
+    everything = scope.chooser(range(len(scope.pairs)))
     choice = Choice(
         choice.sensors, choice.tests, everything.separation(choice.sensors, choice.tests)
     )
     separations = []
     for number, pair in enumerate(scope.pairs):
         progress("simulating the plan", number / len(scope.pairs))
-        found = _checked(scope.site, model, choice, pair, lane, truck, seed + number)
+        found = _checked(scope, model, choice, pair, lane, truck, seed + number)
         distance, best = float(choice.separation[number]), float(scope.best[number])
         separations.append(
             Separation(
                 one=pair.cause.words,
                 other=pair.rival.words,
                 d_perp=distance,
-                expected=success(distance, RIVAL),
+                expected=scope.success(distance),
                 d_perp_at_best=best,
-                separated=found.clearly >= LIKELY,
+                separated=found.clearly >= scope.criteria.advice.success,
                 simulated=SimulatedTrials(draws=found.draws, won=found.won, clearly=found.clearly),
             )
         )
@@ -169,7 +179,7 @@ def _planned(
     made = [planned_test(site, scope.errors, pairs, choice, one) for one in choice.tests]
     driven = any(test.position is not None for test in made)
     return Plan(
-        sentence=" ".join([_sentence(separations, site, choice), *_compared(beside, least)]),
+        sentence=" ".join([_sentence(separations, scope, choice), *_compared(beside, least)]),
         sensors=[planned_sensor(site, scope.errors, pairs, choice, one) for one in choice.sensors],
         tests=made,
         truck=_truck(truck, lane) if driven and truck and lane else None,
@@ -215,8 +225,10 @@ def _scope(
         raise failed[0]
     errors = site.errors(rivalries[0][0].effects)
     every = range(site.standing, len(site.sensors))
-    best = Chooser(site, errors, pairs).separation(every, range(len(tests)))
-    return Scope(site, errors, pairs, best)
+    criteria = findings.criteria
+    everything = Chooser(site, errors, pairs, criteria.advice.enough)
+    best = everything.separation(every, range(len(tests)))
+    return Scope(site, errors, pairs, best, criteria)
 
 
 def _beside(
@@ -256,11 +268,12 @@ def _compared(beside: Sequence[Advised], least: float) -> list[str]:
 
 def _separable(scope: Scope) -> list[int]:
     """Pairs that something could separate."""
-    return [k for k, best in enumerate(scope.best) if success(float(best), RIVAL) >= LIKELY]
+    least = scope.criteria.advice.success
+    return [k for k, best in enumerate(scope.best) if scope.success(float(best)) >= least]
 
 
 def _checked(
-    site: MeasurementModel,
+    scope: Scope,
     model: Model,
     choice: Choice,
     pair: Pair,
@@ -269,6 +282,7 @@ def _checked(
     seed: int,
 ) -> Checked:
     """The check of a choice on a site that has nothing but what was chosen."""
+    site = scope.site
     added = [site.added[one - site.standing] for one in sorted(choice.sensors)]
     tests: list[LoadTest] = [site.tests[one] for one in choice.tests]
     working = site.sensors[: site.standing]
@@ -278,10 +292,12 @@ def _checked(
     present = np.zeros((small.operating + len(tests), len(small.sensors)))
     present[: small.operating, small.standing :] = 1.0
     present[small.operating :] = 1.0
-    return checked(small, pair.cause, pair.rival, present, RIVAL, seed)
+    odds = scope.criteria.rivals.log_odds
+    return checked(small, pair.cause, pair.rival, present, odds, seed)
 
 
-def _sentence(separations: Sequence[Separation], site: MeasurementModel, choice: Choice) -> str:
+def _sentence(separations: Sequence[Separation], scope: Scope, choice: Choice) -> str:
+    site, criteria = scope.site, scope.criteria
     sentences = [f"measure {site.added[one - site.standing].words}" for one in choice.sensors]
     sentences += [f"test: {site.tests[one].words}" for one in choice.tests]
     words = "; ".join(sentences)
@@ -291,13 +307,14 @@ def _sentence(separations: Sequence[Separation], site: MeasurementModel, choice:
         worst = min(one.simulated.clearly for one in done)
         whom = "each explanation" if len(done) == len(separations) else "what it tells apart"
         sentences.append(
-            f"With readings drawn, {whom} then wins by {RIVAL:g} log-odds in {100 * worst:.0f} % "
-            "of the draws in which it is true, or more."
+            f"With readings drawn, {whom} then wins by {criteria.rivals.log_odds:g} log-odds in "
+            f"{100 * worst:.0f} % of the draws in which it is true, or more."
         )
     for one in separations:
         limit = f"everything that was thought of gives d_perp {one.d_perp_at_best:.2g}"
         both = f"{one.one} from {one.other}"
-        if not one.separated and success(one.d_perp_at_best, RIVAL) < LIKELY:
+        hopeless = scope.success(one.d_perp_at_best) < criteria.advice.success
+        if not one.separated and hopeless:
             sentences.append(f"Nothing affordable tells {both}: {limit}.")
         elif not one.separated:
             share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"

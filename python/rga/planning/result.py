@@ -93,7 +93,7 @@ class SimulatedTrials(PlanPart):
 
     Attributes:
         won: share of draws in which the true one was likelier.
-        clearly: share in which it was likelier by 4.6 log-odds or more.
+        clearly: share in which it was likelier by `rivals.log_odds` of the criteria or more.
     """
 
     draws: int
@@ -107,7 +107,7 @@ class Separation(PlanPart):
     Attributes:
         one, other: in words.
         d_perp: difference that is left once either has imitated the other, in units of all errors.
-        expected: chance that the true one wins by 4.6 log-odds.
+        expected: chance that the true one wins by `rivals.log_odds` of the criteria.
         d_perp_at_best: with every sensor and every test that were thought of.
         separated: the plan is to separate them: it wins clearly in nine of ten draws.
         simulated: the check of that.

@@ -9,8 +9,6 @@ from rga.arrays import FloatArray
 from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Known, Pair, known, nothing, whitened, with_one_more
 
-#: separation beyond which no more is bought: 97 % win by 4.6 log-odds
-ENOUGH = 5.5
 #: rounds of exchange, and the smallest share by which an exchange must lower the confusion
 EXCHANGES, WORTH = 3, 0.01
 
@@ -41,10 +39,13 @@ class Chooser:
         site: with all that could be measured.
         errors: about one of the explanations.
         pairs: that are to be separated.
+        enough: separation beyond which no more is bought [-].
     """
 
-    def __init__(self, site: MeasurementModel, errors: Errors, pairs: Sequence[Pair]) -> None:
-        self._site, self._errors, self._pairs = site, errors, pairs
+    def __init__(
+        self, site: MeasurementModel, errors: Errors, pairs: Sequence[Pair], enough: float
+    ) -> None:
+        self._site, self._errors, self._pairs, self._enough = site, errors, pairs, enough
 
     def separation(self, sensors: Sequence[int], tests: Sequence[int]) -> FloatArray:
         """d_perp of every pair by some measurements, float[pairs]."""
@@ -68,13 +69,13 @@ class Chooser:
         if not sensors and not tests:
             return plain
         begun = self._begun_with(self._measured(sensors, tests), most_sensors, most_tests)
-        before, after = _confused(plain), _confused(begun)
+        before, after = self._confused(plain), self._confused(begun)
         if abs(after - before) > WORTH * before:
             return begun if after < before else plain
         return begun if self.cost(begun) <= self.cost(plain) else plain
 
     def _begun_with(self, chosen: Choice, most_sensors: int, most_tests: int) -> Choice:
-        while min(chosen.separation, default=ENOUGH) < ENOUGH:
+        while not self._separates(chosen):
             options = self._sensors_more(chosen) if len(chosen.sensors) < most_sensors else []
             if len(chosen.tests) < most_tests:
                 options += self._tests_more(chosen)
@@ -92,11 +93,11 @@ class Chooser:
     def _exchanged(self, chosen: Choice) -> Choice:
         for kind, more in (("sensors", self._sensors_more), ("tests", self._tests_more)):
             for one in getattr(chosen, kind):
-                if min(chosen.separation, default=ENOUGH) >= ENOUGH:
+                if self._separates(chosen):
                     return chosen
                 without = self._without(chosen, kind, one)
-                best = min(more(without), key=_confused, default=chosen)
-                if _confused(best) < (1 - WORTH) * _confused(chosen):
+                best = min(more(without), key=self._confused, default=chosen)
+                if self._confused(best) < (1 - WORTH) * self._confused(chosen):
                     chosen = best
         return chosen
 
@@ -106,22 +107,22 @@ class Chooser:
                   for one in getattr(chosen, kind)]  # fmt: skip
         for _, kind, one in sorted(priced, key=lambda item: -item[0]):
             without = self._without(chosen, kind, one)
-            needed = np.minimum(chosen.separation, ENOUGH)
+            needed = np.minimum(chosen.separation, self._enough)
             if (without.separation >= needed - 1e-9).all():
                 chosen = without
         return chosen
 
     def _best_buy(self, chosen: Choice, options: Sequence[Choice]) -> Choice | None:
         """The option that lowers the confusion most for its cost; None where none lowers it."""
-        now = _confused(chosen)
-        lower = [one for one in options if _confused(one) < (1 - WORTH) * now]
+        now = self._confused(chosen)
+        lower = [one for one in options if self._confused(one) < (1 - WORTH) * now]
         paid = self.cost(chosen)
-        enough = [one for one in lower if one.separation.min() >= ENOUGH]
+        enough = [one for one in lower if self._separates(one)]
         if enough:
             return min(enough, key=self.cost)
         return min(
             lower,
-            key=lambda one: np.log(_confused(one) / now) / (self.cost(one) - paid),
+            key=lambda one: np.log(self._confused(one) / now) / (self.cost(one) - paid),
             default=None,
         )
 
@@ -177,6 +178,8 @@ class Chooser:
     def _rows(self, tests: Sequence[int]) -> list[int]:
         return [self._site.operating + one for one in tests]
 
+    def _separates(self, chosen: Choice) -> bool:
+        return bool((chosen.separation >= self._enough).all())
 
-def _confused(chosen: Choice) -> float:
-    return float(np.exp(-(np.minimum(chosen.separation, ENOUGH) ** 2) / 8).sum())
+    def _confused(self, chosen: Choice) -> float:
+        return float(np.exp(-(np.minimum(chosen.separation, self._enough) ** 2) / 8).sum())

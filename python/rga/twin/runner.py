@@ -232,7 +232,13 @@ class Running:
 
     def _ask_diagnosis(self) -> Findings:
         record = self._record.rows(slice(0, self.row))
-        return diagnose(self._model, record, seed=self._seed, progress=self._progress)
+        return diagnose(
+            self._model,
+            record,
+            criteria=self._settings.criteria,
+            seed=self._seed,
+            progress=self._progress,
+        )
 
     @property
     def _all_arrived(self) -> bool:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from rga.findings.criteria import Criteria
 from rga.inference.networks.settings import TrainingSettings
 
 Level = Literal["A", "B", "C"]
@@ -40,6 +41,7 @@ class Settings(BaseModel):
         distinct: least distance of a novel context from all stored ones, in shares of the ranges
             of the contexts; None: what separates neighbours of the design phase.
         training: of the networks.
+        criteria: of the diagnosis.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -60,6 +62,7 @@ class Settings(BaseModel):
     repository_z: Annotated[float, Field(gt=0, le=1e6)] = 4.0
     distinct: Annotated[float, Field(gt=0)] | None = None
     training: TrainingSettings = TrainingSettings()
+    criteria: Criteria = Criteria()
 
     @model_validator(mode="after")
     def _some_of_more(self) -> "Settings":

@@ -10,17 +10,18 @@ import numpy as np
 import pytest
 
 from rga import diagnose, load_findings, plan
-from rga.diagnosis.assemble.causes import MOST_RIVALS, causes
+from rga.diagnosis.assemble.causes import causes
 from rga.diagnosis.assemble.effects import effects_of
 from rga.diagnosis.checks.leave_one_out import hold
 from rga.diagnosis.member_forces import member_forces
 from rga.diagnosis.search.hypothesis import hypotheses
 from rga.diagnosis.search.screening import Prospect
-from rga.diagnosis.search.stepwise import FITTED, HOPELESS, RIVAL, Alternative, Found, worth_fitting
+from rga.diagnosis.search.stepwise import FITTED, HOPELESS, Alternative, Found, worth_fitting
 from rga.errors import InputError
 from rga.experiments.defaults import strain_share, usual_truck
 from rga.experiments.truck import lane_of
 from rga.findings import Findings
+from rga.findings.criteria import Criteria
 from rga.findings.phrases import effect_words
 from rga.model import Effect, Model, read_effect, read_model
 from rga.model.schema import Sensor
@@ -30,6 +31,7 @@ from rga.twin.simulation_model import mounted
 from safe_words import check
 
 Recorded = Callable[..., Record]
+RIVALS = Criteria().rivals
 GAUGE, BESIDE = "S L2-L3", "S L0-L1"
 OFF_FIBRE = {"kind": "gauge_position", "sensor": GAUGE, "y": 0.0, "z": 0.12}
 LOWER = {"kind": "support_settlement", "support": "east", "dof": "uz", "displacement": -0.01}
@@ -159,14 +161,15 @@ def test_the_nearest_of_each_other_kind_comes_first(open_kind: Findings) -> None
     found = open_kind.account.found
     assert found is not None
     within = sorted(
-        (one for one in found.alternatives[0] if one.behind < RIVAL), key=lambda one: one.behind
+        (one for one in found.alternatives[0] if one.behind < RIVALS.log_odds),
+        key=lambda one: one.behind,
     )
     others = list(dict.fromkeys(name for name in kinds(within) if name != cause.effect["kind"]))
     told = [rival["kind"] for rival in cause.rivals]
     assert len(others) >= 3
     assert told[: len(others)] == others
-    assert len(told) == MOST_RIVALS < len(within)
-    assert cause.rivals_omitted == len(within) - MOST_RIVALS
+    assert len(told) == RIVALS.listed < len(within)
+    assert cause.rivals_omitted == len(within) - RIVALS.listed
 
 
 def test_places_come_after_kinds_however_near(open_kind: Findings) -> None:
@@ -189,10 +192,10 @@ def test_places_come_after_kinds_however_near(open_kind: Findings) -> None:
     near = [(one, 0.1 * k) for k, one in enumerate(places)]
     assert told(*near, (other, 4.0)) == ([several, last, *[several] * (len(near) - 1)], 0)
     # What is farther than a hundred to one is no rival, and not counted.
-    assert told(*near, (other, RIVAL + 0.1)) == ([several] * len(near), 0)
-    assert told((other, RIVAL + 0.1)) == ([], 0)
-    many = [(replace(places[0]), 0.1 * k) for k in range(MOST_RIVALS + 4)]
-    assert told(*many, (other, 4.0)) == ([several, last, *[several] * (MOST_RIVALS - 2)], 5)
+    assert told(*near, (other, RIVALS.log_odds + 0.1)) == ([several] * len(near), 0)
+    assert told((other, RIVALS.log_odds + 0.1)) == ([], 0)
+    many = [(replace(places[0]), 0.1 * k) for k in range(RIVALS.listed + 4)]
+    assert told(*many, (other, 4.0)) == ([several, last, *[several] * (RIVALS.listed - 2)], 5)
 
 
 def test_omitted_rivals_are_said(open_kind: Findings, tmp_path: Path) -> None:
@@ -200,7 +203,7 @@ def test_omitted_rivals_are_said(open_kind: Findings, tmp_path: Path) -> None:
     total = len(cause.rivals) + cause.rivals_omitted
     assert f", or one of {total - 3} more." in open_kind.sentence()
     html = open_kind.write(tmp_path).read_text(encoding="utf-8")
-    assert f"and {cause.rivals_omitted} more within a hundred to one" in html
+    assert f"and {cause.rivals_omitted} more within {RIVALS.log_odds} log-odds" in html
     few = cause.model_copy(update={"rivals": cause.rivals[:3], "rivals_omitted": 0})
     assert " more." not in open_kind.model_copy(update={"causes": [few]}).sentence()
 

@@ -10,7 +10,7 @@ from rga.diagnosis.fallback import spared
 from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.change_point import beginnings
 from rga.diagnosis.search.laplace import extended
-from rga.diagnosis.search.stepwise import RIVAL, Alternative, Found
+from rga.diagnosis.search.stepwise import Alternative, Found
 from rga.experiments.explanation import explanation
 from rga.findings.phrases import effect_words
 from rga.findings.schema import (
@@ -20,10 +20,8 @@ from rga.model.effect import Effect
 from rga.model.effects.sensors.sensor_fault import SensorFault
 from rga.records import Record
 
+#: log-odds of an odd reading of a broken channel: a working one shows it once in a thousand
 FAULT_NATS = float(np.log(1000.0))
-#: rivals that are listed: kinds that pass for each other are fewer, and of places that do, more
-#: would say no more than that the place is open
-MOST_RIVALS = 8
 
 
 def causes(
@@ -38,6 +36,7 @@ def causes(
         warnings: to which it is added where that cannot be worked out.
     """
     told: list[Cause] = []
+    most = found.problem.criteria.rivals.listed
     for number, effect in enumerate(effects):
         rivals = rivals_of(found, number)
         nearest = (found.alternatives[number] or (None,))[0]
@@ -51,8 +50,8 @@ def causes(
                 log_odds=found.log_odds[number],
                 d_prime=d_prime,
                 d_perp=d_perp,
-                rivals=[last_effect(one.fit, record) for one in rivals[:MOST_RIVALS]],
-                rivals_omitted=max(0, len(rivals) - MOST_RIVALS),
+                rivals=[last_effect(one.fit, record) for one in rivals[:most]],
+                rivals_omitted=max(0, len(rivals) - most),
                 why=_why(found, number),
             )
         )
@@ -80,8 +79,9 @@ def fault_cause(fault: BrokenChannel, effect: SensorFault) -> Cause:
 
 def rivals_of(found: Found, number: int) -> list[Alternative]:
     """What the data cannot tell from a cause: the nearest of each other kind, then the rest."""
+    apart = found.problem.criteria.rivals.log_odds
     rivals = sorted(
-        (one for one in found.alternatives[number] if one.behind < RIVAL),
+        (one for one in found.alternatives[number] if one.behind < apart),
         key=lambda one: one.behind,
     )
     first: dict[str, Alternative] = {}
@@ -101,7 +101,7 @@ def _with_advice(told: Sequence[Cause], found: Found, record: Record) -> list[Ca
         words = ""
         if found.alternatives[number]:
             nearest = found.alternatives[number][0].fit
-            advice = advice or Advice(model, problem.data, together, problem.levels)
+            advice = advice or Advice(model, problem, together)
             other = explanation("its rival", model, estimated_effects(nearest, record))
             against = effect_words(last_effect(nearest, record))
             if measured := advice.against(other):

@@ -12,13 +12,11 @@ from rga.model.parameter import NORMAL_90, Estimated
 from rga.model.schema import Model
 from rga.records import Record
 
-#: gain below which a channel is dead [-]
-DEAD = 0.05
-
 
 def effects_of(found: Found, record: Record) -> list[Effect]:
     """The causes as effects with estimated parameters, onsets as in the record."""
-    return [_dead(effect) for effect in estimated_effects(found.fit, record)]
+    least = found.problem.criteria.channels.dead_gain
+    return [_dead(effect, least) for effect in estimated_effects(found.fit, record)]
 
 
 def cause_name(model: Model, effect: Effect) -> str:
@@ -67,10 +65,10 @@ def _effect(one: Fit, number: int, record: Record) -> Effect:
     return effect.model_copy(update=late)
 
 
-def _dead(effect: Effect) -> Effect:
+def _dead(effect: Effect, least: float) -> Effect:
     """A gain of nearly nothing told as what it is: a channel that is dead."""
     if isinstance(effect, SensorGain) and isinstance(effect.factor, Estimated):
         low, high = effect.factor.ci90
-        if low < DEAD < high or abs(effect.factor.value) < DEAD:
+        if low < least < high or abs(effect.factor.value) < least:
             return SensorFault(sensor=effect.sensor, mode="dead", onset=effect.onset)
     return effect

@@ -9,19 +9,13 @@ from rga.diagnosis.assemble.effects import content, estimated_effects
 from rga.diagnosis.checks.explanations import Tried
 from rga.diagnosis.search.laplace import Fit
 from rga.diagnosis.search.screening import Prospect
-from rga.diagnosis.search.stepwise import NAMED, RIVAL, Found
+from rga.diagnosis.search.stepwise import Found
 from rga.findings.phrases import effect_words, place_words
 from rga.findings.schema import (
     Explanation,
     Unidentifiable,
 )
 from rga.records import Record
-
-SMALLEST_D_PRIME = 3.0
-#: share of the gap on unseen channels that an explanation must take off; unlikely z
-UNHELPFUL, UNLIKELY = 0.98, 3.0
-#: share of the named causes' gap on unseen channels below which another predicts them better
-BETTER = 0.9
 
 
 def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
@@ -53,8 +47,8 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
     return sorted(told, key=lambda one: -one.log_odds)
 
 
-def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
-    """Every kind and place whose largest physical value stays too small to be seen."""
+def unidentifiable(prospects: Sequence[Prospect], smallest: float) -> list[Unidentifiable]:
+    """Every kind and place whose largest physical value stays too small to be seen: below a d'."""
     return [
         Unidentifiable(
             kind=p.hypothesis.name,
@@ -62,7 +56,7 @@ def unidentifiable(prospects: Sequence[Prospect]) -> list[Unidentifiable]:
             d_prime_at_largest=p.largest,
         )
         for p in prospects
-        if p.largest < SMALLEST_D_PRIME
+        if p.largest < smallest
     ]
 
 
@@ -71,7 +65,7 @@ def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
     assert one.fit is not None  # the caller tells free gains apart
     if not one.fit.hypotheses:
         return "what every other explanation is measured against"
-    causes = found.fit
+    causes, criteria = found.fit, found.problem.criteria
     ahead = one.fit.log_evidence - causes.log_evidence
     rivals = [r for number in range(len(found.log_odds)) for r in rivals_of(found, number)]
     held = [any(h.same_place(cause) for h in one.fit.hypotheses) for cause in causes.hypotheses]
@@ -88,22 +82,24 @@ def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
             if any(_same(one.fit, r.fit) for r in rivals)
             else f"rejected ({ahead:+.0f} log-odds)"
         )
-        remarks.append(close if ahead > -RIVAL else rejected)
+        remarks.append(close if ahead > -criteria.rivals.log_odds else rejected)
     else:
         remarks.append(
             "rejected: not likelier than no effect at all"
-            if ahead < NAMED
+            if ahead < criteria.naming.log_odds
             else f"likelier than no effect ({ahead:+.0f} log-odds), and rejected all the same: it "
             "may be what no kind explains that speaks for it"
         )
-    if not all(held) and one.gap_unseen < BETTER * named.gap_unseen:
+    better = criteria.explanations.predicts_better * named.gap_unseen
+    if not all(held) and one.gap_unseen < better:
         remarks.append("yet it predicts channels that were left out better than what is named")
-    if np.isfinite(one.gap_unseen) and one.gap_unseen > UNHELPFUL * nothing.gap_unseen:
+    unhelpful = criteria.explanations.unhelpful * nothing.gap_unseen
+    if np.isfinite(one.gap_unseen) and one.gap_unseen > unhelpful:
         remarks.append("does not help channels that it was not fitted to")
     remarks += [
         f"{hypothesis.kind.title} would need an unlikely value"
         for hypothesis, where in zip(one.fit.hypotheses, one.fit.slices(), strict=True)
-        if np.abs(one.fit.z[where]).max(initial=0.0) > UNLIKELY
+        if np.abs(one.fit.z[where]).max(initial=0.0) > criteria.explanations.unlikely
     ]
     return "; ".join(remarks)
 

@@ -12,9 +12,10 @@ from rga.arrays import FloatArray
 from rga.diagnosis.noise.covariance import Covariance, Reduced
 from rga.diagnosis.search.laplace import FARTHEST, extended
 from rga.diagnosis.search.linearised import pose
-from rga.diagnosis.search.stepwise import NAMED, Found
+from rga.diagnosis.search.stepwise import Found
 from rga.errors import InputError
 
+#: halvings of the range of a parameter, and the step of derivatives by its coordinate
 HALVINGS, STEP = 16, 1e-3
 
 
@@ -52,20 +53,20 @@ def _least(record: "_Without") -> Least | None:
     if not record.hypothesis.priors:
         # What has no size, such as a swap, is there or not.
         return None
-    whole = record.odds(record.z)
-    if whole.log_odds < NAMED:
+    whole, named = record.odds(record.z), record.named
+    if whole.log_odds < named:
         return None
     cost = 0.5 * whole.squared - whole.log_odds
-    share = float(np.sqrt(2 * (NAMED + cost) / whole.squared))
+    share = float(np.sqrt(2 * (named + cost) / whole.squared))
     low = record.nothing_at
     if low is None:
         return Least(share, None)
     high = float(record.z[0])
-    if record.odds(np.array([low])).log_odds >= NAMED:
+    if record.odds(np.array([low])).log_odds >= named:
         return Least(share, None)
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        seen = record.odds(np.array([middle])).log_odds >= NAMED
+        seen = record.odds(np.array([middle])).log_odds >= named
         low, high = (low, middle) if seen else (middle, high)
     at_least = record.odds(np.array([high]))
     (prior,) = record.hypothesis.priors.values()
@@ -85,7 +86,7 @@ class _Without:
 
     def __init__(self, found: Found, number: int) -> None:
         one, self._where = found.fit, found.fit.slices()[number]
-        self._found = found
+        self._found, self.named = found, found.problem.criteria.naming.log_odds
         self.hypothesis, self.z = one.hypotheses[number], one.z[self._where]
         others = [other for k, other in enumerate(one.hypotheses) if k != number]
         simulator = extended(found.base, others, np.delete(one.z, self._where))

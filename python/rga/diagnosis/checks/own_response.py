@@ -12,12 +12,10 @@ import numpy as np
 
 from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.search.laplace import fit
-from rga.diagnosis.search.stepwise import NAMED, Found
+from rga.diagnosis.search.stepwise import Found
 
 #: spread of the response of a channel to a load pattern, where it is free [its own size]
 FREE = 0.3
-#: channels below which one cannot be told from what the others have in common
-FEWEST = 4
 
 
 def own_response(found: Found) -> str | None:
@@ -30,6 +28,7 @@ def own_response(found: Found) -> str | None:
         None where the causes of the structure are likelier, or where there are none.
     """
     problem, causes = found.problem, found.fit.hypotheses
+    criteria = problem.criteria
     kept = [k for k, one in enumerate(causes) if one.kind.at_sensors()]
     if len(kept) == len(causes):
         return None
@@ -43,7 +42,8 @@ def own_response(found: Found) -> str | None:
     gained = _gained(*covariance.posterior(residual), covariance.spread, channel)
     best = int(np.argmax(gained))
     odds = float(gained[best] - np.log(2 * len(names) * causes[0].kinds))
-    return None if len(names) < FEWEST or odds < max(NAMED, needed) else names[best]
+    few = len(names) < criteria.channels.fewest_for_own_response
+    return None if few or odds < max(criteria.naming.log_odds, needed) else names[best]
 
 
 def _gained(

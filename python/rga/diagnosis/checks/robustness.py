@@ -15,17 +15,11 @@ from rga.arrays import FloatArray
 from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
-from rga.diagnosis.search.stepwise import RIVAL, Alternative, Found, without_cause
+from rga.diagnosis.search.stepwise import Alternative, Found, without_cause
 from rga.simulation import Simulator
 
-#: log-odds up to which a lead may hang on one channel
-DOUBTFUL = 30.0
 #: channels that favour a cause most, which are left out one after the other
 FAVOURABLE = 8
-#: share of the gap on unseen channels by which a rival predicts them much better
-PREDICTS = 0.5
-#: times the least gap on unseen channels within which evidence decides again
-ALIKE = 1.5
 
 
 def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
@@ -57,7 +51,7 @@ def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found
         (number, place): one
         for number, ranked in enumerate(found.alternatives)
         for place, one in enumerate(ranked)
-        if one.behind < DOUBTFUL
+        if one.behind < problem.criteria.rivals.may_hang
     }
     if not close:
         return found
@@ -94,13 +88,13 @@ def with_better_prediction(found: Found) -> Found:
     Where the lead of a cause hangs on a channel, evidence cannot tell the two. What predicts
     channels to which it was not fitted much better then goes before what fits better.
     """
-    problem, base = found.problem, found.base
+    problem, base, criteria = found.problem, found.base, found.problem.criteria.rivals
     rivals = [
         (number, one)
         for number, ranked in enumerate(found.alternatives)
         if not found.fit.hypotheses[number].kind.at_sensors()
         for one in ranked
-        if one.behind < RIVAL and not one.hypothesis.kind.at_sensors()
+        if one.behind < criteria.log_odds and not one.hypothesis.kind.at_sensors()
     ]
     if not rivals or len(sensor_groups(base.model, problem.data.sensors)) < 2:
         return found
@@ -108,12 +102,12 @@ def with_better_prediction(found: Found) -> Found:
     better = [
         (gap, number, one)
         for number, one in rivals
-        if (gap := unseen_gap(problem, base, one.fit)) < PREDICTS * whole
+        if (gap := unseen_gap(problem, base, one.fit)) < criteria.predicts_better * whole
     ]
     if not better:
         return found
     least = min(gap for gap, _, _ in better)
-    alike = [(number, one) for gap, number, one in better if gap <= ALIKE * least]
+    alike = [(number, one) for gap, number, one in better if gap <= criteria.predicts_alike * least]
     return _exchanged(found, *max(alike, key=lambda pair: pair[1].fit.log_evidence))
 
 

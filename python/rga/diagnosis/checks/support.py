@@ -14,16 +14,7 @@ from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
 from rga.diagnosis.checks.whole_record import WholeRecord, about
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Fit, refit
-from rga.diagnosis.search.stepwise import NAMED, Found, settled_with, without_cause
-
-#: log-odds at which a cause at a sensor stands against held-out rows, in those of a name. These
-#: rows are few: chance turns them against a true cause that is barely sure, hardly a sure one
-TWICE = 2.0
-#: log-odds by which a group of channels must speak against a cause: a hundred to one
-AGAINST = 4.6
-#: gap on channels left out over that without a cause, above which it is larger: what the numbers of
-#: channels and rows leave to chance lies within a hundredth
-WORSE = 1.01
+from rga.diagnosis.search.stepwise import Found, settled_with, without_cause
 
 
 def supported(
@@ -59,7 +50,7 @@ def _settled(found: Found, fit: Fit) -> Found:
 
 def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
     """The number of the cause that least speaks for, of those to take out; None: of none."""
-    problem, base = found.problem, found.base
+    problem, base, criteria = found.problem, found.base, found.problem.criteria.naming
     after = whole.simulated(problem)
     gains = {}
     for number, one in enumerate(found.fit.hypotheses):
@@ -67,7 +58,8 @@ def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
         before = whole.simulated(about(problem, without.simulator(base)))
         gained = whole.gain(before, after, found.fit.hypotheses, seed)
         if one.kind.on_sensors:
-            sure = found.fit.log_evidence - without.log_evidence >= TWICE * NAMED
+            lead = found.fit.log_evidence - without.log_evidence
+            sure = lead >= criteria.sensor_multiple * criteria.log_odds
             harmful = gained.before <= gained.after and not sure
         else:
             harmful = gained.interval[0] <= 0 or worsens(found, without)
@@ -87,10 +79,12 @@ def worsens(found: Found, without: Fit) -> bool:
         without: fitted without it.
     """
     problem, base, causes = found.problem, found.base, found.fit
+    criteria = problem.criteria.naming
     groups = sensor_groups(base.model, problem.data.sensors)
     if len(groups) < 2:
         return False
-    if unseen_gap(problem, base, causes) <= WORSE * unseen_gap(problem, base, without):
+    bare = unseen_gap(problem, base, without)
+    if unseen_gap(problem, base, causes) <= criteria.worse_gap * bare:
         return False
     lead = causes.log_evidence - without.log_evidence
     against = []
@@ -98,4 +92,4 @@ def worsens(found: Found, without: Fit) -> bool:
         part = hiding(problem, names)
         others = (refit(part, base, one).log_evidence for one in (causes, without))
         against.append(next(others) - next(others) - lead)
-    return max(against) > AGAINST
+    return max(against) > criteria.group_against

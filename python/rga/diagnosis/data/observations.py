@@ -7,6 +7,7 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.data.tare import Tare
+from rga.findings.criteria import Criteria
 from rga.model.effect import Effect, Values
 from rga.model.schema import Model
 from rga.simulation import Simulator
@@ -87,7 +88,7 @@ class Belief:
 
 @dataclass(frozen=True)
 class Data:
-    """Readings with the belief of their contexts.
+    """Readings with the belief of their contexts, and the criteria that they are judged by.
 
     Attributes:
         sensors: names of the channels.
@@ -96,6 +97,7 @@ class Data:
         observed: bool[rows, sensors].
         belief: what is believed of the contexts.
         tare: the rows whose mean was taken off every channel.
+        criteria: what decides a verdict.
     """
 
     sensors: tuple[str, ...]
@@ -104,6 +106,7 @@ class Data:
     observed: BoolArray
     belief: Belief
     tare: Tare
+    criteria: Criteria
     _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, init=False, compare=False)
     _tried: dict[tuple[Vicinity, str, bool], tuple[FloatArray, bool]] = field(
         default_factory=dict, init=False, compare=False

@@ -16,20 +16,13 @@ from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.linearised import load_basis
 from rga.diagnosis.search.signatures import signatures
 from rga.errors import InputError
+from rga.findings.criteria import Criteria
+from rga.findings.criteria.records import RecordCriteria
 from rga.model.schema import Model
 from rga.records import Record
 from rga.records.zero import zeros_of
 from rga.simulation import Simulator
 
-#: rows that are analysed at most; more are thinned evenly
-MOST_ROWS = 800
-LEAST_ROWS = 12
-FEW_ROWS = 60
-#: correlation with the simulation beyond which a channel tells its unit, and how much larger or
-#: smaller readings are that look like another unit
-ALIKE, OTHER_UNIT = 0.8, 30.0
-#: share of the record that a context repeats its last value for, and is doubted
-STILL = 0.1
 #: times that broken channels are looked for: the worst may hide others
 GOES = 3
 #: share of a signature that courses of the loads must leave, to be no sum of them
@@ -65,23 +58,36 @@ class PreparedRecord:
         return replace(self, data=data, apart=(*self.apart, sensor))
 
 
-def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> PreparedRecord:
+def prepare(
+    model: Model,
+    record: Record,
+    progress: Callable[[float], None],
+    criteria: Criteria | None = None,
+) -> PreparedRecord:
     """Choose rows, reject channels that do not work, and guess the latent contexts.
+
+    Args:
+        model: as it was given.
+        record: as it was measured.
+        progress: told the share that is done.
+        criteria: what decides a verdict; None: the default ones.
 
     Raises:
         InputError: too few rows, or no channel that works.
     """
-    check_length(record)
+    criteria = criteria or Criteria()
+    check_length(record, criteria.record)
     simulator = Simulator(model.without_zeros())
-    record, rezeroed = with_own_zeros(model, simulator, record, _data(model, record))
-    data = _data(model, record)
-    faults = stuck_channels(data.sensors, data.readings, data.observed)
+    given = _data(model, record, criteria)
+    record, rezeroed = with_own_zeros(model, simulator, record, given)
+    data = _data(model, record, criteria)
+    faults = stuck_channels(data.sensors, data.readings, data.observed, criteria.channels)
     found = {fault.sensor: fault for fault in faults}
     data = _without(data, faults)
     data = guess_lines(simulator, data, progress)
     if data.belief.passing:
         loaded = _acting(simulator.load_coefficients(data.belief.table))
-        lost = lost_zeros(data.sensors, data.readings, data.observed, loaded)
+        lost = lost_zeros(data.sensors, data.readings, data.observed, loaded, criteria.channels)
         found |= {fault.sensor: fault for fault in lost}
         data = _without(data, lost)
     chosen = _loaded_rows(simulator, data)
@@ -100,9 +106,10 @@ def prepare(model: Model, record: Record, progress: Callable[[float], None]) -> 
             f"record; of {fault.sensor!r}, {fault.why}",
             "check the record and the mapping",
         )
-    spikes = lone_spikes(data.readings, data.observed, load_basis(simulator, data))
+    basis = load_basis(simulator, data)
+    spikes = lone_spikes(data.readings, data.observed, basis, criteria.channels)
     warnings = [*record.warnings, *rezeroed, *doubts]
-    if chosen.sum() < FEW_ROWS:
+    if chosen.sum() < criteria.record.few_rows:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
         warnings.append(
@@ -139,6 +146,7 @@ def _broken(simulator: Simulator, data: Data, record: Record) -> list[BrokenChan
         basis,
         effects,
         not data.belief.passing,
+        data.criteria.channels,
     )
 
 
@@ -173,15 +181,16 @@ def _beyond_loads(
 def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
     """What looks like a slip with units, or a context that is measured no more."""
     told = []
+    limits = data.criteria.record
     readings = np.where(data.observed, data.readings, np.nan)
     factors = [
         float(np.nanstd(own) / shown.std())
         for own, shown in zip(readings.T, simulated.T, strict=True)
-        if shown.std() > 0 and abs(_correlation(own, shown)) > ALIKE
+        if shown.std() > 0 and abs(_correlation(own, shown, limits)) > limits.unit_correlation
     ]
     if len(factors) > data.readings.shape[1] / 2:
         factor = float(np.median(factors))
-        if not 1 / OTHER_UNIT < factor < OTHER_UNIT:
+        if not 1 / limits.unit_factor < factor < limits.unit_factor:
             told.append(
                 f"the readings go with the simulation and are about {factor:.2g} times as large: "
                 "check the units of record and model before any cause"
@@ -197,7 +206,7 @@ def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> 
                 "its zero before any cause"
             )
         last = int((column[::-1] == column[-1]).argmin() if (column != column[-1]).any() else 0)
-        if last > STILL * len(column):
+        if last > limits.still_share * len(column):
             told.append(
                 f"{name} reads {column[-1]:g} exactly in the last {last} of {len(column)} rows: "
                 "check its sensor before any cause"
@@ -205,24 +214,24 @@ def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> 
     return told
 
 
-def _correlation(own: FloatArray, shown: FloatArray) -> float:
+def _correlation(own: FloatArray, shown: FloatArray, limits: RecordCriteria) -> float:
     seen = np.isfinite(own)
-    if seen.sum() < LEAST_ROWS or np.ptp(own[seen]) == 0 or np.ptp(shown[seen]) == 0:
+    if seen.sum() < limits.least_rows or np.ptp(own[seen]) == 0 or np.ptp(shown[seen]) == 0:
         return 0.0
     return float(np.corrcoef(own[seen], shown[seen])[0, 1])
 
 
-def check_length(record: Record) -> None:
+def check_length(record: Record, criteria: RecordCriteria) -> None:
     """Refuse a record that is too short for a diagnosis (InputError)."""
-    if len(record) < LEAST_ROWS:
+    if len(record) < criteria.least_rows:
         raise InputError(
             f"the record has {len(record)} rows",
             "record",
-            f"a diagnosis needs {LEAST_ROWS} at least",
+            f"a diagnosis needs {criteria.least_rows} at least",
         )
 
 
-def _data(model: Model, record: Record) -> Data:
+def _data(model: Model, record: Record, criteria: Criteria) -> Data:
     order = {name: number for number, name in enumerate(model.sensors)}
     belief = first_belief(model, record.origin + record.time, record.contexts)
     # A row whose context is missing cannot be simulated: its readings are left aside.
@@ -236,6 +245,7 @@ def _data(model: Model, record: Record) -> Data:
         observed=np.isfinite(record.readings) & complete[:, None],
         belief=belief,
         tare=Tare.of(record, belief.table, columns, zeros_of(model, record)),
+        criteria=criteria,
     )
 
 
@@ -281,7 +291,7 @@ def _loaded_rows(simulator: Simulator, data: Data) -> BoolArray:
         if len(acting):
             margin = max(2, len(acting) // 25)
             first, last = max(0, acting[0] - margin), min(rows - 1, acting[-1] + margin)
-    step = -(-(last - first + 1) // MOST_ROWS)
+    step = -(-(last - first + 1) // data.criteria.record.most_rows)
     chosen = np.zeros(rows, dtype=bool)
     chosen[first : last + 1 : step] = True
     return chosen

@@ -23,32 +23,16 @@ from rga.diagnosis.preparation.channel_prediction import (
     root_mean_square,
 )
 from rga.diagnosis.preparation.single_channel import BrokenChannel, copied, dead, scaled, silent
+from rga.findings.criteria.channels import ChannelCriteria
 from rga.model.effects.sensors.zero_offset import offset_scale
 from rga.model.schema import Model
 
-#: own part of a channel, in its usual size, from which on it is broken. Most sound ones of blind
-#: cases stay below 1.5, the worst of 100 records reached 2.2; broken ones mostly lie above 3
-BROKEN = 2.5
-#: the same of channels that nothing compares with: the share of the variation of the readings
-#: that neither loads nor other channels explain
-DROWNED = 0.9
-#: rows for each course of the loads to which the response may change then
+#: rows for each course of the loads to which the response may change from a moment on
 ROWS_PER_CHANGE = 16
-#: shares of the record over which a broken channel may have worked, and its size that says so
-PARTS, WORKS = np.arange(0.3, 0.96, 0.05), 1.8
-#: share of rows with large own parts below which a channel spikes
-FEW = 0.25
-#: readings further from the best fit than this many robust deviations are lone spikes
-SPIKE = 36.0
-#: rows that a spike lasts at most
-LONGEST_SPIKE = 2
+#: shares of the record over which a broken channel may have worked
+PARTS = np.arange(0.3, 0.96, 0.05)
 #: moments at which another response is tried, and the share of the rows before the first
 MOMENTS, MARGIN = 40, 0.05
-#: jump of a level that no bias explains, in the size of a large offset: beyond it a search for
-#: causes does not reach
-LARGEST_JUMP = 6.0
-#: share of an own part that an effect of the structure must explain to be the likelier reason
-EXPLAINED = 0.6
 
 #: modes that may begin at any row
 PARTIAL = ("spiking", "erratic")
@@ -63,6 +47,7 @@ def broken_channels(
     basis: FloatArray,
     effects: Callable[[], Sequence[FloatArray]],
     onsets: bool,
+    criteria: ChannelCriteria,
 ) -> list[BrokenChannel]:
     """Channels that do not work, by the simulation and by what the others predict of them.
 
@@ -76,12 +61,13 @@ def broken_channels(
         effects: asked where a channel is suspect: what effects of the structure change that no
             course of the loads shows, float[rows, sensors] each.
         onsets: whether a search for causes may say that something begins late.
+        criteria: when a channel is broken.
     """
     parts = own_parts(model, sensors, readings, observed, basis, simulated)
     suspects = [
         number
         for number in range(len(sensors))
-        if observed[:, number].sum() > 3 and _too_large(parts, readings, observed, number)
+        if observed[:, number].sum() > 3 and _too_large(parts, readings, observed, number, criteria)
     ]
     possible = effects() if suspects else []
     faults = []
@@ -90,22 +76,24 @@ def broken_channels(
         if seen.sum() <= 3:
             continue
         found = (
-            silent(sensor, readings[:, number], seen, simulated[:, number])
-            or copied(sensors, readings, observed, simulated, number)
-            or scaled(model, sensors, readings, observed, simulated, number)
-            or dead(sensor, readings[seen, number], simulated[seen, number])
+            silent(sensor, readings[:, number], seen, simulated[:, number], criteria)
+            or copied(sensors, readings, observed, simulated, number, criteria)
+            or scaled(model, sensors, readings, observed, simulated, number, criteria)
+            or dead(sensor, readings[seen, number], simulated[seen, number], criteria)
         )
         if found is None and number in suspects:
             others = [k for k in range(len(sensors)) if k == number or k not in suspects]
-            if not _explained(parts, possible, number, others):
-                found = _erratic(model, sensor, parts, observed, basis, simulated, number, onsets)
+            if not _explained(parts, possible, number, others, criteria):
+                found = _erratic(
+                    model, sensor, parts, observed, basis, simulated, number, onsets, criteria
+                )
         if found is not None:
             faults.append(found)
     if any(one.mode in PARTIAL and one.row is None for one in faults):
         until = dict(
             zip(
                 sensors,
-                _working_until(model, sensors, readings, observed, basis, simulated),
+                _working_until(model, sensors, readings, observed, basis, simulated, criteria),
                 strict=True,
             )
         )
@@ -120,7 +108,9 @@ def _begun(fault: BrokenChannel, row: int) -> BrokenChannel:
     return replace(fault, row=row, why=f"{fault.why} (it works up to row {row})")
 
 
-def lone_spikes(readings: FloatArray, observed: BoolArray, basis: FloatArray) -> BoolArray:
+def lone_spikes(
+    readings: FloatArray, observed: BoolArray, basis: FloatArray, criteria: ChannelCriteria
+) -> BoolArray:
     """Readings of working channels that jump far away from what the loads allow."""
     spikes = np.zeros_like(observed)
     for number in range(readings.shape[1]):
@@ -128,20 +118,30 @@ def lone_spikes(readings: FloatArray, observed: BoolArray, basis: FloatArray) ->
         column = readings[seen, number]
         if len(column) > 3 * basis.shape[1]:
             rest = column - robust_fit(column, basis[seen])
-            far = np.abs(rest) > SPIKE * max(robust_deviation(rest), 1e-12)
-            spikes[seen, number] = _lone(far)
+            far = np.abs(rest) > criteria.lone_spike * max(robust_deviation(rest), 1e-12)
+            spikes[seen, number] = _lone(far, criteria.longest_spike)
     return spikes
 
 
-def _too_large(parts: OwnParts, readings: FloatArray, observed: BoolArray, number: int) -> bool:
+def _too_large(
+    parts: OwnParts,
+    readings: FloatArray,
+    observed: BoolArray,
+    number: int,
+    criteria: ChannelCriteria,
+) -> bool:
     if np.isfinite(parts.usual[number]):
-        return bool(parts.size[number] > BROKEN)
+        return bool(parts.size[number] > criteria.own_part)
     column = readings[observed[:, number], number]
-    return bool(root_mean_square(parts.own)[number] > DROWNED * column.std())
+    return bool(root_mean_square(parts.own)[number] > criteria.own_part_alone * column.std())
 
 
 def _explained(
-    parts: OwnParts, effects: Sequence[FloatArray], number: int, channels: list[int]
+    parts: OwnParts,
+    effects: Sequence[FloatArray],
+    number: int,
+    channels: list[int],
+    criteria: ChannelCriteria,
 ) -> bool:
     """Whether an effect of the structure explains a channel's own part, the others with it."""
     usual = np.where(np.isfinite(parts.usual), parts.usual, root_mean_square(parts.own))
@@ -154,7 +154,7 @@ def _explained(
         power = float((shown**2).sum())
         if power > 0:
             rest = left[:, place] - float((shown * left).sum()) / power * shown[:, place]
-            if float((rest**2).sum()) < (1 - EXPLAINED) * before:
+            if float((rest**2).sum()) < (1 - criteria.explained) * before:
                 return True
     return False
 
@@ -168,6 +168,7 @@ def _erratic(
     simulated: FloatArray,
     number: int,
     onsets: bool,
+    criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
     """A channel of its own ways over the record."""
     seen = observed[:, number]
@@ -181,16 +182,17 @@ def _erratic(
     unchanged = replace(parts, left=left, own=beyond_others(left, observed))
     rest, size = unchanged.own[seen, number], float(unchanged.size[number])
     usual = float(unchanged.allowed[number])
-    if size <= BROKEN:
-        if abs(change.jump) <= LARGEST_JUMP * offset_scale(model, sensor):
+    if size <= criteria.own_part:
+        if abs(change.jump) <= criteria.largest_jump * offset_scale(model, sensor):
             return None
         unit = model.sensors[sensor].unit
         why = f"it jumps by {change.jump:.3g} {unit} in row {change.row + 1}"
         begun = change.row >= PARTS[0] * count
         row = int(np.flatnonzero(seen)[change.row]) if begun else None
         return BrokenChannel(sensor, "erratic", why, count - change.row, row)
-    far = np.abs(rest) > 2 * BROKEN * usual
-    if far.mean() < FEW and robust_deviation(rest[~far]) < BROKEN * usual:
+    largest = criteria.own_part * usual
+    far = np.abs(rest) > 2 * largest
+    if far.mean() < criteria.spiking_share and robust_deviation(rest[~far]) < largest:
         why = f"{far.mean():.1%} of its readings jump away from what loads and channels predict"
         return BrokenChannel(sensor, "spiking", why, max(int(far.sum()), 1))
     why = f"it leaves what loads and other channels predict by {size:.1f} times its usual noise"
@@ -204,6 +206,7 @@ def _working_until(
     observed: BoolArray,
     basis: FloatArray,
     simulated: FloatArray,
+    criteria: ChannelCriteria,
 ) -> NDArray[np.int64]:
     """Rows over which each channel works before it breaks, int[sensors]; 0: too few."""
     rows = len(readings)
@@ -214,7 +217,7 @@ def _working_until(
         parts = own_parts(
             model, sensors, readings[first], observed[first], basis[first], simulated[first]
         )
-        until[parts.size <= WORKS] = end
+        until[parts.size <= criteria.works] = end
     return until
 
 
@@ -265,10 +268,10 @@ def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: 
     return min((at(row) for row in near), key=left)
 
 
-def _lone(far: BoolArray) -> BoolArray:
+def _lone(far: BoolArray, longest: int) -> BoolArray:
     """Those that stand alone or in short runs: what stays away has moved, and is no spike."""
     edges = np.flatnonzero(np.diff(far.astype(int), prepend=0, append=0))
     lone = far.copy()
     for first, end in zip(edges[::2], edges[1::2], strict=True):
-        lone[first:end] = end - first <= LONGEST_SPIKE
+        lone[first:end] = end - first <= longest
     return lone

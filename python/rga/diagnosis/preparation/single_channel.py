@@ -6,26 +6,8 @@ from typing import Literal
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
+from rga.findings.criteria.channels import ChannelCriteria
 from rga.model.schema import Model
-
-#: share of rows that repeat the last one exactly, beyond which a channel is stuck
-REPEATS = 0.5
-#: a channel that shows less than this share of the expected variation is dead
-DEAD = 0.05
-#: how much larger or smaller than its like a channel answers where its unit or range is wrong:
-#: no single cause changes a response so much, and units differ by tens at least
-SCALE = 8.0
-#: share of its like's variation that a simulation must have to tell the scale of a channel
-TELLING = 0.1
-#: correlation with the simulation from which on a channel tells its scale
-ALIKE = 0.8
-#: rows that a channel repeats itself to the last, or another channel, before that is no chance;
-#: times what chance allows of coarse readings, and the share of its variation that the simulation
-#: must have meanwhile
-SILENT, UNLIKELY, MOVES = 10, 4.0, 0.2
-#: share of its largest reading by which a channel may be off behind a crossing: dynamics and
-#: bearings leave a few percent
-RETURNS = 0.15
 
 Mode = Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
 
@@ -50,7 +32,10 @@ class BrokenChannel:
 
 
 def stuck_channels(
-    sensors: tuple[str, ...], readings: FloatArray, observed: BoolArray
+    sensors: tuple[str, ...],
+    readings: FloatArray,
+    observed: BoolArray,
+    criteria: ChannelCriteria,
 ) -> list[BrokenChannel]:
     """Channels that stand still over most of the record, whatever the loads are.
 
@@ -58,19 +43,24 @@ def stuck_channels(
         sensors: names.
         readings: float[rows, sensors].
         observed: bool[rows, sensors].
+        criteria: when a channel is stuck.
     """
     faults = []
     for number, sensor in enumerate(sensors):
         column = readings[observed[:, number], number]
         repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
-        if repeats > REPEATS:
+        if repeats > criteria.repeats:
             why = f"{repeats:.0%} of its readings repeat the one before exactly"
             faults.append(BrokenChannel(sensor, "stuck", why, int(repeats * len(column))))
     return faults
 
 
 def lost_zeros(
-    sensors: tuple[str, ...], readings: FloatArray, observed: BoolArray, loaded: BoolArray
+    sensors: tuple[str, ...],
+    readings: FloatArray,
+    observed: BoolArray,
+    loaded: BoolArray,
+    criteria: ChannelCriteria,
 ) -> list[BrokenChannel]:
     """Channels that do not read the same behind a crossing as before it.
 
@@ -79,6 +69,7 @@ def lost_zeros(
         readings: float[rows, sensors].
         observed: bool[rows, sensors].
         loaded: rows under load, bool[rows].
+        criteria: how far off a channel may stay.
     """
     rows = np.flatnonzero(loaded)
     if not len(rows):
@@ -90,12 +81,12 @@ def lost_zeros(
         before[rows[0] :] = False
         behind[: rows[-1] + 1] = False
         during = seen & ~before & ~behind
-        if min(before.sum(), behind.sum()) < SILENT or not during.any():
+        if min(before.sum(), behind.sum()) < criteria.still_rows or not during.any():
             continue
         level = float(np.median(readings[before, number]))
         off = float(np.median(readings[behind, number])) - level
         peak = float(np.abs(readings[during, number] - level).max())
-        if abs(off) > RETURNS * peak:
+        if abs(off) > criteria.returns * peak:
             why = (
                 f"behind the crossing it stays off by {off:.3g}, {abs(off) / peak:.0%} of its peak"
             )
@@ -104,7 +95,11 @@ def lost_zeros(
 
 
 def silent(
-    sensor: str, column: FloatArray, seen: BoolArray, simulated: FloatArray
+    sensor: str,
+    column: FloatArray,
+    seen: BoolArray,
+    simulated: FloatArray,
+    criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
     """A channel that repeats itself to the last reading, where it should move."""
     told, expected = column[seen], simulated[seen]
@@ -114,9 +109,9 @@ def silent(
     repeats = float((np.diff(told[: first + 1]) == 0).mean()) if first else 1.0
     by_chance = 1 + np.log(len(told)) / np.log(1 / max(repeats, 1e-3)) if repeats < 1 else np.inf
     silent = len(told) - first
-    if silent < max(SILENT, UNLIKELY * by_chance):
+    if silent < max(criteria.still_rows, criteria.still_chance * by_chance):
         return None
-    if expected[first:].std() <= MOVES * expected.std():
+    if expected[first:].std() <= criteria.still_moves * expected.std():
         return None
     row, value = int(np.flatnonzero(seen)[first]), told[first]
     why = f"it reads {value:.6g} exactly from row {row + 1} to the last"
@@ -129,6 +124,7 @@ def copied(
     observed: BoolArray,
     simulated: FloatArray,
     number: int,
+    criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
     """A channel that holds the readings of another, and not its own."""
     for other in range(len(sensors)):
@@ -138,7 +134,7 @@ def copied(
         same = both & (readings[:, number] == readings[:, other])
         first, end = _longest(same)
         copied = slice(first, end)
-        if end - first < SILENT or np.ptp(readings[copied, other]) == 0:
+        if end - first < criteria.still_rows or np.ptp(readings[copied, other]) == 0:
             continue
         own, theirs = (_misfit(readings[copied, k], simulated[copied, k]) for k in (number, other))
         if own > theirs:
@@ -171,6 +167,7 @@ def scaled(
     observed: BoolArray,
     simulated: FloatArray,
     number: int,
+    criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
     """A channel that answers as it should, many times too much or too little."""
     kind = model.sensors[sensors[number]].kind
@@ -182,25 +179,30 @@ def scaled(
         if seen.sum() <= 3 or expected.std() == 0 or readings[seen, k].std() == 0:
             continue
         sizes[k] = float(expected.std())
-        if abs(float(np.corrcoef(readings[seen, k], expected)[0, 1])) > ALIKE:
+        correlation = float(np.corrcoef(readings[seen, k], expected)[0, 1])
+        if abs(correlation) > criteria.scale_correlation:
             slopes[k] = float(np.cov(readings[seen, k], expected)[0, 1] / expected.var(ddof=1))
     if number not in slopes or len(slopes) < 3:
         return None
     usual = float(np.median([abs(one) for k, one in slopes.items() if k != number]))
-    if sizes[number] < TELLING * float(np.median(list(sizes.values()))) or usual == 0:
+    least = criteria.scale_variation * float(np.median(list(sizes.values())))
+    if sizes[number] < least or usual == 0:
         return None
     factor = slopes[number] / usual
     largest = max(abs(slopes[k]) * sizes[k] for k in slopes if k != number)
-    beyond = abs(slopes[number]) * sizes[number] > SCALE * largest
-    if (abs(factor) > SCALE and beyond) or abs(factor) < 1 / SCALE**2:
+    beyond = abs(slopes[number]) * sizes[number] > criteria.scale * largest
+    if (abs(factor) > criteria.scale and beyond) or abs(factor) < 1 / criteria.scale**2:
         why = f"it answers {factor:.3g} times as much as its like: check its unit and its range"
         return BrokenChannel(sensors[number], "scale", why, int(observed[:, number].sum()))
     return None
 
 
-def dead(sensor: str, column: FloatArray, simulated: FloatArray) -> BrokenChannel | None:
+def dead(
+    sensor: str, column: FloatArray, simulated: FloatArray, criteria: ChannelCriteria
+) -> BrokenChannel | None:
+    """A channel that hardly varies where it should."""
     spread, expected = float(column.std()), float(simulated.std())
-    if spread >= DEAD * expected:
+    if spread >= criteria.dead * expected:
         return None
     why = f"it varies by {spread:.3g} where {expected:.3g} is expected"
     return BrokenChannel(sensor, "dead", why, len(column))

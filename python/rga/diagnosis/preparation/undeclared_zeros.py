@@ -20,21 +20,6 @@ from rga.numerics.decompositions import thin_svd
 from rga.records import Record
 from rga.simulation import Simulator
 
-#: an offset: so many deviations of the noise, which neither chance nor memory makes
-OFF = 10.0
-#: share of the channels that must be off, and their least number: fewer are faults of their own
-MOST, FEWEST = 0.5, 4
-#: causes that may share the offsets, and the share of their squares that these must leave
-CAUSES, LEFT = 3, 0.2
-#: share of the squares of a jump that one cause alone must make, to be no new zero: that undoes
-#: what several loads have done
-ONE_CAUSE = 0.95
-#: channels that must read zero where the logger was zeroed again, as a share of those that should
-#: not, and how near in deviations of their own noise
-ALL, NEAR = 0.9, 4.0
-#: how far they should be from zero, in deviations of a shift of level: what a context's error of a
-#: row makes is no new zero; and how near the shift must come to that, as a share and in deviations
-FAR, STAYS, ABOUT = 8.0, 0.3, 2.0
 #: rows over which the logger may have taken its zero, and over which levels are compared
 TAKEN, BESIDE = (1, 2, 5, 10), 10
 
@@ -81,9 +66,10 @@ def _start_anywhere(
     model: Model, simulator: Simulator, data: Data, simulated: FloatArray, noise: FloatArray
 ) -> bool:
     """Whether most channels are off by constants that no few causes make."""
+    criteria = data.criteria.zeros
     constant = _constant(simulator, data)
     working = noise > 0
-    least = max(FEWEST, MOST * working.sum())
+    least = max(criteria.fewest_channels, criteria.share_of_channels * working.sum())
 
     def offsets(values: FloatArray) -> FloatArray:
         seen = np.where(data.observed, constant[:, None], 0.0)
@@ -91,12 +77,12 @@ def _start_anywhere(
         return np.where(working, (seen * values).sum(0) / own / np.where(working, noise, 1.0), 0.0)
 
     left = offsets(np.where(data.observed, data.readings - simulated, 0.0))
-    if (np.abs(left) > OFF).sum() < least:
+    if (np.abs(left) > criteria.offset).sum() < least:
         return False
     whole = float(left @ left)
     patterns = [offsets(change) for change, _ in _changes(model, simulator, data)]
     rest = np.array([one for one in patterns if one.any()]).reshape(-1, len(left))
-    for _ in range(min(CAUSES, len(rest))):
+    for _ in range(min(criteria.most_causes, len(rest))):
         sizes = (rest**2).sum(1)
         along = rest @ left / np.sqrt(np.maximum(sizes, 1e-300))
         best = rest[np.argmax(np.abs(along))] / np.sqrt(sizes[np.argmax(np.abs(along))])
@@ -105,7 +91,8 @@ def _start_anywhere(
         rest = rest[(rest**2).sum(1) > 1e-6 * sizes]
         if not len(rest):
             break
-    return bool((np.abs(left) > OFF).sum() >= least and left @ left > LEFT * whole)
+    many = (np.abs(left) > criteria.offset).sum() >= least
+    return bool(many and left @ left > criteria.left_by_causes * whole)
 
 
 def _changes(
@@ -152,6 +139,8 @@ def _zeroed_again(
         noise: of the residual of each channel from row to row, float[sensors].
         own: noise of each sensor itself, float[sensors].
     """
+    criteria = data.criteria.zeros
+    least = max(criteria.fewest_channels, criteria.share_of_channels * (noise > 0).sum())
     readings = np.where(data.observed, data.readings, np.nan)
     expected = np.where(data.observed, simulated, np.nan)
     over = _moving_means(readings - expected, BESIDE)
@@ -162,11 +151,13 @@ def _zeroed_again(
     for taken in TAKEN:
         shown = _moving_means(readings, taken)[rows]
         should = _moving_means(expected, taken)[rows] + before
-        telling = (np.abs(should) > np.maximum(FAR * shift, OFF * own)) & (noise > 0)
-        zero = telling & (np.abs(shown) <= NEAR * own)
-        zero &= np.abs(after - before + should) <= STAYS * np.abs(should) + ABOUT * shift
-        enough = telling.sum(1) >= max(FEWEST, MOST * (noise > 0).sum())
-        found |= enough & (zero.sum(1) >= ALL * telling.sum(1))
+        far = np.maximum(criteria.far_from_zero * shift, criteria.offset * own)
+        telling = (np.abs(should) > far) & (noise > 0)
+        zero = telling & (np.abs(shown) <= criteria.near_zero * own)
+        missed = criteria.shift_share * np.abs(should) + criteria.shift_deviations * shift
+        zero &= np.abs(after - before + should) <= missed
+        enough = telling.sum(1) >= least
+        found |= enough & (zero.sum(1) >= criteria.reading_zero * telling.sum(1))
     if not found.any():
         return None
     # Rows beside it may read near zero too: where it happened the levels lie furthest apart.
@@ -191,7 +182,8 @@ def _one_cause(
     for change, late in _changes(model, simulator, data):
         pattern = change[row : row + BESIDE].mean(0) + late
         shown = np.where(working, pattern / np.where(working, noise, 1.0), 0.0)
-        if (shown @ jump) ** 2 > ONE_CAUSE * (shown @ shown) * (jump @ jump):
+        alike = (shown @ jump) ** 2
+        if alike > data.criteria.zeros.one_cause * (shown @ shown) * (jump @ jump):
             return True
     return False
 

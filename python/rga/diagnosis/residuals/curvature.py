@@ -16,8 +16,6 @@ from rga.diagnosis.residuals.slopes import STRAIGHT, squares, straight_courses
 from rga.diagnosis.search.linearised import Calibration, Problem, load_basis
 from rga.numerics.decompositions import thin_svd
 
-#: chance of a curve where there is none, as that at which a cause is named: one in a thousand
-CHANCE = 1e-3
 #: share of the rows that the courses of the loads may take, and of a square that they must leave
 MOST_COURSES, LEFT = 1 / 12, 1e-3
 
@@ -66,10 +64,11 @@ def curves(problem: Problem) -> list[Curve]:
         squared[sensor, seen] = product**2 / size[seen] / ((reading**2).sum() / free)
         count[sensor, seen] = 1
     chance = chi2.sf(squared.sum(0), np.maximum(count.sum(0), 1))
+    beyond = problem.criteria.structure.curve_chance / len(names)
     return [
         Curve(name, sizes[:, number])
         for number, name in enumerate(names)
-        if chance[number] < CHANCE / len(names)
+        if chance[number] < beyond
     ]
 
 

@@ -15,18 +15,6 @@ from rga.arrays import FloatArray
 from rga.diagnosis.noise.random_effects import MEDIANS, lines
 from rga.diagnosis.search.linearised import Problem
 
-#: spread of EA of members, of gains of channels, and of what a linear structure does otherwise [-]:
-#: JCSS Probabilistic Model Code, part 3.2 (steel): modulus 3 % and area of a section 4 %, together
-#: 5 %; gauge factor 1 %, its alignment, amplifier and cable together 2 %
-PLAUSIBLE = np.array([0.05, 0.02, 0.01])
-#: times that scatter, above which an estimate says that something else passes for scatter: that of
-#: a dozen channels is known to a fifth
-IMPLAUSIBLE = 1.5
-#: deviations beyond which no channel of a hundred lies by chance
-FAR = 4.0
-#: held-out gap above which residuals are no noise, whatever the channels do together
-NEAR_ONE = 2.0
-
 
 @dataclass(frozen=True)
 class Misfit:
@@ -82,7 +70,7 @@ def misfits(
             continue
         off = float((weight * residual[:, columns]).sum())
         spread = float(np.sqrt(_variance(problem, weight, columns)))
-        if abs(off) > FAR * spread:
+        if abs(off) > problem.criteria.fit.deviations * spread:
             found.append(Misfit(word, names, 100 * off, off / spread))
     return sorted(found, key=lambda one: -abs(one.deviations))
 
@@ -110,8 +98,8 @@ def _variance(problem: Problem, weight: FloatArray, columns: list[int]) -> float
     ]
     along = np.einsum("tc,tcj->tj", weight, rows.context_jacobian[:, columns][:, :, measured])
     of_contexts = float(((along * noise.context_sigma[measured]) ** 2).sum())
-    effects = problem.covariance.scatter
-    spread = problem.scatter.spread(np.clip(problem.levels, MEDIANS, PLAUSIBLE))
+    effects, plausible = problem.covariance.scatter, problem.criteria.fit.plausible
+    spread = problem.scatter.spread(np.clip(problem.levels, MEDIANS, plausible))
     # Where a train stands was fitted with the rest: its prior is no uncertainty any more.
     spread[len(spread) - len(lines(problem.data)) :] = 0.0
     shares = np.einsum("tc,tp,kcp->k", weight, effects.courses, effects.shares[:, columns])

@@ -16,13 +16,11 @@ from rga.diagnosis.noise.sensor_noise import unexplainable
 from rga.diagnosis.residuals.curvature import curves
 from rga.diagnosis.residuals.slopes import bends
 from rga.diagnosis.search.linearised import Problem, load_basis, pose
+from rga.findings.criteria.residuals import StructureCriteria
 from rga.model.effect import Values
 
-MOST = 3
-MARGIN = 1.25
 #: rows over which patterns are looked for together, and pieces of that length that are needed
 WIDTHS, LEAST_PIECES = (1, 8), 20
-CORRELATED, SWINGING = 0.4, 0.2
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ class Leftover:
 
 def with_leftovers(problem: Problem) -> Problem:
     """The problem with the patterns that it leaves added to the covariance."""
-    for _ in range(MOST):
+    for _ in range(problem.criteria.structure.most_patterns):
         pattern = shared_pattern(problem)
         if pattern is None:
             break
@@ -85,7 +83,7 @@ def shared_pattern(problem: Problem) -> Pattern | None:
         # A channel that tells a context has little left, all of it by what the others show.
         largest = np.linalg.norm(columns / np.maximum(scale, 1.0), 2) ** 2 / rows
         edge = (1 + np.sqrt(sensors / rows)) ** 2
-        if largest <= MARGIN * edge:
+        if largest <= problem.criteria.structure.pattern_margin * edge:
             continue
         columns = columns / np.maximum(scale, 1e-12)
         values, vectors = np.linalg.eigh(columns.T @ columns / rows)
@@ -155,7 +153,7 @@ def leftovers(problem: Problem, contexts: Values) -> list[Leftover]:
         problem: at the end of a diagnosis.
         contexts: that the amplitude may follow, float[rows] each.
     """
-    error = _errors(problem)
+    error, criteria = _errors(problem), problem.criteria.structure
     first = error.shape[1] - problem.factors.shape[1]
     found = []
     for number, direction in enumerate(problem.factors.T):
@@ -166,7 +164,7 @@ def leftovers(problem: Problem, contexts: Values) -> list[Leftover]:
             Leftover(
                 pattern=direction * scale / problem.noise.sigma,
                 amplitude=amplitude / scale,
-                follows=_follows(amplitude, problem.data.time, drivers),
+                follows=_follows(amplitude, problem.data.time, drivers, criteria),
                 drivers=_by_context(drivers),
             )
         )
@@ -214,18 +212,23 @@ def _by_context(drivers: dict[tuple[str, str], float]) -> dict[str, float]:
     return dict(sorted(strongest.items(), key=lambda one: -one[1]))
 
 
-def _follows(amplitude: FloatArray, time: FloatArray, drivers: dict[tuple[str, str], float]) -> str:
+def _follows(
+    amplitude: FloatArray,
+    time: FloatArray,
+    drivers: dict[tuple[str, str], float],
+    criteria: StructureCriteria,
+) -> str:
     """What an amplitude goes with: a context by rank correlation, else a frequency, else time."""
     best = max(drivers, key=lambda way: drivers[way], default=None)
-    if best is not None and drivers[best] > CORRELATED:
+    if best is not None and drivers[best] > criteria.follows:
         name, way = best
         return f"goes with {way.format(name)} (rank correlation {drivers[best]:.2f})"
     centred = amplitude - amplitude.mean()
     period, power = _period(centred, time)
-    if power > SWINGING:
+    if power > criteria.swings:
         return f"swings with a period of {period:.3g} s, as a static model cannot"
     memory = float((centred[1:] * centred[:-1]).sum() / max((centred**2).sum(), 1e-300))
-    if memory > CORRELATED:
+    if memory > criteria.follows:
         return f"moves with memory ({memory:.2f} from row to row) and with no context"
     return "follows no context and changes from row to row"
 

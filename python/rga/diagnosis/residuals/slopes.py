@@ -13,8 +13,6 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.search.linearised import Calibration, Problem, pose
 
-#: standard deviations beyond which a bend is no chance
-BENT = 7.0
 #: how far off the straight part may be, in sizes of the bend, as a prior spread
 STRAIGHT = 3.0
 #: share of its variance that a square must have beside the context itself
@@ -64,7 +62,7 @@ def bends(problem: Problem) -> list[Bend]:
             bend = float((inverse @ sums[chosen])[-1])
             size[by] = bend, abs(bend) / float(np.sqrt(max(inverse[-1, -1], 1e-300)))
         by = max(size, key=lambda one: size[one][1], default="")
-        if by and size[by][1] > BENT:
+        if by and size[by][1] > problem.criteria.structure.bend:
             found.append(Bend(name, by, size[by][0], error[:, number]))
     return found
 

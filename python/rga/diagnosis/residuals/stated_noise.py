@@ -10,8 +10,6 @@ from collections.abc import Collection
 
 from rga.diagnosis.search.linearised import Problem
 
-#: times the stated noise: sound records of blind cases reach 2, rarely 3
-BEYOND = 4.0
 #: channels that are told by name
 MOST_TOLD = 5
 
@@ -29,7 +27,7 @@ def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
         stated = model.sensors[name].noise
         if name in told_already or stated is None:
             continue
-        if deviation > BEYOND * stated:
+        if deviation > problem.criteria.fit.stated_noise * stated:
             told.append(
                 f"channel {name} varies by {deviation:.2g} {model.sensors[name].unit} that no load "
                 f"explains, {deviation / stated:.2g} times its stated noise"

@@ -18,6 +18,7 @@ from rga.diagnosis.noise.random_effects import (
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise, unexplainable
 from rga.diagnosis.noise.zero_errors import slopes_at_zero, zero_errors
+from rga.findings.criteria import Criteria
 from rga.model.effect import Values
 from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
@@ -72,6 +73,11 @@ class Problem:
     hiding: dict[tuple[str, ...], "Problem"] = field(
         default_factory=dict, init=False, compare=False, repr=False
     )
+
+    @property
+    def criteria(self) -> Criteria:
+        """What decides a verdict."""
+        return self.data.criteria
 
     def residual(self, simulated: FloatArray) -> FloatArray:
         """Readings, their tails drawn in, less a simulation, float[rows, sensors].

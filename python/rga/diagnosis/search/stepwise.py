@@ -15,25 +15,22 @@ from rga.diagnosis.search.linearised import Problem, pose, relaxed, resimulated
 from rga.diagnosis.search.screening import Prospect, Screening
 from rga.simulation import Simulator
 
-#: log-odds that a cause must have to be named, a thousand to one
-NAMED = 6.9
-#: log-odds within which two causes cannot be told apart, a hundred to one
-RIVAL = 4.6
-#: share of its log-odds that a cause must keep where slopes are free
-KEPT = 0.5
+#: prospects that are fitted, whatever their kinds: more are far behind (FAR)
 FITTED = 10
 #: share of the best score below which a prospect is far behind, and one of another kind than the
 #: ten best hopelessly so; log-odds by which a score may be wrong whatever its size
 FAR, HOPELESS, ROUGHLY = 0.3, 0.7, 30.0
+#: of these fits, the likeliest that are judged by the scatter that they leave
 JUDGED = 3
 #: prospects that are tried because they would stand out of less scatter
 HIDDEN = 5
 #: log-odds to the likeliest within which fits are made exact
 CLOSE = 15.0
-EXCHANGES = 3
-WORTH_EXCHANGE = 1.0
+#: rounds of weighing and exchanging causes, and the log-odds that an exchange must gain: less lies
+#: within what Laplace's approximation misses
+EXCHANGES, WORTH_EXCHANGE = 3, 1.0
+#: rounds in which inferred contexts come to rest
 ROUNDS = 4
-MOST_CAUSES = 5
 #: how far contexts at rest may move [their prior spread]
 UNMOVED = 2e-4
 #: rounds of posing and fitting, and the change of z below which the second is left out
@@ -92,14 +89,15 @@ def search(
         progress: told what is done and which share of it.
     """
     problem, current = start, fit(start, base, [], [])
-    for number in range(MOST_CAUSES):
+    criteria = start.criteria.naming
+    for number in range(criteria.most_causes):
         prospects = screening.first
         if number:
             progress(f"looking for cause {number + 1}", 0.0)
             prospects = screening.again(problem, current.simulator(base), current.hypotheses)
         promising = [one for one in worth_fitting(prospects) if one.score > 0]
         fits = sorted(fitted_beside(problem, base, current, promising), key=evidence, reverse=True)
-        if fits and fits[0].log_evidence - current.log_evidence >= NAMED:
+        if fits and fits[0].log_evidence - current.log_evidence >= criteria.log_odds:
             best = fits[0]
         elif (hidden := _hidden_by_scatter(problem, base, current, fits, screening)) is not None:
             best = hidden
@@ -204,7 +202,7 @@ def _hidden_by_scatter(
     before = _at_free_levels(problem, current)
     gained = [_at_free_levels(problem, one) - before for one in fits]
     best = int(np.argmax(gained))
-    return fits[best] if gained[best] >= NAMED else None
+    return fits[best] if gained[best] >= problem.criteria.naming.log_odds else None
 
 
 def _swapped(
@@ -313,7 +311,7 @@ def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, F
     while current.hypotheses:
         fits = [without_cause(problem, base, current, k) for k in range(len(current.hypotheses))]
         best = max(fits, key=evidence)
-        if current.log_evidence - best.log_evidence >= NAMED:
+        if current.log_evidence - best.log_evidence >= problem.criteria.naming.log_odds:
             break
         problem, current = settled_with(base, problem, best)
     return problem, current
@@ -322,18 +320,19 @@ def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, F
 def without_needless(problem: Problem, found: Found) -> Fit:
     """The causes, less those that another problem on the same record speaks for much less."""
     base, kept = found.base, list(range(len(found.fit.hypotheses)))
+    least, share = problem.criteria.naming.log_odds, problem.criteria.naming.kept_with_free_slopes
     current = fit(problem, base, found.fit.hypotheses, found.fit.z)
     while kept:
         fits = [without_cause(problem, base, current, k) for k in range(len(kept))]
         over = [
-            current.log_evidence - one.log_evidence - max(NAMED, KEPT * found.log_odds[number])
+            current.log_evidence - one.log_evidence - max(least, share * found.log_odds[number])
             for one, number in zip(fits, kept, strict=True)
         ]
-        least = int(np.argmin(over))
-        if over[least] >= 0:
+        weakest = int(np.argmin(over))
+        if over[weakest] >= 0:
             break
-        current = fits[least]
-        del kept[least]
+        current = fits[weakest]
+        del kept[weakest]
     return current
 
 

@@ -7,7 +7,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
-from rga.diagnosis.residuals.patterns import CORRELATED, Leftover, known_contexts, leftovers
+from rga.diagnosis.residuals.patterns import Leftover, known_contexts, leftovers
 from rga.diagnosis.residuals.slopes import Bend, bends
 from rga.diagnosis.search.linearised import Problem
 from rga.findings.arrays import DiagnosisArrays
@@ -57,16 +57,23 @@ def draw_pattern(
     return draw_at_sensors(account, nothing, panels, shades, "pattern", words)
 
 
-def draw_amplitudes(found: list[Leftover], time: FloatArray, contexts: Values) -> Markup:
+def draw_amplitudes(
+    found: list[Leftover], time: FloatArray, contexts: Values, follows: float
+) -> Markup:
     """The amplitude of every pattern over time, and over the contexts that it goes with most.
 
     Args:
         found: the patterns.
         time: of the rows [s], float[rows].
         contexts: by name, float[rows] each.
+        follows: rank correlation from which on points over a context are joined [-].
     """
+    drivers = [list(one.drivers.items())[:CONTEXTS] for one in found]
     return _panels(
-        [(one.amplitude, dict(list(one.drivers.items())[:CONTEXTS])) for one in found],
+        [
+            (one.amplitude, {by: correlation > follows for by, correlation in strongest})
+            for one, strongest in zip(found, drivers, strict=True)
+        ],
         [f"amplitude {number}" if len(found) > 1 else "amplitude" for number in _numbers(found)],
         time,
         contexts,
@@ -78,7 +85,7 @@ def draw_bends(found: list[Bend], problem: Problem, units: dict[str, str]) -> Ma
     """The error that each bent context would need, over time and over what it bends with."""
     contexts = {one.by: problem.data.belief.table[one.by] for one in found}
     return _panels(
-        [(one.error, {one.by: 1.0}) for one in found],
+        [(one.error, {one.by: True}) for one in found],
         [f"error of {label(one.context)} [{scale(units[one.context], 1)[1]}]" for one in found],
         problem.data.time,
         contexts,
@@ -105,7 +112,8 @@ def unexplained(account: DiagnosisArrays) -> dict[str, object]:
     if found:
         time = problem.data.time
         shown["pattern"] = draw_pattern(account, found, problem.data.sensors)
-        shown["amplitudes"] = draw_amplitudes(found, time, contexts)
+        follows = problem.criteria.structure.follows
+        shown["amplitudes"] = draw_amplitudes(found, time, contexts, follows)
         shown["rows"] = [
             (number, one.follows, ", ".join(strongest_rows(one, account, time)))
             for number, one in zip(_numbers(found), found, strict=True)
@@ -120,7 +128,7 @@ def _numbers(found: list[Leftover]) -> range:
 
 
 def _panels(
-    shown: list[tuple[FloatArray, dict[str, float]]],
+    shown: list[tuple[FloatArray, dict[str, bool]]],
     titles: list[str],
     time: FloatArray,
     contexts: Values,
@@ -143,10 +151,10 @@ def _panels(
             _dots(axes, at, values, at)
             axes.set_xlabel(f"time since the first row [{unit}]", labelpad=1.5)
             axes.set_ylabel(title, labelpad=1.5)
-            for place, (by, correlation) in enumerate(drivers.items()):
+            for place, (by, joined) in enumerate(drivers.items()):
                 axes = figure.add_subplot(cells[line, wide + place])
                 column = contexts[by]
-                if correlation > CORRELATED and _runs_on(column):
+                if joined and _runs_on(column):
                     axes.plot(column, values, color=MEASURED, lw=0.4, alpha=0.5)
                 _dots(axes, column, values, at)
                 axes.set_xlabel(label(by), labelpad=1.5)

@@ -71,6 +71,7 @@ def page(findings: Findings) -> dict[str, Any]:
             }
             for cause in effects
         ],
+        "rival_log_odds": f"{findings.criteria.rivals.log_odds:g}",
         "rejected": rejected(findings),
         "bridge": part("The map of percentages", draw_bridge, findings) if len(record) else None,
         "residuals": part("The map of residuals", draw_residuals, findings)
@@ -267,5 +268,7 @@ def provenance(findings: Findings) -> list[tuple[str, str]]:
     if account.record.zero is not None:
         first, last = account.record.zero
         found.append(("channels zeroed over", f"{number(first)} to {number(last)} s of the record"))
+    differing = findings.criteria.differing().items()
+    found += [(f"criterion {name}", f"{value:g}") for name, value in differing]
     found += [(f"{name} version", version) for name, version in sorted(findings.versions.items())]
     return found

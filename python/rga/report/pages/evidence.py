@@ -9,8 +9,9 @@ from rga.diagnosis.assemble.effects import last_effect
 from rga.diagnosis.checks.detectability import Least, least_seen
 from rga.diagnosis.checks.leave_one_out import Hold, contrast, hold
 from rga.diagnosis.checks.profiles import onset_profile, profiles
-from rga.diagnosis.search.stepwise import NAMED, RIVAL, Found
+from rga.diagnosis.search.stepwise import Found
 from rga.findings.arrays import DiagnosisArrays
+from rga.findings.criteria import Criteria
 from rga.findings.phrases import effect_words
 from rga.findings.schema import Cause, Findings
 from rga.model.effect import Effect
@@ -71,9 +72,10 @@ def _rivalry(account: DiagnosisArrays, found: Found, place: int) -> Rivalry | No
     if against is None:
         return None
     rival = effect_words(last_effect(against.against, account.record))
+    apart = found.problem.criteria.rivals.log_odds
     lead = (
         f"It leads by {number(against.lead)} log-odds over its nearest rival, {rival}; below "
-        f"{RIVAL:g} the two cannot be told apart. On no channel do they differ by more than "
+        f"{apart:g} the two cannot be told apart. On no channel do they differ by more than "
         f"{number(max(against.size), 2)} times its noise (root mean square)."
     )
     figure = draw_contrast(against, account.model, runs_on(account), f"contrast-{place}")
@@ -90,13 +92,14 @@ def doubts(found: Found, place: int, cause: Cause, model: Model, lead: str) -> l
         lead: of the cause over its nearest rival, in words; empty where it has none.
     """
     alone = f"It leads by {number(cause.log_odds)} log-odds over leaving it out; "
-    told = [f"{alone}below {NAMED:g} it would not be named."]
+    criteria = found.problem.criteria
+    told = [f"{alone}below {criteria.naming.log_odds:g} it would not be named."]
     if lead:
         told.append(lead)
     hangs = part("What its lead hangs on", hold, found, place)
     least = part("The smallest effect that would have been named", least_seen, found, place)
     if hangs is not None:
-        told.append(hangs.words if isinstance(hangs, Lost) else _hold_words(hangs))
+        told.append(hangs.words if isinstance(hangs, Lost) else _hold_words(hangs, criteria))
     if least is not None:
         told.append(least.words if isinstance(least, Lost) else _least_words(least, cause, model))
     if cause.separated_by:
@@ -104,9 +107,9 @@ def doubts(found: Found, place: int, cause: Cause, model: Model, lead: str) -> l
     return told
 
 
-def _hold_words(one: Hold) -> str:
+def _hold_words(one: Hold, criteria: Criteria) -> str:
     over = "leaving it out" if one.alone else "its nearest rival"
-    least = NAMED if one.alone else RIVAL
+    least = criteria.naming.log_odds if one.alone else criteria.rivals.log_odds
     then = (
         "the verdict does not hang on any one channel"
         if one.left >= least
