@@ -20,8 +20,9 @@ USUAL = {
     "force": ("kN", 1.0),
     "reaction": ("kN", 1.0),
 }
-#: what a measurement costs, in strain gauges put on
+#: what a measurement costs, in strain gauges put on: a displacement needs a fixed point beside it
 SENSOR_COST: dict[Kind, float] = {"strain": 1.0, "displacement": 1.5, "rotation": 1.5}
+#: the same of an instrument for a context, of a stand of a truck, and of a setting of contexts
 INSTRUMENT_COST, STAND_COST, SETTING_COST = 0.5, 1.0, 1.0
 #: share of a context's range that a test can bring about, about its middle
 ATTAINABLE = 0.8

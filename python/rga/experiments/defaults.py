@@ -11,6 +11,7 @@ from rga.simulation import Simulator
 
 #: rows of operation, the time between them [s], and the share of each range that they swing through
 ROWS, INTERVAL, SWING = 24, 7200.0, 0.5
+#: ratio of the paces of contexts: swings at such paces never come to repeat each other
 GOLDEN = (1 + 5**0.5) / 2
 #: states of the loads of a model that are looked at
 STATES = 64

@@ -23,6 +23,7 @@ LONG = 0.8
 FACTOR, POSITION, TRUCK = "truck [-]", "truck position [m]", "truck"
 #: axle load beyond which it is a slip of the pen [kN]
 HEAVIEST = 1e5
+#: how a truck is written, for errors
 WRITTEN = "write axle loads [kN] @ spacings [m], such as 60,100@3.5"
 
 

@@ -14,6 +14,7 @@ from rga.model import Effect, Model, read_effect
 
 #: rivals of a cause that are separated, and alternatives against which one without is confirmed
 NEAREST = 4
+#: kind of a channel that does not work, which is no explanation of the structure
 FAULT = "sensor_fault"
 
 

@@ -222,9 +222,11 @@ class Nothing:
     verdict = "nothing_wrong"
     warnings: ClassVar[list[str]] = ["D1 is odd"]
 
-    def __init__(self, model: Any, record: Any, *, seed: int, progress: Any) -> None:
+    def __init__(self, model: Any, record: Any, *, criteria: Any, seed: int, progress: Any) -> None:
         progress("screening", 1.0)
         self.content = {"verdict": "nothing_wrong", "seed": seed, "rows": len(record)}
+        if criteria is not None:
+            self.content["criteria"] = criteria.differing()
 
     def write(self, directory: Path) -> None:
         (directory / "findings.json").write_text(json.dumps(self.content), encoding="utf-8")
@@ -248,6 +250,10 @@ def test_diagnosis_is_written_and_said(
     assert findings == {"verdict": "nothing_wrong", "seed": 7, "rows": 2}
     printed = rga("diagnose", model_file, record, "-o", target, "--seed", 8, "--json")
     assert json.loads(printed.out)["seed"] == 8
+    stricter = tmp_path / "criteria.json"
+    stricter.write_text('{"naming": {"log_odds": 9.2}}', encoding="utf-8")
+    told = rga("diagnose", model_file, record, "-o", target, "--criteria", stricter, "--json")
+    assert json.loads(told.out)["criteria"] == {"naming.log_odds": 9.2}
 
 
 def interrupted(whole: Callable[..., Any], target: Path, name: str) -> None:

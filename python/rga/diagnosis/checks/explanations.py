@@ -21,9 +21,9 @@ from rga.diagnosis.search.stepwise import Found, evidence
 from rga.model.schema import Model
 from rga.simulation import Simulator
 
-#: kinds that are tried alone where causes were found, and where none were; what is tried in the
-#: place of a cause, and beside all: the table of a report holds no more
+#: kinds that are tried alone, by whether causes were found: more is dear, and not read
 KINDS = {True: 14, False: 5}
+#: what is tried in the place of a cause, and beside all causes: for the same reason
 PARTNERS = 4
 #: log evidence below which a fit has gone astray: no effect at all is this much likelier
 POOR = -15.0

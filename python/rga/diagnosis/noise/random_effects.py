@@ -13,12 +13,13 @@ from rga.model.effects.members.member_stiffness import MemberStiffness
 from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
 
+#: difference of a derivative, in the logarithm of a stiffness: above rounding, below curvature
 STEP = 1e-3
 #: most patterns of a channel, and of all channels together
 PATTERNS, ALL_PATTERNS = 8, 320
-OUTSTANDING = 3.0
-APART = 10.0
-ROUNDS = 3
+#: levels of its family beyond which an effect stands out (three in a thousand do by chance), by how
+#: much its own spread is then larger, which frees it, and rounds in which such effects are sought
+OUTSTANDING, APART, ROUNDS = 3.0, 10.0, 3
 #: prior spread of how a pattern of unknown origin follows time and loads [its own deviation]
 FACTOR_MEAN = 3.0
 #: slow courses that such a pattern may follow
@@ -41,8 +42,10 @@ class Level:
     largest: float
 
 
-#: as-built scatter of EA; gains of the channels; what a linear structure may do otherwise
+#: as-built scatter of EA; gains of the channels; what a linear structure may do otherwise: the
+#: medians are a half to a third of what is plausible (`fit` of the criteria), the largest lie above
 LEVELS = (Level(0.025, 0.4, 0.08), Level(0.01, 0.5, 0.04), Level(0.003, 1.0, 0.03))
+#: the same as arrays; logarithms of the levels stay within bounds from a twentieth of the median on
 MEDIANS = np.array([level.median for level in LEVELS])
 SPREADS = np.array([level.spread for level in LEVELS])
 BOUNDS = [(float(np.log(level.median / 20)), float(np.log(level.largest))) for level in LEVELS]

@@ -19,7 +19,10 @@ from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.numerics.decompositions import thin_svd
 
+#: rounds of expectation and maximisation, which end a few percent off and in places a sixth; the
+#: next estimate of the same record begins where they end
 ITERATIONS = 12
+#: correlation from row to row beyond which noise is as good as a random walk
 LARGEST_MEMORY = 0.995
 #: a step: a jump from one row to the next of so many robust deviations of such jumps, by which the
 #: median of so many rows before and after differs too

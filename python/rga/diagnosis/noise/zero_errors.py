@@ -14,6 +14,7 @@ from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.row_covariance import Noise
 from rga.simulation import Simulator
 
+#: difference of a derivative by a context, in its range: above rounding, below curvature
 STEP = 1e-3
 
 

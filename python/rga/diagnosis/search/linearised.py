@@ -23,6 +23,7 @@ from rga.model.effect import Values
 from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
 
+#: difference of a derivative by a context, in its range: above rounding, below curvature
 STEP = 1e-3
 #: share of the noise that a sensor keeps beside a shared pattern, at least
 LEAST_OWN_NOISE = 0.6

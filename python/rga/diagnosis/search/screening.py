@@ -20,6 +20,7 @@ JUDGED = 100
 HOPELESS = 1.5
 #: d' below which a signature has no size: what rounding leaves of it, which promises nothing
 NO_SIZE = 1e-6
+#: how an effect may begin, in the order in which they are tried
 PROFILES: tuple[Profile, ...] = ("step", "ramp")
 
 

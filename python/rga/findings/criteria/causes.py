@@ -1,4 +1,4 @@
-"""Criteria of causes: when one is named, what it is not told from, and what is said of others."""
+"""Criteria of causes: when one is named, what its rivals are, and what is said of others."""
 
 from rga.findings.criteria.criterion import (
     Count,
@@ -53,7 +53,7 @@ class NamingCriteria(CriteriaGroup):
 
 
 class RivalCriteria(CriteriaGroup):
-    """What a cause cannot be told from."""
+    """What a cause cannot be distinguished from."""
 
     log_odds: Positive = criterion(
         4.6,

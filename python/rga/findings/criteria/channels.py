@@ -90,7 +90,10 @@ class ChannelCriteria(CriteriaGroup):
         "no cause takes nineteen twentieths off a response",
     )
     dead_gain: Share = criterion(
-        0.05, "-", "gain below which a cause at a sensor is told as a dead channel", "as for dead"
+        0.05,
+        "-",
+        "gain below which a cause at a sensor is reported as a dead channel",
+        "as for dead",
     )
     scale: Multiple = criterion(
         8.0,
@@ -120,6 +123,6 @@ class ChannelCriteria(CriteriaGroup):
     fewest_for_own_response: Count = criterion(
         4,
         "channels",
-        "channels below which none is told to have a response of its own",
+        "channels below which none is reported to have a response of its own",
         "fewer do not show what the channels have in common",
     )

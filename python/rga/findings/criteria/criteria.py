@@ -28,7 +28,9 @@ class Criteria(CriteriaGroup):
     zeros: ZeroCriteria = Field(ZeroCriteria(), description="zeros that nobody declared")
     channels: ChannelCriteria = Field(ChannelCriteria(), description="channels that do not work")
     naming: NamingCriteria = Field(NamingCriteria(), description="when a cause is named")
-    rivals: RivalCriteria = Field(RivalCriteria(), description="what a cause is not told from")
+    rivals: RivalCriteria = Field(
+        RivalCriteria(), description="what a cause cannot be distinguished from"
+    )
     fit: FitCriteria = Field(FitCriteria(), description="when a model does not fit the record")
     structure: StructureCriteria = Field(
         StructureCriteria(), description="patterns and curves that no cause explains"
