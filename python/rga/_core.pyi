@@ -1,6 +1,7 @@
 """Finite elements for truss and frame bridges."""
 
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import Any, Self, final
 
 import numpy as np
@@ -12,6 +13,7 @@ __all__ = [
     "GaussianWindow",
     "InvalidInput",
     "NotConverged",
+    "OutputKind",
     "Refactored",
     "UnstableSample",
     "UnstableStructure",
@@ -20,6 +22,17 @@ __all__ = [
     "respond_nonlinear",
     "slide",
 ]
+
+class OutputKind(IntEnum):
+    """Codes of what an output is; `help(respond)` says what each reads."""
+
+    DISPLACEMENT = 0
+    ROTATION = 1
+    STRAIN = 2
+    AXIAL_FORCE = 3
+    REACTION_FORCE = 4
+    REACTION_MOMENT = 5
+    END_FORCE = 6
 
 class InvalidInput(ValueError):
     """An array is missing, malformed or out of range; the message names it."""

@@ -7,6 +7,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rga._core import OutputKind
 from rga.arrays import FloatArray, IntArray
 from rga.model.parameter import listed
 from rga.model.schema import DOFS, Model, Sensor, Vector
@@ -17,7 +18,14 @@ T = TypeVar("T")
 Spread = tuple[int, int, float, float, float, float]
 #: what a structure remembers of effects
 REMEMBERED = 512
-OUTPUT_KIND = {"displacement": 0, "rotation": 1, "strain": 2, "force": 3, "reaction": 4}
+#: what a sensor of each kind reads
+OUTPUT_KIND = {
+    "displacement": OutputKind.DISPLACEMENT,
+    "rotation": OutputKind.ROTATION,
+    "strain": OutputKind.STRAIN,
+    "force": OutputKind.AXIAL_FORCE,
+    "reaction": OutputKind.REACTION_FORCE,
+}
 HELD_BY_PLANE = {"xz": (1, 3, 5), "xy": (2, 3, 4), "yz": (0, 4, 5)}
 
 

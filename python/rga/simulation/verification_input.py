@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rga._core import OutputKind
+
 Floats = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 Json = Mapping[str, Any]
@@ -15,6 +17,11 @@ Json = Mapping[str, Any]
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 FORCES = ("fx", "fy", "fz", "mx", "my", "mz")
 OUT_OF_PLANE = [2, 3, 4]
+#: along and about an axis
+BY_AXIS = {
+    "displacement": (OutputKind.DISPLACEMENT, OutputKind.ROTATION),
+    "reaction": (OutputKind.REACTION_FORCE, OutputKind.REACTION_MOMENT),
+}
 
 
 @dataclass(frozen=True)
@@ -264,12 +271,13 @@ def _output(frame: FrameCase, entry: Json) -> tuple[int, int, int, Sequence[floa
     match entry["kind"]:
         case "displacement" | "reaction" as kind:
             turning, axis = divmod(DOFS.index(entry["dof"]), 3)
-            first = 0 if kind == "displacement" else 4
-            return first + turning, frame.nodes[str(entry["node"])], -1, np.eye(3)[axis].tolist()
+            node, along = frame.nodes[str(entry["node"])], np.eye(3)[axis].tolist()
+            return BY_AXIS[kind][turning], node, -1, along
         case "axial":
             # Where a load along the member makes it vary, the format means the second end.
-            return 3, frame.members[str(entry["element"])], -1, [1.0, 0.0, 0.0]
+            return OutputKind.AXIAL_FORCE, frame.members[str(entry["element"])], -1, [1.0, 0.0, 0.0]
         case "end_force":
-            return 6, frame.members[str(entry["element"])], int(entry["index"]), [0.0] * 3
+            member = frame.members[str(entry["element"])]
+            return OutputKind.END_FORCE, member, int(entry["index"]), [0.0] * 3
         case kind:
             raise KeyError(f"expected kind {kind!r}")

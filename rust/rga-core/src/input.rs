@@ -93,7 +93,7 @@ impl Loads<'_> {
 /// o outputs, each one number a pattern.
 #[derive(Debug, Clone, Copy)]
 pub struct Outputs<'a> {
-    /// `[o]` see `fe::outputs::Output`
+    /// `[o]` codes of `OutputKind`
     pub kind: Array<'a, i64>,
     /// `[o]` node or member
     pub index: Array<'a, i64>,
@@ -103,4 +103,54 @@ pub struct Outputs<'a> {
     pub vector: Array<'a, f64>,
     /// `[o]` strain with (true) or without the initial strain
     pub total: Array<'a, bool>,
+}
+
+impl Outputs<'_> {
+    /// Of checked outputs.
+    pub(crate) fn kinds(&self) -> impl Iterator<Item = OutputKind> {
+        let codes = self.kind.values.iter();
+        codes.filter_map(|&code| OutputKind::of(code))
+    }
+}
+
+/// What an output is. Its code is the number that stands for it in arrays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(i64)]
+pub enum OutputKind {
+    /// Of a node along a direction, relative to another.
+    Displacement,
+    Rotation,
+    /// Of a member at (place in 0..1, y, z).
+    Strain,
+    /// Of a member at a place in 0..1.
+    AxialForce,
+    /// Of supports and springs to ground, on a node along a direction.
+    ReactionForce,
+    ReactionMoment,
+    /// Of the node on a member, at a local end dof.
+    EndForce,
+}
+
+impl OutputKind {
+    /// In the order of their codes, with their names.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::Displacement, "DISPLACEMENT"),
+        (Self::Rotation, "ROTATION"),
+        (Self::Strain, "STRAIN"),
+        (Self::AxialForce, "AXIAL_FORCE"),
+        (Self::ReactionForce, "REACTION_FORCE"),
+        (Self::ReactionMoment, "REACTION_MOMENT"),
+        (Self::EndForce, "END_FORCE"),
+    ];
+
+    /// The kind with a code; None where there is none.
+    pub(crate) fn of(code: i64) -> Option<Self> {
+        let at = usize::try_from(code).ok()?;
+        Self::ALL.get(at).map(|(kind, _)| *kind)
+    }
+
+    /// It reads a member, not a node.
+    pub(crate) fn reads_member(self) -> bool {
+        matches!(self, Self::Strain | Self::AxialForce | Self::EndForce)
+    }
 }

@@ -24,7 +24,7 @@ mod validate;
 pub use rga_simd::{Array, instructions};
 
 pub use error::{Error, Result};
-pub use input::{Loads, Outputs, Structure};
+pub use input::{Loads, OutputKind, Outputs, Structure};
 pub use paths::batch::{BatchSolver, Samples};
 pub use paths::condensed::Condensed;
 pub use paths::directions::Directions;

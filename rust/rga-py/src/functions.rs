@@ -42,12 +42,12 @@ type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 ///     node; equal: a point load of size member_start), member_start,
 ///     member_end f64[q].
 /// outputs : o numbers for each pattern
-///     kind, index, other i64[o], vector f64[o, 3], total bool[o].
-///     kind 0 displacement and 1 rotation of node index along vector, relative
-///     to node other (or -1); 2 strain of member index at vector = (place in
-///     0..1, y, z), total or mechanical; 3 axial force of member index at
-///     vector[0]; 4 reaction force and 5 reaction moment on node index along
-///     vector, of supports and springs to ground; 6 force of the node on
+///     kind, index, other i64[o], vector f64[o, 3], total bool[o]; kind by
+///     `OutputKind`: DISPLACEMENT and ROTATION of node index along vector,
+///     relative to node other (or -1); STRAIN of member index at vector =
+///     (place in 0..1, y, z), total or mechanical; AXIAL_FORCE of member index
+///     at vector[0]; REACTION_FORCE and REACTION_MOMENT on node index along
+///     vector, of supports and springs to ground; END_FORCE of the node on
 ///     member index at local end dof other (0..11). Directions are taken as
 ///     given, not normalised.
 ///

@@ -12,6 +12,8 @@ mod gaussian_window;
 mod read;
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rga_core::OutputKind;
 
 /// Finite elements for truss and frame bridges.
 #[pymodule]
@@ -27,6 +29,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
         "UnstableSample",
         py.get_type::<exceptions::UnstableSample>(),
     )?;
+    module.add("OutputKind", output_kinds(py)?)?;
     module.add_class::<change_statistics::ChangeStatistics>()?;
     module.add_class::<condensed::Condensed>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
@@ -35,4 +38,14 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond_nonlinear, module)?)?;
     module.add_function(wrap_pyfunction!(functions::slide, module)?)
+}
+
+/// Codes of the outputs, as an `enum.IntEnum`.
+fn output_kinds(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    let codes = OutputKind::ALL.map(|(kind, name)| (name, kind as i64));
+    let named = PyDict::new(py);
+    named.set_item("module", "rga._core")?;
+    let arguments = ("OutputKind", codes.to_vec());
+    py.import("enum")?
+        .call_method("IntEnum", arguments, Some(&named))
 }

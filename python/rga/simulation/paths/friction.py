@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
+from rga._core import OutputKind
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.response import respond
 
-DISPLACEMENT, REACTION = 0, 4
 UP = (0.0, 0.0, 1.0)
 
 
@@ -54,7 +54,7 @@ def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray
 def _own_reactions(structure: Structure) -> FloatArray:
     """What reaction sensors read of a unit force at a bearing, float[bearings, sensors]."""
     outputs = structure.outputs
-    reacts = outputs["kind"] == REACTION
+    reacts = outputs["kind"] == OutputKind.REACTION_FORCE
     return np.array(
         [
             np.where(reacts & (outputs["index"] == one.node), outputs["vector"][:, one.dof], 0.0)
@@ -69,7 +69,7 @@ def _with_bearings(structure: Structure) -> dict[str, NDArray[Any]]:
     along = np.eye(6)[[bearing.dof for bearing in bearings], :3]
     none = np.full(len(bearings), -1, dtype=np.int64)
     extra = {
-        "kind": np.repeat(np.array([DISPLACEMENT, REACTION], dtype=np.int64), len(bearings)),
+        "kind": np.repeat([OutputKind.DISPLACEMENT, OutputKind.REACTION_FORCE], len(bearings)),
         "index": np.concatenate([nodes, nodes]),
         "other": np.concatenate([none, none]),
         "vector": np.vstack([along, np.tile(UP, (len(bearings), 1))]),

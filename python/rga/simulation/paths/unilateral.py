@@ -14,10 +14,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rga._core import OutputKind
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.model.structure import Law, Structure
-from rga.simulation.paths.rank_one_terms import STRAIN
 
 #: Newton steps before a row is given up
 STEPS = 60
@@ -142,7 +142,9 @@ def respond_with_laws(
     pseudo = -stiffness * np.where(side == 0, elongation, side * size)
     influence, arrays, outputs = linear.influence.copy(), structure.arrays, structure.outputs
     # A gauge on a slack member reads its force, not the way that its ends have moved.
-    gauges = np.where(outputs["total"] | (outputs["kind"] != STRAIN), -1, outputs["index"])
+    gauges = np.where(
+        outputs["total"] | (outputs["kind"] != OutputKind.STRAIN), -1, outputs["index"]
+    )
     for term, law in enumerate(laws):
         if law.member is not None:
             axial = arrays["E"][law.member] * arrays["A"][law.member]

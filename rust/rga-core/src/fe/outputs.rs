@@ -5,7 +5,7 @@ use crate::fe::deformed_member::Deformed;
 use crate::fe::element::Vector12;
 use crate::fe::load::{MemberLoad, PatternLoads};
 use crate::fe::model::Model;
-use crate::input::Outputs;
+use crate::input::{OutputKind, Outputs};
 
 /// One pattern, solved.
 pub(crate) struct State<'a> {
@@ -209,31 +209,32 @@ impl Section {
 }
 
 pub(crate) fn read_outputs(outputs: &Outputs) -> Vec<Output> {
-    (0..outputs.kind.len())
-        .map(|at| read_output(outputs, at))
+    let kinds = outputs.kinds().enumerate();
+    kinds
+        .map(|(at, kind)| read_output(outputs, at, kind))
         .collect()
 }
 
-fn read_output(outputs: &Outputs, at: usize) -> Output {
+fn read_output(outputs: &Outputs, at: usize, kind: OutputKind) -> Output {
     let index = outputs.index.at(at);
     let other = outputs.other[at];
     let mut vector = [0.0; 3];
     vector.copy_from_slice(outputs.vector.row(at));
-    match outputs.kind[at] {
-        kind @ (0 | 1) => {
-            let first = 3 * kind as usize;
-            let reference = (other >= 0).then(|| 6 * other as usize + first);
-            Output::Motion(Motion {
-                first: 6 * index + first,
-                reference,
-                direction: vector,
-            })
-        }
-        2 => Output::Member(index, Reading::Strain(vector, outputs.total[at])),
-        3 => Output::Member(index, Reading::AxialForce(vector[0])),
-        4 => Output::Reaction(6 * index, vector),
-        5 => Output::Reaction(6 * index + 3, vector),
-        _ => Output::Member(index, Reading::EndForce(other as usize)),
+    let motion = |first: usize| {
+        Output::Motion(Motion {
+            first: 6 * index + first,
+            reference: (other >= 0).then(|| 6 * other as usize + first),
+            direction: vector,
+        })
+    };
+    match kind {
+        OutputKind::Displacement => motion(0),
+        OutputKind::Rotation => motion(3),
+        OutputKind::Strain => Output::Member(index, Reading::Strain(vector, outputs.total[at])),
+        OutputKind::AxialForce => Output::Member(index, Reading::AxialForce(vector[0])),
+        OutputKind::ReactionForce => Output::Reaction(6 * index, vector),
+        OutputKind::ReactionMoment => Output::Reaction(6 * index + 3, vector),
+        OutputKind::EndForce => Output::Member(index, Reading::EndForce(other as usize)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Outputs are checked in full against a checked structure.
 
 use crate::error::{Error, Result};
-use crate::input::{Outputs, Structure};
+use crate::input::{OutputKind, Outputs, Structure};
 use crate::validate::arrays::{CheckIndices, CheckNumbers, CheckShape, positive};
 
 pub(crate) fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<()> {
@@ -15,11 +15,11 @@ pub(crate) fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<
     outputs.other.check_shape("other", &[o])?;
     outputs.vector.check_shape("vector", &[o, 3])?;
     outputs.total.check_shape("total", &[o])?;
-    outputs.kind.check_range("kind", 0, 7)?;
+    outputs.kind.check_range("kind", 0, OutputKind::ALL.len())?;
     outputs.vector.check_finite("vector")?;
-    for at in 0..o {
-        let kind = outputs.kind[at];
-        let member = matches!(kind, 2 | 3 | 6);
+    let kinds: Vec<OutputKind> = outputs.kinds().collect();
+    for (at, &kind) in kinds.iter().enumerate() {
+        let member = kind.reads_member();
         let end = if member { m } else { n };
         if !(0..end as i64).contains(&outputs.index[at]) {
             let what = if member { "member" } else { "node" };
@@ -29,24 +29,31 @@ pub(crate) fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<
             )));
         }
         let (low, end) = match kind {
-            0 | 1 => (-1, n as i64),
-            6 => (0, 12),
+            OutputKind::Displacement | OutputKind::Rotation => (-1, n as i64),
+            OutputKind::EndForce => (0, 12),
             _ => continue,
         };
         if !(low..end).contains(&outputs.other[at]) {
             return Err(Error::invalid(format!(
-                "other[{at}] is {}; for kind {kind} it must be at least {low} and below {end}",
-                outputs.other[at]
+                "other[{at}] is {}; for kind {} it must be at least {low} and below {end}",
+                outputs.other[at], kind as i64
             )));
         }
     }
-    for at in (0..o).filter(|&at| matches!(outputs.kind[at], 2 | 3)) {
-        check_section(structure, outputs, at)?;
+    for (at, &kind) in kinds.iter().enumerate() {
+        if matches!(kind, OutputKind::Strain | OutputKind::AxialForce) {
+            check_section(structure, outputs, at, kind)?;
+        }
     }
     Ok(())
 }
 
-fn check_section(structure: &Structure, outputs: &Outputs, at: usize) -> Result<()> {
+fn check_section(
+    structure: &Structure,
+    outputs: &Outputs,
+    at: usize,
+    kind: OutputKind,
+) -> Result<()> {
     let member = outputs.index.at(at);
     let vector = outputs.vector.row(at);
     if !(0.0..=1.0).contains(&vector[0]) {
@@ -55,7 +62,7 @@ fn check_section(structure: &Structure, outputs: &Outputs, at: usize) -> Result<
             vector[0]
         )));
     }
-    if outputs.kind[at] == 3 || !structure.frame[member] {
+    if kind == OutputKind::AxialForce || !structure.frame[member] {
         return Ok(());
     }
     for (name, array, needed) in [
