@@ -280,6 +280,6 @@ def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         "nearest": Row(nearest),
         "absent": Row(nearest, needs=("no_such_package",)),
     }
-    for module in ("run", "task_run", "stream_results", "tables.targets"):
+    for module in ("experiment", "task_run", "stream_results", "tables.targets"):
         monkeypatch.setattr(f"rga_bench.contexts.{module}.METHODS", methods)
     return methods

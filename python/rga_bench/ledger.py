@@ -1,20 +1,22 @@
 """The ledger of a benchmark: a line for every finished task, so that none is done twice."""
 
-import hashlib
 import json
 import os
-from collections.abc import Callable, Iterable, Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
+from math import inf
 from pathlib import Path
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from pydantic import TypeAdapter
 
-import rga
 from rga.errors import InputError
 from rga.parallel import finished
+from rga_bench.experiment import Execution
+from rga_bench.task_code import code_hash
 
 NAME = "outcomes.jsonl"
 
@@ -38,17 +40,15 @@ Outcome = TypeVar("Outcome", bound=Kept)
 
 
 @cache
-def versions() -> dict[str, str]:
-    """Versions that an outcome depends on; `code` is the hash of both packages as they stand."""
-    root = Path(rga.__file__).parents[1]
-    content = hashlib.sha256()
-    files = [path for name in ("rga", "rga_bench") for path in (root / name).rglob("*.py")]
-    for path in sorted([*files, *(root / "rga").glob("_core*")]):
-        if path.suffix != ".pyi":
-            content.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+def task_versions(function: Callable[..., Any]) -> dict[str, str]:
+    """Versions that the outcome of a task depends on.
+
+    Args:
+        function: does the task; `code` is the hash of all that its module imports.
+    """
     return {
         **{name: version(name) for name in ("rga", "numpy", "scipy")},
-        "code": content.hexdigest()[:16],
+        "code": code_hash(function.__module__),
     }
 
 
@@ -58,13 +58,14 @@ class Ledger(Generic[Outcome]):
     Args:
         folder: is made where it is missing.
         kind: of the outcomes.
+        versions: that they depend on.
 
     Raises:
-        InputError: the folder cannot be used, or holds outcomes of other code.
+        InputError: the folder cannot be used, or holds outcomes of other versions.
     """
 
-    def __init__(self, folder: Path, kind: type[Outcome]) -> None:
-        self._path, self._kind = folder / NAME, TypeAdapter(kind)
+    def __init__(self, folder: Path, kind: type[Outcome], versions: dict[str, str]) -> None:
+        self._path, self._kind, self._versions = folder / NAME, TypeAdapter(kind), versions
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._path.touch()
@@ -86,7 +87,7 @@ class Ledger(Generic[Outcome]):
 
     def add(self, outcome: Outcome) -> None:
         """Write an outcome down."""
-        line = {"versions": versions(), **asdict(outcome)}
+        line = {"versions": self._versions, **asdict(outcome)}
         with self._path.open("a", encoding="utf-8") as file:
             file.write(json.dumps(line, allow_nan=False) + "\n")
             file.flush()
@@ -98,7 +99,7 @@ class Ledger(Generic[Outcome]):
         try:
             content: dict[str, Any] = json.loads(line)
             own = dict(content.pop("versions"))
-            if own == versions():
+            if own == self._versions:
                 return self._kind.validate_python(content)
         except (ValueError, TypeError, KeyError, AttributeError):
             raise InputError(
@@ -106,7 +107,7 @@ class Ledger(Generic[Outcome]):
             ) from None
         differs = ", ".join(
             f"{name} {own.get(name)}, now {now}"
-            for name, now in versions().items()
+            for name, now in self._versions.items()
             if own.get(name) != now
         )
         raise InputError(
@@ -118,12 +119,7 @@ def outcomes_of(
     function: Callable[[Task], Outcome],
     tasks: Sequence[Task],
     kind: type[Outcome],
-    *,
-    folder: Path | None = None,
-    workers: int = 1,
-    dask: str | None = None,
-    going: Callable[[], bool] = lambda: True,
-    progress: Callable[[float], None] = lambda done: None,
+    execution: Execution,
 ) -> list[Outcome]:
     """What becomes of tasks; none that a ledger holds is done again.
 
@@ -131,11 +127,7 @@ def outcomes_of(
         function: of a module that the processes can import; an outcome has the name of its task.
         tasks: in the order in which they are begun; they can be pickled.
         kind: of the outcomes.
-        folder: keeps the outcomes.
-        workers: processes at work on this machine.
-        dask: address of the scheduler of a Dask cluster, whose workers do the work instead.
-        going: whether further tasks are begun.
-        progress: told the share that is done.
+        execution: how the tasks are run.
 
     Returns:
         The outcomes that there are, in the order of the tasks.
@@ -144,13 +136,15 @@ def outcomes_of(
         InputError: the folder cannot be used, or holds outcomes of another version; or there is
             no cluster.
     """
-    ledger = Ledger(folder, kind) if folder is not None else None
-    known = dict(ledger.outcomes) if ledger is not None else {}
-    missing: Iterable[Task] = (one for one in tasks if one.id not in known and going())
-    for _, done in finished(function, missing, workers=workers, dask=dask):
+    folder, minutes = execution.folder, execution.minutes
+    until = inf if minutes is None else time.monotonic() + 60.0 * minutes
+    ledger = None if folder is None else Ledger(folder, kind, task_versions(function))
+    known = {} if ledger is None else dict(ledger.outcomes)
+    missing = (one for one in tasks if one.id not in known and time.monotonic() < until)
+    for _, done in finished(function, missing, workers=execution.workers, dask=execution.dask):
         outcome = done.result()
         known[outcome.id] = outcome
         if ledger is not None:
             ledger.add(outcome)
-        progress(sum(one.id in known for one in tasks) / len(tasks))
+        execution.progress(sum(one.id in known for one in tasks) / len(tasks))
     return [known[one.id] for one in tasks if one.id in known]

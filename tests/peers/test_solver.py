@@ -13,18 +13,20 @@ import pytest
 
 from rga import _core
 from rga_bench.measurement import Measurement
-from rga_bench.solver import cores, large, refactored, run, table
+from rga_bench.solver import cores, large, refactored
 from rga_bench.solver.box_bridge import box_bridge, samples
 from rga_bench.solver.data_set import data_set_cost
 from rga_bench.solver.double_layer_grid import double_layer_grid
+from rga_bench.solver.experiment import SolverExperiment
 from rga_bench.solver.from_scratch import FromScratch
 from rga_bench.solver.peers.cholmod import Cholmod, least_operations
 from rga_bench.solver.peers.linear_system import LinearSystem
 from rga_bench.solver.peers.pynite import PyNite
 from rga_bench.solver.peers.superlu import SuperLU
+from rga_bench.solver.result import SolverResult
 from rga_bench.solver.roofs import Roofs
-from rga_bench.solver.run import SolverResult
 from rga_bench.solver.setting import SolverSetting
+from rga_bench.solver.table import page
 
 #: as little as can be measured
 LITTLE = SolverSetting(rows=64, seconds=0.0, panels=(6,), data_set=100)
@@ -103,8 +105,8 @@ def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     assert missing == {"CHOLMOD", "PyNite"}
     there = {one.peer for one in figures if one.ratio is not None}
     assert there == {"SciPy splu", "rga, the structure anew"}
-    page = table.markdown(result(figures), "rga benchmark solver")
-    assert page.count("| not installed |") == len(_core.instructions()) + 1 + 3
+    text = page(result(figures), "rga benchmark solver").text()
+    assert text.count("| not installed |") == len(_core.instructions()) + 1 + 3
 
 
 def test_every_figure_has_its_peer() -> None:
@@ -167,7 +169,7 @@ def result(figures: list[Measurement]) -> SolverResult:
 
 
 def test_a_page_tells_ratios_and_whether_they_are_as_asked() -> None:
-    page = table.markdown(
+    text = page(
         result(
             [
                 Measurement("bridge", "lanes", 180_000.0, "/s").beside("CHOLMOD", 10_000.0, 17.0),
@@ -177,8 +179,8 @@ def test_a_page_tells_ratios_and_whether_they_are_as_asked() -> None:
             ]
         ),
         "rga benchmark solver --seed 7",
-    )
-    assert "`rga benchmark solver --seed 7` on 1982-04-23" in page
+    ).text()
+    assert "`rga benchmark solver --seed 7` on 1982-04-23" in text
     for line in (
         "| **bridge** |  |  |  |  |  |",
         "| lanes | 180 000/s | CHOLMOD | 10 000/s | 18 | 17 ✓ |",
@@ -189,7 +191,7 @@ def test_a_page_tells_ratios_and_whether_they_are_as_asked() -> None:
         "- rga 1, CHOLMOD not installed",
         "- seed 7",
     ):
-        assert line in page.splitlines()
+        assert line in text.splitlines()
 
 
 def test_the_command(rga: Any, tmp_path: Path) -> None:
@@ -209,7 +211,7 @@ def test_the_command(rga: Any, tmp_path: Path) -> None:
 def test_a_place_that_cannot_be_written_is_told_before_anything_is_measured(
     rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(run, "measure", None)
+    monkeypatch.setattr(SolverExperiment, "measure", None)
     taken = tmp_path / "file"
     taken.touch()
     ran = rga("benchmark", "solver", "-o", taken)

@@ -24,7 +24,7 @@ SOON, WAITED = 4.0, 0.25
 
 
 def optima(
-    setting: DetectionSetting, workers: int, progress: Progress | None
+    setting: DetectionSetting, workers: int, progress: Progress
 ) -> tuple[list[Seen], list[Point]]:
     """Delays of the optimum for every change that has one; and its curve for the example."""
     faults = [fault for fault in setting.faults() if has_optimum(fault)]

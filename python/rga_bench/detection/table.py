@@ -1,15 +1,14 @@
-"""The tables of the measurements, for a terminal and in Markdown."""
+"""The tables of the measurements."""
 
 from collections.abc import Sequence
 from itertools import groupby
-
-from rich.console import Group
 
 from rga_bench.detection.optimum import OPTIMUM
 from rga_bench.detection.rates import Arl0, Delay, Share
 from rga_bench.detection.result import Bounds, DetectionResult, JudgedFigure, Seen
 from rga_bench.detection.setting import BASELINE
 from rga_bench.measurement import HEADINGS, digits
+from rga_bench.page import MarkdownPage
 from rga_bench.sheet import Sheet
 
 NOTES = """\
@@ -26,21 +25,19 @@ alarms that the first table tells.
 Optimum: knows the change, its size and the number of sensors, but not which sensors nor when."""
 
 
-def terminal(result: DetectionResult) -> Group:
-    """For rich."""
-    return Group(*(sheet.terminal() for sheet in sheets(result)))
+def page(result: DetectionResult, command: str) -> MarkdownPage:
+    """All tables, and where and how it was measured."""
+    return MarkdownPage(
+        "detector.md",
+        "How soon a change is seen, at which rate of false alarms",
+        f"`{command}` on {result.day}.",
+        _about(result),
+        [*_sheets(result), NOTES],
+        {"delays.png": "delays", "limits.png": "limits"},
+    )
 
 
-def markdown(result: DetectionResult, command: str) -> str:
-    """A page: where and how it was measured, and the tables."""
-    lines = ["# How soon a change is seen, at which rate of false alarms", ""]
-    lines += [f"`{command}` on {result.day}.", "", *(f"- {line}" for line in about(result)), ""]
-    for sheet in sheets(result):
-        lines += sheet.markdown()
-    return "\n".join([*lines, NOTES, "", "![delays](delays.png)", "", "![limits](limits.png)", ""])
-
-
-def about(result: DetectionResult) -> list[str]:
+def _about(result: DetectionResult) -> list[str]:
     """The machine, and what was measured, in lines."""
     machine, setting = result.machine, result.setting
     versions = [f"{name} {number}" for name, number in result.versions.items() if number]
@@ -54,7 +51,7 @@ def about(result: DetectionResult) -> list[str]:
     ]
 
 
-def sheets(result: DetectionResult) -> list[Sheet]:
+def _sheets(result: DetectionResult) -> list[Sheet]:
     """All tables."""
     found = [
         _alarms(result),
@@ -66,7 +63,7 @@ def sheets(result: DetectionResult) -> list[Sheet]:
     if result.judged:
         found.append(_judged(result.judged))
     for case, figures in groupby(result.throughput, lambda one: one.case):
-        found.append(Sheet(case, list(HEADINGS), [one.cells() for one in figures]))
+        found.append(Sheet(case, HEADINGS, [one.cells() for one in figures]))
     return found
 
 

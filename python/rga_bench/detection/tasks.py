@@ -9,7 +9,7 @@ from rga_bench.detection.watch import Course, StreamWorld, WatchedCase, watched_
 
 #: streams, or baselines, that one process watches in one go
 CHUNK, BASELINES = 25, 2
-#: told the share that is done
+#: called with the share that is done
 Progress = Callable[[float], None]
 
 
@@ -36,22 +36,19 @@ class Job:
         return [range(at, min(at + size, streams)) for at in range(0, streams, size)]
 
 
-def courses_of(
-    jobs: Sequence[Job], workers: int, progress: Progress | None = None
-) -> list[list[list[Course]]]:
+def courses_of(jobs: Sequence[Job], workers: int, progress: Progress) -> list[list[list[Course]]]:
     """Courses by job and case, the same ones for any number of processes.
 
     Args:
         jobs: what is watched.
         workers: processes of this machine.
-        progress: told the share that is done.
+        progress: called with the share that is done.
     """
     tasks = [(number, job, chunk) for number, job in enumerate(jobs) for chunk in job.chunks()]
     parts: dict[tuple[int, int], list[list[Course]]] = {}
     for (number, _, chunk), future in finished(_watch, tasks, workers=workers):
         parts[number, chunk.start] = future.result()
-        if progress is not None:
-            progress(len(parts) / len(tasks))
+        progress(len(parts) / len(tasks))
     found: list[list[list[Course]]] = [[[] for _ in job.cases] for job in jobs]
     for number, start in sorted(parts):
         for courses, part in zip(found[number], parts[number, start], strict=True):

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
-from rich.console import Group
 
 from rga_bench.diagnosis.figures import rate
 from rga_bench.faults.comparison import Comparison, comparisons
 from rga_bench.faults.library import FAULTS
-from rga_bench.faults.run import FaultsResult
+from rga_bench.faults.result import FaultsResult
 from rga_bench.faults.trial import LEFT_OUT
+from rga_bench.page import MarkdownPage
 from rga_bench.sheet import Sheet
 
 HEADINGS = [
@@ -43,28 +43,25 @@ processor, over that of the sound record, in the middle and at worst. Intervals 
 90 %. Records that lose channels without a fault show what the other channels can tell."""
 
 
-def about(result: FaultsResult) -> list[str]:
+def page(result: FaultsResult, command: str) -> MarkdownPage:
+    """The tables, what is meant, and every record that was not reported right."""
+    failed = [one for one in comparisons(result.outcomes) if _failure(one)]
+    failures = "\n".join(["## Failures", "", *(f"- {_line(one)}" for one in failed)])
+    return MarkdownPage(
+        "faults.md",
+        "What broken channels do to a diagnosis",
+        f"`{command}`",
+        _about(result),
+        [NOTES, *_sheets(result), failures],
+    )
+
+
+def _about(result: FaultsResult) -> list[str]:
     """How much was measured, and by what."""
     several = comparisons(result.outcomes)
     records = len({one.outcome.base for one in several})
     named = [f"{name} {number}" for name, number in result.versions.items()]
     return [f"{len(several)} diagnoses of {records} records", ", ".join(named)]
-
-
-def terminal(result: FaultsResult) -> Group:
-    """For rich."""
-    return Group(*(sheet.terminal() for sheet in _sheets(result)))
-
-
-def markdown(result: FaultsResult, command: str) -> str:
-    """A page with the tables, what is meant, and every record that was not told right."""
-    lines = ["# What broken channels do to a diagnosis", "", f"`{command}`", ""]
-    lines += [*(f"- {line}" for line in about(result)), "", NOTES, ""]
-    for sheet in _sheets(result):
-        lines += sheet.markdown()
-    failed = [one for one in comparisons(result.outcomes) if _failure(one)]
-    lines += ["## Failures", "", *(f"- {_line(one)}" for one in failed), ""]
-    return "\n".join(lines)
 
 
 def _sheets(result: FaultsResult) -> list[Sheet]:

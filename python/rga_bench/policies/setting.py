@@ -71,6 +71,11 @@ class PolicyTask:
     policy: str
     settings: Settings
 
+    @property
+    def id(self) -> str:
+        """Its name."""
+        return f"{self.seed}/{self.stream}/{self.policy}"
+
 
 def shorter(seed: int) -> PolicySetting:
     """What takes less than a minute: one stream of each sort, and networks that learn little."""

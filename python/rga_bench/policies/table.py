@@ -1,14 +1,13 @@
-"""The comparison as a table, for a terminal and in Markdown."""
+"""The comparison as a table."""
 
 from collections.abc import Sequence
 from itertools import groupby
 
-from rich.table import Table
-from rich.text import Text
-
 from rga_bench.machine import machine, versions
-from rga_bench.policies.run import Means, means
+from rga_bench.page import MarkdownPage
+from rga_bench.policies.means import Means, means
 from rga_bench.policies.twin_run import PolicyResult
+from rga_bench.sheet import Sheet
 
 #: measure and format of each column
 COLUMNS = {
@@ -22,7 +21,6 @@ COLUMNS = {
     "rows out of sync": ("out_of_sync", ".1%"),
     "seconds": ("seconds", ".0f"),
 }
-HEADINGS = ("policy", *COLUMNS)
 NOTES = """\
 Means over the streams of a sort. All costs are those after the first calibration, which every twin
 of a stream has in common. Nothing is hidden in the structure, and no diagnosis is made: those that
@@ -34,7 +32,19 @@ recalibration looked back. A row is out of sync where its gap is beyond what a r
 leave (`recovered`). On the null twin nothing drifts: all that is spent there is waste."""
 
 
-def about(played: Sequence[PolicyResult]) -> list[str]:
+def page(played: Sequence[PolicyResult], command: str) -> MarkdownPage:
+    """The table, and what it means."""
+    return MarkdownPage(
+        "policies.md",
+        "What each policy of synchronisation costs",
+        f"`{command}`",
+        _about(played),
+        [_sheet(played), NOTES],
+        {"policies.png": "cost against gap"},
+    )
+
+
+def _about(played: Sequence[PolicyResult]) -> list[str]:
     """Where it was measured, and how much."""
     place = machine()
     named = [f"{name} {number}" for name, number in versions().items() if number]
@@ -46,41 +56,14 @@ def about(played: Sequence[PolicyResult]) -> list[str]:
     ]
 
 
-def terminal(played: Sequence[PolicyResult]) -> Table:
-    """For rich."""
-    table = Table(HEADINGS[0])
-    for heading in COLUMNS:
-        table.add_column(heading, justify="right")
-    for stream, rows in _by_stream(played):
-        table.add_section()
-        table.add_row(Text(stream, style="bold"))
-        for cells in rows:
-            table.add_row(*(Text(cell) for cell in cells))
-    return table
-
-
-def markdown(played: Sequence[PolicyResult], command: str) -> str:
-    """A page with the table and the figure."""
-    lines = ["# What each policy of synchronisation costs", "", f"`{command}`", ""]
-    lines += [*(f"- {line}" for line in about(played)), ""]
-    lines += [_row(HEADINGS), _row(["---", *["---:"] * len(COLUMNS)])]
-    for stream, rows in _by_stream(played):
-        lines.append(_row([f"**{stream}**", *[""] * len(COLUMNS)]))
-        lines += [_row(cells) for cells in rows]
-    return "\n".join([*lines, "", NOTES, "", "![cost against gap](policies.png)", ""])
-
-
-def _by_stream(played: Sequence[PolicyResult]) -> list[tuple[str, list[list[str]]]]:
-    known = means(played)
-    return [
-        (stream, [[policy, *_cells(known[stream, policy])] for _, policy in places])
-        for stream, places in groupby(known, lambda place: place[0])
-    ]
+def _sheet(played: Sequence[PolicyResult]) -> Sheet:
+    """Policies under each sort of stream."""
+    rows = []
+    for stream, places in groupby(means(played).items(), lambda one: one[0][0]):
+        rows.append([stream])
+        rows += [[policy, *_cells(measured)] for (_, policy), measured in places]
+    return Sheet("", ["policy", *COLUMNS], rows, numbers=True)
 
 
 def _cells(measured: Means) -> list[str]:
     return [format(measured[name], form) for name, form in COLUMNS.values()]
-
-
-def _row(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"

@@ -51,6 +51,11 @@ class PolicyResult:
     out_of_sync: float
     seconds: float = field(compare=False)
 
+    @property
+    def id(self) -> str:
+        """That of the task."""
+        return f"{self.seed}/{self.stream}/{self.policy}"
+
 
 def run_twin(task: PolicyTask) -> PolicyResult:
     """Draw the stream, and let the twin live through it up to the closing diagnosis.

@@ -5,7 +5,7 @@ from pathlib import Path
 from matplotlib.figure import Figure as Canvas
 
 from rga_bench.measurement import digits
-from rga_bench.solver.run import SolverResult
+from rga_bench.solver.result import SolverResult
 
 
 def plot(result: SolverResult, path: Path) -> None:

@@ -1,12 +1,11 @@
-"""The table of the measurements, for a terminal and in Markdown."""
+"""The table of the measurements."""
 
 from itertools import groupby
 
-from rich.table import Table
-from rich.text import Text
-
 from rga_bench.measurement import HEADINGS
-from rga_bench.solver.run import SolverResult
+from rga_bench.page import MarkdownPage
+from rga_bench.sheet import Sheet
+from rga_bench.solver.result import SolverResult
 
 NOTES = """\
 Times as good: of rates, ours over theirs; of times, theirs over ours.
@@ -19,35 +18,28 @@ Least factorisation: the squares of the entries in the columns of the factor, su
 of CHOLMOD's that makes the fewest. A kflop is a thousand floating-point operations."""
 
 
-def terminal(result: SolverResult) -> Table:
-    """For rich."""
-    table = Table(*HEADINGS)
-    for case, figures in groupby(result.figures, lambda one: one.case):
-        table.add_section()
-        table.add_row(Text(case, style="bold"))
-        for figure in figures:
-            table.add_row(*(Text(cell) for cell in figure.cells()))
-    return table
-
-
-def markdown(result: SolverResult, command: str) -> str:
-    """A page: where and how it was measured, and the table."""
-    lines = ["# What a simulated sample costs", ""]
-    lines += [f"`{command}` on {result.day}, on one core"]
-    lines += [
+def page(result: SolverResult, command: str) -> MarkdownPage:
+    """The table, and how it was measured."""
+    return MarkdownPage(
+        "solver.md",
+        "What a simulated sample costs",
+        f"`{command}` on {result.day}, on one core\n"
         "unless it says otherwise, after all solvers agreed.",
-        "",
-        *(f"- {line}" for line in about(result)),
-        "",
-    ]
-    lines += [_row(HEADINGS), _row(["---"] * len(HEADINGS))]
+        _about(result),
+        [_sheet(result), NOTES],
+        {"solver.png": "times as good as the peers"},
+    )
+
+
+def _sheet(result: SolverResult) -> Sheet:
+    rows = []
     for case, figures in groupby(result.figures, lambda one: one.case):
-        lines.append(_row([f"**{case}**", *[""] * (len(HEADINGS) - 1)]))
-        lines += [_row(figure.cells()) for figure in figures]
-    return "\n".join([*lines, "", NOTES, "", "![times as good as the peers](solver.png)", ""])
+        rows.append([case])
+        rows += [figure.cells() for figure in figures]
+    return Sheet("", HEADINGS, rows)
 
 
-def about(result: SolverResult) -> list[str]:
+def _about(result: SolverResult) -> list[str]:
     """The machine, its roofs, and what was measured, in lines."""
     machine, roofs = result.machine, result.roofs
     versions = [f"{name} {number or 'not installed'}" for name, number in result.versions.items()]
@@ -59,7 +51,3 @@ def about(result: SolverResult) -> list[str]:
         ", ".join(versions),
         f"seed {result.seed}",
     ]
-
-
-def _row(cells: list[str] | tuple[str, ...]) -> str:
-    return f"| {' | '.join(cells)} |"

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rga_bench.contexts.run import measure
+from rga_bench.contexts.experiment import ContextsExperiment
 from rga_bench.contexts.setting import ContextsSetting, Sizes
 from rga_bench.contexts.task_run import TaskOutcome
+from rga_bench.experiment import Execution
 from rga_bench.ledger import NAME
 
 SETTING = ContextsSetting(
@@ -31,7 +32,8 @@ KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 
 def outcomes(folder: Path, workers: int) -> list[TaskOutcome]:
     """Of all tasks, without the times."""
-    found = measure(SETTING, folder=folder, workers=workers).outcomes
+    execution = Execution(folder=folder, workers=workers)
+    found = ContextsExperiment(SETTING).measure(execution).outcomes
     return [replace(one, learning=None, inference=None) for one in found]
 
 

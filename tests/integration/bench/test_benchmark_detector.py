@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from rga_bench.detection import run, setting, table
 from rga_bench.detection.detectors import MONITOR, WINDOW_RULE
+from rga_bench.detection.experiment import DetectionExperiment
 from rga_bench.detection.faults import Step
 from rga_bench.detection.optimum import (
     OPTIMUM,
@@ -18,8 +18,9 @@ from rga_bench.detection.optimum import (
 from rga_bench.detection.rates import Arl0, Delay, Share
 from rga_bench.detection.result import Alarms, Seen
 from rga_bench.detection.setting import DetectionSetting
+from rga_bench.detection.table import page
 from rga_bench.detection.targets import targets
-from watched_coin import coin
+from rga_bench.experiment import Execution
 
 #: as little as can be measured
 LITTLE = DetectionSetting(
@@ -29,21 +30,25 @@ LITTLE = DetectionSetting(
 
 
 def test_any_number_of_processes_finds_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run, "ready", lambda sensors, arl0: ())  # thresholds take their time
-    one, two = (run.measure(LITTLE, workers=workers) for workers in (1, 2))
+    monkeypatch.setattr(
+        "rga_bench.detection.experiment.ready", lambda sensors, arl0: ()
+    )  # thresholds take their time
+    experiment = DetectionExperiment(LITTLE)
+    one, two = (experiment.measure(Execution(workers=workers)) for workers in (1, 2))
     assert replace(one, day="", throughput=[]) == replace(two, day="", throughput=[])
-    other = run.measure(replace(LITTLE, seed=1))
+    other = DetectionExperiment(replace(LITTLE, seed=1)).measure(Execution())
     assert other.delays != one.delays
 
 
 def test_a_detector_of_ones_own_stands_in_the_tables() -> None:
     shares: list[float] = []
-    result = run.measure(LITTLE, [coin(0.01)], progress=shares.append)
+    experiment = DetectionExperiment(LITTLE, [coin(0.01)])
+    result = experiment.measure(Execution(progress=shares.append))
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
-    page = table.markdown(result, "rga benchmark detector --seed 0")
-    assert "| change | sensors | window rule | MEWMA | monitor | coin | optimum |" in page
-    (line,) = [line for line in page.splitlines() if line.startswith("| coin |  | white | known")]
+    text = page(result, "rga benchmark detector --seed 0").text()
+    assert "| change | sensors | window rule | MEWMA | monitor | coin | optimum |" in text
+    (line,) = [line for line in text.splitlines() if line.startswith("| coin |  | white | known")]
     (own,) = [one for one in result.alarms if (one.detector, one.known) == ("coin", True)]
     assert own.limit is None
     assert f"({own.quiet.low:.2f} to {own.quiet.high:.2f})" in line
@@ -94,7 +99,9 @@ def test_what_is_asked(rows: float, verdicts: list[str]) -> None:
 def test_the_command(
     rga: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(setting, "shorter", lambda seed: replace(LITTLE, seed=seed))
+    monkeypatch.setattr(
+        "rga_bench.detection.experiment.shorter", lambda seed: replace(LITTLE, seed=seed)
+    )
     folder, file = tmp_path / "out", tmp_path / "figures.json"
     ran = rga(
         "benchmark", "detector", "--quick", "--seed", "3", "--workers", "1",
@@ -117,7 +124,7 @@ def test_the_command(
 def test_a_place_that_cannot_be_written_is_told_before_anything_is_measured(
     rga: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(run, "measure", None)
+    monkeypatch.setattr(DetectionExperiment, "measure", None)
     taken = tmp_path / "file"
     taken.touch()
     ran = rga("benchmark", "detector", "-o", taken)

@@ -11,15 +11,16 @@ import pytest
 from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records import Record, load_record
-from rga_bench.diagnosis import run as running
 from rga_bench.diagnosis.design import CIRCUMSTANCES, NULLS, SINGLES, STRATA, Draw, draws
+from rga_bench.diagnosis.experiment import DiagnosisExperiment
 from rga_bench.diagnosis.figures import ChallengeFigure, figures, rate
 from rga_bench.diagnosis.hidden import Truth
-from rga_bench.diagnosis.judge import DrawOutcome
+from rga_bench.diagnosis.judge import DrawOutcome, judge
 from rga_bench.diagnosis.plots import plot
 from rga_bench.diagnosis.reference_fit import ReferenceFit
 from rga_bench.diagnosis.tables import failures, tables
-from rga_bench.ledger import NAME, Ledger
+from rga_bench.experiment import Execution
+from rga_bench.ledger import NAME, Ledger, task_versions
 from rga_bench.synthetic import Case, Conditions, draw_case
 
 
@@ -295,22 +296,23 @@ def judged(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         names.append(draw.id)
         return outcome(draw.id)
 
-    monkeypatch.setattr(running, "judge", quick)
+    monkeypatch.setattr("rga_bench.diagnosis.experiment.judge", quick)
     return names
 
 
 def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path, judged: list[str]) -> None:
-    chosen = draws(1, 4)
+    experiment, execution = DiagnosisExperiment(1, 4), Execution(folder=tmp_path)
+    chosen = experiment.draws()
     with pytest.raises(KeyboardInterrupt):
-        running.run(chosen, folder=tmp_path)
+        experiment.measure(execution)
     first = list(judged)
     with (tmp_path / NAME).open("a") as file:
         file.write('{"versions": {"rga"')
     judged.clear()
     with pytest.raises(KeyboardInterrupt):
-        running.run(chosen, folder=tmp_path)
+        experiment.measure(execution)
     judged.clear()
-    several = running.run(chosen, folder=tmp_path)
+    several = experiment.measure(execution)
     assert first == [one.id for one in chosen[:3]]
     assert judged == [one.id for one in chosen[6:]]
     assert several == [outcome(one.id) for one in chosen]
@@ -318,24 +320,26 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path, judged: list[st
 
 
 def test_a_run_ends_in_time(judged: list[str]) -> None:
-    assert running.run(draws(1, 4), minutes=0.0) == []
+    with pytest.raises(InputError, match="no draw was finished"):
+        DiagnosisExperiment(1, 4).measure(Execution(minutes=0.0))
     assert judged == []
 
 
 def test_outcomes_of_other_code_are_not_mixed_in(tmp_path: Path) -> None:
-    Ledger(tmp_path, DrawOutcome).add(outcome("1-single-0"))
-    assert Ledger(tmp_path, DrawOutcome).outcomes == {"1-single-0": outcome("1-single-0")}
+    versions = task_versions(judge)
+    Ledger(tmp_path, DrawOutcome, versions).add(outcome("1-single-0"))
+    assert Ledger(tmp_path, DrawOutcome, versions).outcomes == {"1-single-0": outcome("1-single-0")}
     path = tmp_path / NAME
     text = path.read_text()
     path.write_text(text.replace('"rga": "', '"rga": "9.'))
     with pytest.raises(InputError, match=r"of another version: rga 9\.0"):
-        Ledger(tmp_path, DrawOutcome)
+        Ledger(tmp_path, DrawOutcome, versions)
     for wrong in ("[]", "{}", "nonsense", '{"versions": 3}'):
         path.write_text(text + wrong + "\n")
         with pytest.raises(InputError, match="line 2"):
-            Ledger(tmp_path, DrawOutcome)
+            Ledger(tmp_path, DrawOutcome, versions)
     with pytest.raises(InputError, match="cannot be kept"):
-        Ledger(path, DrawOutcome)
+        Ledger(path, DrawOutcome, versions)
 
 
 def test_a_case_is_drawn_and_written(rga: Any, tmp_path: Path) -> None:

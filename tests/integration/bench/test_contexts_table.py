@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -9,17 +10,18 @@ import pytest
 
 from context_tasks import SIZES, nearest, task
 from rga.errors import InputError
-from rga_bench.contexts import setting
 from rga_bench.contexts.context_regime import MANNERS
+from rga_bench.contexts.experiment import ContextsExperiment
+from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE, PAPERS, Row
-from rga_bench.contexts.run import ContextsResult, measure
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import DRIFTING, ContextsSetting, ContextsTask
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.sheets_levels import order
-from rga_bench.contexts.tables.table import about, markdown
+from rga_bench.contexts.tables.table import page
 from rga_bench.contexts.tables.targets import asked
 from rga_bench.contexts.task_run import TaskOutcome, run_task
+from rga_bench.experiment import Execution
 from rga_bench.ledger import NAME
 from rga_bench.machine import machine, versions
 
@@ -36,21 +38,22 @@ LITTLE = ContextsSetting(
 
 
 def test_a_run_that_was_killed_goes_on(few_methods: dict[str, Row], tmp_path: Path) -> None:
-    whole = measure(LITTLE, folder=tmp_path / "whole")
+    experiment = ContextsExperiment(LITTLE)
+    whole = experiment.measure(Execution(folder=tmp_path / "whole"))
     assert len(whole.outcomes) == (4 + 2) * 4
     lines = (tmp_path / "whole" / NAME).read_text(encoding="utf-8").splitlines()
     cut = tmp_path / "cut"
     cut.mkdir()
     (cut / NAME).write_text("\n".join([*lines[:9], lines[9][:40]]), encoding="utf-8")
     shown: list[float] = []
-    again = measure(LITTLE, folder=cut, progress=shown.append)
+    again = experiment.measure(Execution(folder=cut, progress=shown.append))
     assert len(shown) == len(lines) - 9
     assert shown[-1] == 1.0
     assert again.outcomes == whole.outcomes
-    pages = [markdown(replace(one, outcomes=_timeless(one)), "again") for one in (whole, again)]
-    assert pages[0] == pages[1]
-    assert "absent is left out: no_such_package not installed" in about(whole)
-    other = measure(replace(LITTLE, seed=4, splits=1, drifts=()))
+    pages = [page(replace(one, outcomes=_timeless(one)), "again") for one in (whole, again)]
+    assert pages[0].text() == pages[1].text()
+    assert "absent is left out: no_such_package not installed" in pages[0].about
+    other = ContextsExperiment(replace(LITTLE, seed=4, splits=1, drifts=())).measure(Execution())
     assert other.outcomes[0].score != whole.outcomes[0].score
 
 
@@ -59,14 +62,15 @@ def _timeless(result: Any) -> list[Any]:
 
 
 def test_a_method_beside_others_is_told_of(few_methods: dict[str, Row]) -> None:
-    found = measure(replace(LITTLE, splits=1, gaps=("all",), manners=("same",)))
-    page = markdown(found, "rga benchmark loi")
-    assert "| true context |" in page
-    assert "| 0.405 / 297 |" in page
-    assert "The paper's order cannot be told" in page
+    setting = replace(LITTLE, splits=1, gaps=("all",), manners=("same",))
+    found = ContextsExperiment(setting).measure(Execution())
+    text = page(found, "rga benchmark loi").text()
+    assert "| true context |" in text
+    assert "| 0.405 / 297 |" in text
+    assert "The paper's order cannot be told" in text
     by_row = {one.row: one.score for one in found.outcomes if one.manner == "same"}
     assert by_row["prior mean"].error == pytest.approx(1.0, abs=0.15)
-    assert "†" not in page.partition("## RG")[2].partition("##")[0].replace("†:", "")
+    assert "†" not in text.partition("## RG")[2].partition("##")[0].replace("†:", "")
 
 
 def made(errors: dict[str, tuple[float, float, float]]) -> ContextsResult:
@@ -127,13 +131,16 @@ def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatc
 
 
 def test_wrong_rows_and_drifts_are_refused(few_methods: dict[str, Row], tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no row 'wizard'"):
-        measure(replace(LITTLE, rows=("wizard",)))
-    with pytest.raises(InputError, match="no drift 'sabotage'"):
-        measure(replace(LITTLE, rows=("prior mean",), drifts=("sabotage",)))
+    for wrong, told in (
+        ({"rows": ("wizard",)}, "no row 'wizard'"),
+        ({"rows": ("prior mean",), "drifts": ("sabotage",)}, "no drift 'sabotage'"),
+    ):
+        experiment = ContextsExperiment(replace(LITTLE, **wrong))
+        with pytest.raises(InputError, match=told):
+            experiment.measure(Execution())
     (tmp_path / NAME).write_text("nonsense\n", encoding="utf-8")
     with pytest.raises(InputError, match="line 1"):
-        measure(LITTLE, folder=tmp_path)
+        ContextsExperiment(LITTLE).measure(Execution(folder=tmp_path))
 
 
 def test_tasks_have_names_of_their_own() -> None:
@@ -151,7 +158,8 @@ def test_the_command(
 ) -> None:
     little = replace(LITTLE, splits=1, gaps=("all",), manners=("same",))
     monkeypatch.setattr(
-        setting, "shorter", lambda seed, rows: replace(little, seed=seed, rows=("noise", "nearest"))
+        "rga_bench.contexts.experiment.shorter",
+        lambda seed, rows: replace(little, seed=seed, rows=("noise", "nearest")),
     )
     folder, file = tmp_path / "out", tmp_path / "found.json"
     given = ("--quick", "--seed", "3", "--workers", "1", "-o", folder, "--json", file)
@@ -163,14 +171,15 @@ def test_the_command(
     content = json.loads(file.read_text(encoding="utf-8"))
     assert content["command"] == "rga benchmark loi --quick --seed 3"
     assert {one["row"] for one in content["outcomes"]} == {"noise", "nearest"}
-    monkeypatch.setattr("rga_bench.contexts.run.run_task", play_nothing)
+    monkeypatch.setattr("rga_bench.contexts.experiment.run_task", run_nothing)
     assert rga("benchmark", "loi", *given).code == 0
     wrong = rga("benchmark", "loi", "--quick", "--repository", "attic")
     assert wrong.code == 2
     assert "give one of measured, paper" in wrong.err
 
 
-def play_nothing(task: ContextsTask) -> None:
+@wraps(run_task)
+def run_nothing(task: ContextsTask) -> None:
     raise AssertionError(f"{task.id} is in the ledger")
 
 

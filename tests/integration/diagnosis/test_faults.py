@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from rga.errors import InputError
+from rga_bench.experiment import Execution
 from rga_bench.faults import FAULTS, Scale
 from rga_bench.faults.base import Base, foreign, load
 from rga_bench.faults.comparison import Comparison, comparisons
+from rga_bench.faults.experiment import FaultsExperiment
 from rga_bench.faults.inject import broken as broken_channels
 from rga_bench.faults.judge import ERROR, FaultOutcome
-from rga_bench.faults.run import measure
-from rga_bench.faults.table import markdown
+from rga_bench.faults.table import page
 from rga_bench.faults.trial import LEFT_OUT, SOUND, WAYS, FaultTrial, trials
 
 ROWS, ONSET = 240, 90
@@ -227,7 +228,8 @@ def test_channels_are_broken_as_the_trial_says(name: str) -> None:
 def test_a_dead_channel_is_told_and_in_a_sound_record_nothing() -> None:
     """A tiny run: the table of one broken record, and its null twin."""
     base = Base("drawn-0", 100)
-    result = measure([FaultTrial(base, 1, 0, SOUND), FaultTrial(base, 1, 1, "whole", "dead")])
+    trials = [FaultTrial(base, 1, 0, SOUND), FaultTrial(base, 1, 1, "whole", "dead")]
+    result = FaultsExperiment(trials).measure(Execution())
     sound, dead = result.outcomes
     assert sound.causes == []
     assert sound.verdict == "nothing_wrong"
@@ -235,10 +237,10 @@ def test_a_dead_channel_is_told_and_in_a_sound_record_nothing() -> None:
     assert one.told
     assert one.unmoved
     assert not one.calm
-    page = markdown(result, "rga benchmark faults")
-    assert "| one channel, from the first row | 1 | 100 (27..100) | 100 (27..100) |" in page
-    assert "| dead | 1 | 100 (27..100) |" in page
-    assert "| sign | - | - |" in page
+    text = page(result, "rga benchmark faults").text()
+    assert "| one channel, from the first row | 1 | 100 (27..100) | 100 (27..100) |" in text
+    assert "| dead | 1 | 100 (27..100) |" in text
+    assert "| sign | - | - |" in text
     assert dead.broken[0]["fault"] == "dead"
 
 

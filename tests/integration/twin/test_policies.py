@@ -19,7 +19,8 @@ from rga.twin.run_state import Standing
 from rga.twin.runner import taken_up
 from rga.twin.settings import Pace
 from rga.twin.sync.policy import Policy
-from rga_bench.policies import run, setting
+from rga_bench.policies.experiment import PoliciesExperiment
+from rga_bench.policies.means import means
 from rga_bench.policies.setting import STREAMS, PolicySetting
 from rga_bench.policies.twin_run import PolicyResult, run_twin
 
@@ -202,7 +203,9 @@ LITTLE = PolicySetting(
 
 
 def test_the_comparison(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(setting, "shorter", lambda seed: replace(LITTLE, seed=seed))
+    monkeypatch.setattr(
+        "rga_bench.policies.experiment.shorter", lambda seed: replace(LITTLE, seed=seed)
+    )
     folder, file = tmp_path / "out", tmp_path / "played.json"
     given = ("--quick", "--seed", "3", "--workers", "1", "-o", folder, "--json", file)
     ran = rga("benchmark", "policies", *given)
@@ -232,7 +235,7 @@ def test_the_comparison(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_a_comparison_that_cannot_be_written_is_not_begun(
     rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(run, "compare", None)
+    monkeypatch.setattr(PoliciesExperiment, "measure", None)
     taken = tmp_path / "file"
     taken.touch()
     ran = rga("benchmark", "policies", "-o", taken)
@@ -244,7 +247,7 @@ def test_means_are_those_of_a_policy_on_a_sort_of_stream() -> None:
     def played(stream: str, seed: int, gap: float) -> PolicyResult:
         return PolicyResult(stream, seed, "event", 1, 0, 0, 120, 0, gap, 0.5, 0.1, 3.0)
 
-    found = run.means([played("a", 0, 1.0), played("b", 0, 9.0), played("a", 1, 2.0)])
+    found = means([played("a", 0, 1.0), played("b", 0, 9.0), played("a", 1, 2.0)])
     assert list(found) == [("a", "event"), ("b", "event")]
     assert found["a", "event"]["gap"] == 1.5
     assert found["b", "event"]["gap"] == 9.0

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure as Canvas
 
 from rga_bench.contexts.floors import FLOORS
 from rga_bench.contexts.levels import LEVELS
+from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE
-from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.tables.aggregate import lives, mean, mean_lives, scores
 from rga_bench.contexts.tables.sheets_levels import NULL
 

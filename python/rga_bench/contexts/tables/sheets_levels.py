@@ -6,8 +6,8 @@ import numpy as np
 
 from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
 from rga_bench.contexts.levels import LEVELS
+from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import PAPERS
-from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.aggregate import gap_told, lives, mean, mean_lives, paired, whole

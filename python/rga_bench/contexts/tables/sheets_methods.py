@@ -9,8 +9,8 @@ from rga.inference.networks.design_samples import design
 from rga.model import read_model
 from rga.simulation import Simulator
 from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
+from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE
-from rga_bench.contexts.run import ContextsResult
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.tables.aggregate import Values, coverage, gap_told, mean, scores
 from rga_bench.measurement import digits

@@ -1,11 +1,10 @@
-"""The tables, for a terminal and in Markdown."""
+"""The tables."""
 
-from rich.console import Group
-
-from rga_bench.contexts.run import ContextsResult
+from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.tables.sheets_levels import order, papers, published, worth
 from rga_bench.contexts.tables.sheets_methods import by_context, by_place, cost
 from rga_bench.contexts.tables.targets import asked
+from rga_bench.page import MarkdownPage
 from rga_bench.sheet import Sheet
 
 NOTES = """\
@@ -32,7 +31,22 @@ wrong. Floors: the noise alone; the model at the true contexts; the model at the
 leave the least gap."""
 
 
-def about(result: ContextsResult) -> list[str]:
+def page(result: ContextsResult, command: str) -> MarkdownPage:
+    """All tables, and what they mean."""
+    figures = {"methods.png": "methods"}
+    if result.setting.drifts:
+        figures["levels.png"] = "levels"
+    return MarkdownPage(
+        "loi.md",
+        "Levels of integration, with every rival beside them",
+        f"`{command}`",
+        _about(result),
+        [order(result), *_sheets(result), NOTES],
+        figures,
+    )
+
+
+def _about(result: ContextsResult) -> list[str]:
     """Where it was measured, how much, and what was left out."""
     place, setting, sizes = result.machine, result.setting, result.setting.sizes
     named = [f"{name} {number}" for name, number in result.versions.items() if number]
@@ -50,24 +64,7 @@ def about(result: ContextsResult) -> list[str]:
     return lines
 
 
-def terminal(result: ContextsResult) -> Group:
-    """For rich."""
-    return Group(*(one.terminal() for one in sheets(result)), order(result), "", NOTES)
-
-
-def markdown(result: ContextsResult, command: str) -> str:
-    """A page with all tables and the figures."""
-    lines = ["# Levels of integration, with every rival beside them", "", f"`{command}`", ""]
-    lines += [*(f"- {line}" for line in about(result)), "", order(result), ""]
-    for sheet in sheets(result):
-        lines += sheet.markdown()
-    figures = ["![methods](methods.png)", ""]
-    if result.setting.drifts:
-        figures += ["![levels](levels.png)", ""]
-    return "\n".join([*lines, NOTES, "", *figures])
-
-
-def sheets(result: ContextsResult) -> list[Sheet]:
+def _sheets(result: ContextsResult) -> list[Sheet]:
     """All tables."""
     levels = papers(result)
     if levels:

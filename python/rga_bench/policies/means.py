@@ -1,40 +1,14 @@
-"""All twins of the comparison, in as many processes as are asked for."""
+"""Means of what was measured of policies."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 
 import numpy as np
 
-from rga.parallel import finished
-from rga_bench.policies.setting import PolicySetting
-from rga_bench.policies.twin_run import PolicyResult, run_twin
+from rga_bench.policies.twin_run import PolicyResult
 
 #: of a policy on all streams of a sort: the means of what was measured
 Means = dict[str, float]
-
-
-def compare(
-    setting: PolicySetting,
-    *,
-    workers: int = 1,
-    progress: Callable[[float], None] = lambda done: None,
-) -> list[PolicyResult]:
-    """Play every stream through a twin of every policy; nothing depends on the workers.
-
-    Args:
-        setting: how much is played.
-        workers: processes at work.
-        progress: told the share that is done.
-
-    Returns:
-        In the order of the tasks.
-    """
-    tasks = setting.tasks()
-    known: dict[tuple[str, int, str], PolicyResult] = {}
-    for task, played in finished(run_twin, tasks, workers=workers):
-        known[task.stream, task.seed, task.policy] = played.result()
-        progress(len(known) / len(tasks))
-    return [known[task.stream, task.seed, task.policy] for task in tasks]
 
 
 def means(played: Sequence[PolicyResult]) -> dict[tuple[str, str], Means]:
