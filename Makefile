@@ -2,9 +2,10 @@
 PYTHON ?= python3
 RUN := .venv/bin
 TEST := .venv-test/bin
+DEV := .venv-dev/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help run test clean wheel
+.PHONY: help run dev quick test clean wheel
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
@@ -13,6 +14,17 @@ run: fresh = .venv
 run: wheel  ## build and install rga in a fresh environment, and run the twin of the case study
 	$(RUN)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[twin]"
 	$(RUN)/python examples/case_study.py
+
+dev:  ## once, and after a change of Rust: an environment that uses the sources as they are
+	$(PYTHON) -m venv .venv-dev
+	$(DEV)/python -m pip install --quiet --editable ".[test]"
+
+quick:  ## lint, types and unit tests in the environment of `make dev`, within a minute
+	$(DEV)/ruff check
+	$(DEV)/ruff format --check
+	$(DEV)/mypy --strict python
+	$(DEV)/lint-imports
+	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
 
 test: fresh = .venv-test
 test: export PYO3_PYTHON = $(abspath $(TEST)/python)
@@ -36,5 +48,6 @@ wheel:
 	$(fresh)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist .
 
 clean:  ## remove environments, builds and caches
-	rm -rf .venv .venv-test dist target .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv .venv-dev .venv-test dist target .pytest_cache .mypy_cache .ruff_cache \
+	  .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

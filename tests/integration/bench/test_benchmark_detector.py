@@ -21,6 +21,7 @@ from rga_bench.detection.setting import DetectionSetting
 from rga_bench.detection.table import page
 from rga_bench.detection.targets import targets
 from rga_bench.experiment import Execution
+from watched_coin import coin
 
 #: as little as can be measured
 LITTLE = DetectionSetting(
