@@ -49,13 +49,14 @@ def entries(kinds: Iterable[type[Effect]]) -> str:
         package: list(inside)
         for package, inside in groupby(sorted(by_name, key=_package), key=_package)
     }
-    written = ["| in | kinds |\n|---|---|"]
+    rows = []
     for package, inside in folders.items():
         named = ", ".join(f"[`{_name(kind)}`](#{_name(kind)})" for kind in inside)
-        written.append(f"| {package.rpartition('.')[2] or 'your own'} | {named} |")
+        rows.append(f"| {package.rpartition('.')[2] or 'your own'} | {named} |")
+    written = ["\n".join(("| in | kinds |", "|---|---|", *rows)) + "\n"]
     for package, inside in folders.items():
         heading = inspect.getdoc(sys.modules[package]) if package else "Kinds of your own"
-        written += [f"\n## {str(heading).rstrip('.')}", *map(entry, inside)]
+        written += [f"## {str(heading).rstrip('.')}", *map(entry, inside)]
     return "\n".join(written)
 
 

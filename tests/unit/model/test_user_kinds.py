@@ -29,24 +29,24 @@ from rga.report.text.actions import actions
 USUAL = Factor(0.2)
 PAGE = Path(__file__).parents[3] / "docs" / "vocabulary.md"
 PAINT = {
-    "kind": "painted_shut",
+    "kind": "painted_joint",
     "member": "west",
     "factor": {"value": 0.5, "ci90": [0.4, 0.6]},
 }
 
 
 @pytest.fixture
-def painted_shut() -> Iterator[type[Effect]]:
+def painted_joint() -> Iterator[type[Effect]]:
     """A kind of a user's own, for a while."""
 
-    class PaintedShut(Effect):
+    class PaintedJoint(Effect):
         """A factor on the thermal expansion of one member.
 
         Attributes:
             factor: over what the material has [-].
         """
 
-        kind: Literal["painted_shut"] = "painted_shut"
+        kind: Literal["painted_joint"] = "painted_joint"
         title = "paint in the joint"
         action = Action(
             inspect="the expansion joint beside {place}", test="{vehicle}, on a warm day"
@@ -67,12 +67,12 @@ def painted_shut() -> Iterator[type[Effect]]:
         def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
             structure.alpha[structure.members[self.member]] *= value["factor"]
 
-    yield PaintedShut
-    del Effect.vocabulary["painted_shut"]
+    yield PaintedJoint
+    del Effect.vocabulary["painted_joint"]
 
 
 def test_it_is_read_simulated_and_proposed(
-    two_bars: dict[str, Any], painted_shut: type[Effect]
+    two_bars: dict[str, Any], painted_joint: type[Effect]
 ) -> None:
     plain = read_model(two_bars, "test")
     two_bars["effects"]["paint"] = PAINT
@@ -80,12 +80,12 @@ def test_it_is_read_simulated_and_proposed(
     warm = {"temperature": 30.0, "load": 0.0}
     assert not np.allclose(Simulator(plain).predict(warm), Simulator(painted).predict(warm))
     proposed = [
-        h.place for h in hypotheses(plain, list(plain.sensors), ()) if h.kind is painted_shut
+        h.place for h in hypotheses(plain, list(plain.sensors), ()) if h.kind is painted_joint
     ]
     assert proposed == [{"member": "west"}, {"member": "east"}]
 
 
-@pytest.mark.usefixtures("painted_shut")
+@pytest.mark.usefixtures("painted_joint")
 def test_it_is_named_and_advised_on_in_its_own_words(two_bars: dict[str, Any]) -> None:
     words = effect_words(PAINT)
     assert words == "paint in the joint of west: factor 0.5 [0.4, 0.6]"
@@ -99,7 +99,7 @@ def test_it_is_named_and_advised_on_in_its_own_words(two_bars: dict[str, Any]) -
     assert dict(shown.values)["factor"].startswith("0.50")
 
 
-@pytest.mark.usefixtures("painted_shut")
+@pytest.mark.usefixtures("painted_joint")
 def test_plans_know_how_sure_its_size_is(two_bars: dict[str, Any]) -> None:
     model = read_model(two_bars, "test")
     (unknown,) = explanation("paint", model, [read_effect(PAINT, "paint")]).unknowns
@@ -130,9 +130,9 @@ def test_a_load_of_a_users_own_measures_the_truck(small_bridge: dict[str, Any]) 
     assert shares[0] == shares[1] > 0
 
 
-@pytest.mark.usefixtures("painted_shut")
+@pytest.mark.usefixtures("painted_joint")
 def test_it_stands_in_the_schema(two_bars: dict[str, Any]) -> None:
-    own = model_schema()["$defs"]["PaintedShut"]
+    own = model_schema()["$defs"]["PaintedJoint"]
     assert own["description"] == "A factor on the thermal expansion of one member."
     assert own["properties"]["member"]["description"] == "place, member"
     factor = own["properties"]["factor"]["description"]
@@ -144,10 +144,10 @@ def test_it_stands_in_the_schema(two_bars: dict[str, Any]) -> None:
     assert not valid(two_bars)
 
 
-def test_it_stands_on_the_page(painted_shut: type[Effect]) -> None:
+def test_it_stands_on_the_page(painted_joint: type[Effect]) -> None:
     page = entries(Effect.vocabulary.values())
-    assert "## Kinds of your own\n### `painted_shut`\n" in page
-    written = entry(painted_shut)
+    assert "## Kinds of your own\n### `painted_joint`\n" in page
+    written = entry(painted_joint)
     assert written in page
     for words in (
         "A factor on the thermal expansion of one member.",
@@ -159,7 +159,7 @@ def test_it_stands_on_the_page(painted_shut: type[Effect]) -> None:
         assert words in written
 
 
-@pytest.mark.usefixtures("painted_shut")
+@pytest.mark.usefixtures("painted_joint")
 def test_the_page_of_the_repository_is_that_of_the_classes() -> None:
     page = PAGE.read_text(encoding="utf-8")
     assert updated(page) == page, "run: python tools/vocabulary.py"
