@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rga.model import Effect
+from rga.model.effects.sensors.sensor_fault import is_fault
 
 if TYPE_CHECKING:
     from rga.findings.schema import Cause, Findings
@@ -48,8 +49,8 @@ def place_words(places: Iterable[Any]) -> str:
 
 def verdict_sentence(findings: "Findings") -> str:
     """The verdict in a few sentences."""
-    faults = [c.effect["sensor"] for c in findings.causes if c.effect["kind"] == "sensor_fault"]
-    causes = [c for c in findings.causes if c.effect["kind"] != "sensor_fault"]
+    faults = [c.effect["sensor"] for c in findings.causes if is_fault(c.effect)]
+    causes = [c for c in findings.causes if not is_fault(c.effect)]
     told = []
     if causes:
         told.append(f"What the model leaves out: {'; and '.join(map(_cause_words, causes))}.")

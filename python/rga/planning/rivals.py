@@ -11,11 +11,10 @@ from rga.experiments.explanation import CandidateModel, explanation
 from rga.findings.phrases import effect_words
 from rga.findings.schema import Cause, Findings
 from rga.model import Effect, Model, read_effect
+from rga.model.effects.sensors.sensor_fault import is_fault
 
 #: rivals of a cause that are separated, and alternatives against which one without is confirmed
 NEAREST = 4
-#: kind of a channel that does not work, which is no explanation of the structure
-FAULT = "sensor_fault"
 
 
 def rival_pairs(model: Model, findings: Findings) -> list[tuple[CandidateModel, CandidateModel]]:
@@ -27,7 +26,7 @@ def rival_pairs(model: Model, findings: Findings) -> list[tuple[CandidateModel, 
     Raises:
         InputError: an effect of the findings is unknown, or does not fit the model.
     """
-    causes = [cause for cause in findings.causes if cause.effect["kind"] != FAULT]
+    causes = [cause for cause in findings.causes if not is_fault(cause.effect)]
     if not causes:
         return []
     named = [cause.effect for cause in causes]
@@ -49,9 +48,7 @@ def rival_pairs(model: Model, findings: Findings) -> list[tuple[CandidateModel, 
 
 def working_sensors(model: Model, findings: Findings) -> list[str]:
     """Sensors of the model that no finding calls faulty."""
-    faulty = {
-        cause.effect.get("sensor") for cause in findings.causes if cause.effect["kind"] == FAULT
-    }
+    faulty = {cause.effect.get("sensor") for cause in findings.causes if is_fault(cause.effect)}
     return [name for name in model.sensors if name not in faulty]
 
 

@@ -5,6 +5,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rga.findings.schema import Explanation, Findings
+from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.report.drawing.places import place_names
 from rga.report.figures.figure_style import INK, STEEL, inline, style
 from rga.report.figures.gain import dumbbells
@@ -39,7 +40,7 @@ def ranked(explanations: list[Explanation]) -> list[Explanation]:
 
 def kept(findings: Findings) -> Explanation | None:
     """The explanation that the causes are, else the one with the largest log-odds."""
-    causes = [c.effect for c in findings.causes if c.effect.get("kind") != "sensor_fault"]
+    causes = [c.effect for c in findings.causes if not is_fault(c.effect)]
     for one in findings.explanations:
         if causes and _identity(one.effects) == _identity(causes):
             return one
@@ -47,5 +48,5 @@ def kept(findings: Findings) -> Explanation | None:
 
 
 def _identity(effects: list[dict[str, object]]) -> list[str]:
-    real = (effect for effect in effects if effect.get("kind") != "sensor_fault")
+    real = (effect for effect in effects if not is_fault(effect))
     return sorted(f"{effect.get('kind')} {sorted(place_names(effect))}" for effect in real)

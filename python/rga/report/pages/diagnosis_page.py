@@ -8,7 +8,8 @@ import numpy as np
 from rga.diagnosis.checks.leave_one_out import unseen_groups
 from rga.diagnosis.member_forces import member_forces
 from rga.findings import Findings
-from rga.findings.phrases import effect_words
+from rga.findings.phrases import effect_words, kind_words
+from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.report.figures.bridge import draw_bridge, draw_residuals
 from rga.report.figures.deviation import percent_off, runs
 from rga.report.figures.explanations import draw_explanations, kept, ranked
@@ -40,7 +41,7 @@ def page(findings: Findings) -> dict[str, Any]:
     """The variables of the template."""
     account = findings.account
     model, record = account.model, account.record
-    effects = [cause for cause in findings.causes if cause.effect.get("kind") != "sensor_fault"]
+    effects = [cause for cause in findings.causes if not is_fault(cause.effect)]
     series = part("The readings", draw_series, findings)
     # The first sentence is the headline; what follows is read below it, and the gain only once.
     headline, *rest = re.split(r"(?<=\.) (?=[A-Z])", findings.sentence())
@@ -99,7 +100,7 @@ def page(findings: Findings) -> dict[str, Any]:
         "looks_like": findings.unexplained.looks_like,
         "unexplained": part("The patterns that are left", unexplained, account),
         "unidentifiable": [
-            (plain(one.kind), one.place, number(one.d_prime_at_largest))
+            (kind_words(one.kind), one.place, number(one.d_prime_at_largest))
             for one in sorted(findings.unidentifiable, key=lambda one: (one.kind, one.place))
         ],
         "fold": len(findings.unidentifiable) > LONG_LIST,
@@ -150,7 +151,7 @@ def rejected(findings: Findings) -> list[dict[str, str]]:
     faults = {
         str(cause.effect.get("sensor")): cause
         for cause in findings.causes
-        if cause.effect.get("kind") == "sensor_fault"
+        if is_fault(cause.effect)
     }
     names = [n for n, out in zip(account.record.sensors, account.rejected, strict=True) if out]
     found = []
@@ -170,7 +171,7 @@ def rejected(findings: Findings) -> list[dict[str, str]]:
 def tasks(findings: Findings) -> list[tuple[str, str, str]]:
     """The first thing that every cause calls for: its kind, what sort of action, in words."""
     effects = [cause.effect for cause in findings.causes]
-    return [(plain(str(effect.get("kind"))), *actions(effect)[0]) for effect in effects]
+    return [(kind_words(str(effect.get("kind"))), *actions(effect)[0]) for effect in effects]
 
 
 def forces(findings: Findings) -> dict[str, Any] | None:

@@ -11,6 +11,15 @@ from rga.model.effects.sensors.places import Sensors
 from rga.model.readings import Readings
 
 
+def is_fault(effect: Mapping[str, Any]) -> bool:
+    """Whether an effect, as in a model file, is a channel that does not work.
+
+    >>> is_fault({"kind": "sensor_fault", "sensor": "S1", "mode": "dead"})
+    True
+    """
+    return effect.get("kind") == "sensor_fault"
+
+
 class SensorFault(Effect):
     """A sensor that does not work: its channel says nothing.
 
