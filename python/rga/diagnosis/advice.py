@@ -1,4 +1,4 @@
-"""The one measurement that would tell a cause from its rival: a sensor, or a load test."""
+"""The one measurement that would separate a cause from its rival: a sensor, or a load test."""
 
 from contextlib import suppress
 

@@ -51,7 +51,7 @@ class Forces:
 def member_forces(account: DiagnosisArrays) -> Forces | None:
     """Forces with and without the causes; None where no cause can change any.
 
-    A gauge tells the force of its member by way of the extended model: the measured strain over
+    A gauge gives the force of its member by way of the extended model: the measured strain over
     the simulated one, times the simulated force. For a bar that is strain times EA, with the
     noise and the errors of the gauge that were found taken out.
     """

@@ -41,7 +41,7 @@ from rga.diagnosis.search.stepwise import (
     weighed,
     without_needless,
 )
-from rga.diagnosis.verdict import doubts_of, verdict
+from rga.diagnosis.verdict import reasons_for_doubt, verdict
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.criteria import Criteria
@@ -68,7 +68,7 @@ def diagnose(
         record: measured data.
         criteria: what decides the verdict; None: the default ones.
         seed: of the bootstrap of the gain.
-        progress: told a stage and the share of it that is done.
+        progress: called with a stage and the share of it that is done.
 
     Returns:
         Findings with verdict, causes, gain, and what stays unexplained.
@@ -131,15 +131,15 @@ def _diagnose(
     share = patterns.share_left(found.problem)
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
-    doubts = doubts_of(record.sensors, prepared.faults, found, dropped, off, gained)
-    doubts += [
+    reasons = reasons_for_doubt(record.sensors, prepared.faults, found, dropped, off, gained)
+    reasons += [
         f"channel {name} answers the loads in a way of its own, likelier than causes that would "
         "move other channels too: no cause was looked for in it"
         for name in prepared.apart
     ]
-    doubts += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
+    reasons += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
     structure = (
-        bool(doubts)
+        bool(reasons)
         or share > criteria.structure.share
         or bool(bends(found.problem) or curves(found.problem))
     )
@@ -157,7 +157,7 @@ def _diagnose(
             *causes(found, effects, prepared.record, failed),
         ],
         unidentifiable=unidentifiable(screening.first, criteria.explanations.smallest_d_prime),
-        unexplained={"share": share, "looks_like": "; ".join([*doubts, pattern])},
+        unexplained={"share": share, "looks_like": "; ".join([*reasons, pattern])},
         explanations=explanations(tried, found, prepared.record),
         groups=groups(account, grouped),
         contexts=contexts(found.problem, model),
@@ -186,10 +186,10 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     doubtful = problem is not found.problem
     if doubtful:
         found = weighed(problem, found.base, found.fit, screening, progress)
-    bent, curved = bends(found.problem), curves(found.problem)
-    if bent or curved:
+    sloped, curved = bends(found.problem), curves(found.problem)
+    if sloped or curved:
         doubtful = True
-        free = with_free_slopes(found.problem, bent, free_channels(found.problem, curved))
+        free = with_free_slopes(found.problem, sloped, free_channels(found.problem, curved))
         standing = without_needless(free, found)
         if len(standing.hypotheses) < len(found.fit.hypotheses):
             problem, standing = settled_with(found.base, found.problem, standing)

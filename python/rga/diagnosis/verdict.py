@@ -12,7 +12,7 @@ from rga.diagnosis.search.stepwise import Found
 from rga.findings.phrases import place_words
 from rga.findings.schema import Verdict
 
-#: misfits that are told in words: a sentence of more is not read; all stand in the findings
+#: misfits that are reported in words: a sentence of more is not read; all stand in the findings
 MOST_MISFITS = 5
 
 
@@ -28,7 +28,7 @@ def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
     return "ambiguous" if rivals else "named"
 
 
-def doubts_of(
+def reasons_for_doubt(
     channels: Sequence[str],
     faults: Sequence[BrokenChannel],
     found: Found,
@@ -51,23 +51,23 @@ def doubts_of(
         "readings fitted, and rows and channels left out do not confirm it"
         for one in dropped
     ]
-    # A kind with two parameters, or from another row on, is told once.
-    told = list(dict.fromkeys(fallen))
-    told += [one.words for one in off[:MOST_MISFITS]]
+    # A kind with two parameters, or from another row on, is reported once.
+    reasons = list(dict.fromkeys(fallen))
+    reasons += [one.words for one in off[:MOST_MISFITS]]
     if len(off) > MOST_MISFITS:
-        told.append(f"{len(off) - MOST_MISFITS} more channels or groups are off")
+        reasons.append(f"{len(off) - MOST_MISFITS} more channels or groups are off")
     broken = {fault.sensor for fault in faults}
     criteria = found.problem.criteria.fit
     if len(broken) >= criteria.broken_share * len(channels):
-        told.append(f"{len(broken)} of {len(channels)} channels do not work")
+        reasons.append(f"{len(broken)} of {len(channels)} channels do not work")
     if found.fit.hypotheses and gained.after >= gained.before:
-        told.append(
+        reasons.append(
             "rows that no step saw come no closer by the causes: their gap is "
             f"{gained.before:.3g} times the noise without and {gained.after:.3g} with them"
         )
     if gained.after > criteria.held_out_gap:
         members, gains = found.problem.levels[:2]
-        told.append(
+        reasons.append(
             f"the gap on rows that no step saw is {gained.after:.2g} times the noise: members that "
             f"are off by {members:.1%} and gauges by {gains:.1%}, as they may be as built, would "
             "explain it, and so might something that no kind of effect says"
@@ -76,8 +76,8 @@ def doubts_of(
     if (found.problem.levels > criteria.implausible * plausible).any():
         worst = int(np.argmax(found.problem.levels / plausible))
         of = ("the stiffness of members", "gains of channels", "responses to the loads")[worst]
-        told.append(
+        reasons.append(
             f"{of} would have to scatter by {found.problem.levels[worst]:.1%}, and "
             f"{plausible[worst]:.0%} is plausible"
         )
-    return told
+    return reasons

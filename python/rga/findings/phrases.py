@@ -51,42 +51,42 @@ def verdict_sentence(findings: "Findings") -> str:
     """The verdict in a few sentences."""
     faults = [c.effect["sensor"] for c in findings.causes if is_fault(c.effect)]
     causes = [c for c in findings.causes if not is_fault(c.effect)]
-    told = []
+    sentences = []
     if causes:
-        told.append(f"What the model leaves out: {'; and '.join(map(_cause_words, causes))}.")
+        sentences.append(f"What the model leaves out: {'; and '.join(map(_cause_words, causes))}.")
         held = findings.gap.held_out
         low, high = held.gain_ci90
         moves = "falls" if held.gain > 0 else "rises"
-        doubt = "" if low > 0 else "; so the gain is not sure"
-        told.append(
+        unsure = "" if low > 0 else "; so the gain is not sure"
+        sentences.append(
             f"By readings that no step saw the gap {moves} from {held.before:.3g} to "
             f"{held.after:.3g} times the noise (gain {held.gain:.3g}, 90 % interval {low:.3g} to "
-            f"{high:.3g}{doubt})."
+            f"{high:.3g}{unsure})."
         )
     elif findings.verdict == "nothing_wrong":
-        told.append("Nothing is wrong with the model that these data could show.")
+        sentences.append("Nothing is wrong with the model that these data could show.")
     elif findings.verdict == "unknown":
-        told.append("The model is wrong, and no kind of effect that is known explains it.")
+        sentences.append("The model is wrong, and no kind of effect that is known explains it.")
     elif findings.verdict == "unidentifiable":
-        told.append("What was asked cannot show in these data.")
+        sentences.append("What was sought cannot show in these data.")
     if faults:
-        told.append(f"Channels that do not work: {', '.join(map(str, faults))}.")
+        sentences.append(f"Channels that do not work: {', '.join(map(str, faults))}.")
     if findings.misfits and findings.verdict != "nothing_wrong":
-        told.append(f"Channels that work and do not fit: {', '.join(findings.misfits)}.")
+        sentences.append(f"Channels that work and do not fit: {', '.join(findings.misfits)}.")
     if findings.verdict in ("partial", "unknown"):
-        told.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
-    return " ".join(told)
+        sentences.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
+    return " ".join(sentences)
 
 
 def _cause_words(cause: "Cause") -> str:
-    """A cause in words, and what these data cannot tell it from."""
+    """A cause in words, and what these data cannot separate it from."""
     likeliest = effect_words(cause.effect)
     if not cause.rivals:
         return likeliest
     others = [effect_words(rival) for rival in cause.rivals[:RIVALS]]
     if more := len(cause.rivals) + cause.rivals_omitted - len(others):
         others.append(f"one of {more} more")
-    return f"either {likeliest}, or what these data cannot tell from it: {', or '.join(others)}"
+    return f"either {likeliest}, or what these data cannot separate from it: {', or '.join(others)}"
 
 
 def _onset(effect: Mapping[str, Any]) -> str:

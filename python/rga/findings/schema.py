@@ -63,7 +63,7 @@ class Cause(FindingsPart):
         rivals: effects within `rivals.log_odds` of the criteria: the nearest of each other kind,
             the nearest first, then further places of these kinds and of its own.
         rivals_omitted: how many more there are.
-        separated_by: in words: the sensor or load test that would tell it from its rivals.
+        separated_by: in words: the sensor or load test that would separate it from its rivals.
         why: in words: what in the data shows it.
     """
 

@@ -27,11 +27,11 @@ def local_axes(
 
 def member_axes(model: Model, member: str) -> tuple[float, FloatArray]:
     """Length [m] of one member of a model, and its axes x, y, z as rows, float[3, 3]."""
-    told = model.members[member]
+    own = model.members[member]
     structure = {
-        "coordinates": np.array([model.nodes[node] for node in told.nodes], dtype=float),
+        "coordinates": np.array([model.nodes[node] for node in own.nodes], dtype=float),
         "ends": np.array([[0, 1]]),
-        "local_y": np.array([told.local_y or (np.nan, np.nan, np.nan)], dtype=float),
+        "local_y": np.array([own.local_y or (np.nan, np.nan, np.nan)], dtype=float),
     }
     lengths, axes = local_axes(structure, np.array([0]))
     return float(lengths[0]), np.asarray(axes[0])

@@ -58,8 +58,8 @@ def normal_of(model: Model) -> FloatArray | None:
 
 def _about(model: Model, member: str, axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Shares of an axis in local y and z, float[2], and EI/L about these, float[2] [N m/rad]."""
-    told = model.members[member]
-    section = model.sections[told.section]
+    own = model.members[member]
+    section = model.sections[own.section]
     length, axes = member_axes(model, member)
-    stiffness = model.materials[told.material].E / length * np.array([section.Iy, section.Iz])
+    stiffness = model.materials[own.material].E / length * np.array([section.Iy, section.Iz])
     return np.abs(axes[1:] @ axis), stiffness

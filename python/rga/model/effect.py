@@ -180,7 +180,7 @@ class Effect(BaseModel):
 
     @classmethod
     def priors(cls, model: "Model", place: Mapping[str, Any]) -> dict[str, Prior]:
-        """What is known beforehand of each parameter at a place."""
+        """The prior of each parameter at a place."""
         return {}
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Parameters of effects: their values in a model file, and what is known of them beforehand."""
+"""Parameters of effects: their values in a model file, and their priors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -78,7 +78,7 @@ class Place:
 
 
 class Prior(Protocol):
-    """What is known of a parameter beforehand, as a map from a standard normal variable z."""
+    """The prior of a parameter, as a map from a standard normal variable z."""
 
     def value(self, z: float) -> float: ...
 

@@ -16,13 +16,13 @@ class Readings:
         values: float[rows, sensors] in the units of the sensors.
         columns: sensor -> column.
         time: float[rows] [s].
-        warmth: temperature change of each sensor's surroundings, float[rows] [K].
+        temperature_change: temperature change of each sensor's surroundings, float[rows] [K].
     """
 
     values: FloatArray
     columns: dict[str, int]
     time: FloatArray
-    warmth: FloatArray
+    temperature_change: FloatArray
 
     def at(self, sensors: str | list[str]) -> list[int]:
         """Columns of the sensors of a place."""

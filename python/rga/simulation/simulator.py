@@ -146,7 +146,9 @@ class Simulator:
             values=response.quantities.copy(),
             columns={name: number for number, name in enumerate(self.model.sensors)},
             time=time,
-            warmth=sum((v["delta"] for v in values.values() if "delta" in v), np.zeros(rows)),
+            temperature_change=sum(
+                (v["delta"] for v in values.values() if "delta" in v), np.zeros(rows)
+            ),
         )
         for name, effect in self.model.effects.items():
             own = values[name] if name in values else effect.values(response.contexts, rows)

@@ -194,7 +194,7 @@ def test_of_many_bridges_no_findings_are_lost(files: Path, monkeypatch: pytest.M
         ),
         (
             "rga.diagnosis.assemble.causes.Advice",
-            "what would tell the causes from their rivals",
+            "what would separate the causes from their rivals",
             InputError("the structure can move", "node L1, uz", "hold it"),
         ),
         (

@@ -1,4 +1,4 @@
-"""Causes as findings tell them: sizes, onsets, rivals, and what would tell them apart."""
+"""Causes as findings report them: sizes, onsets, rivals, and what would separate them."""
 
 from collections.abc import Sequence
 
@@ -27,7 +27,7 @@ FAULT_NATS = float(np.log(1000.0))
 def causes(
     found: Found, effects: Sequence[Effect], record: Record, warnings: list[str]
 ) -> list[Cause]:
-    """The causes with their rivals and with what would tell them apart.
+    """The causes with their rivals and with what would separate them.
 
     Args:
         found: the end of a search.
@@ -35,13 +35,13 @@ def causes(
         record: gives times as they are written.
         warnings: to which it is added where that cannot be worked out.
     """
-    told: list[Cause] = []
+    causes: list[Cause] = []
     most = found.problem.criteria.rivals.listed
     for number, effect in enumerate(effects):
         rivals = rivals_of(found, number)
         nearest = (found.alternatives[number] or (None,))[0]
         d_prime, d_perp = _sizes(found, number, nearest)
-        told.append(
+        causes.append(
             Cause(
                 effect=content(effect),
                 onset=effect.onset,
@@ -56,9 +56,9 @@ def causes(
             )
         )
     return spared(
-        "what would tell the causes from their rivals",
-        lambda: _with_advice(told, found, record),
-        told,
+        "what would separate the causes from their rivals",
+        lambda: _with_advice(causes, found, record),
+        causes,
         warnings,
     )
 
@@ -78,7 +78,7 @@ def fault_cause(fault: BrokenChannel, effect: SensorFault) -> Cause:
 
 
 def rivals_of(found: Found, number: int) -> list[Alternative]:
-    """What the data cannot tell from a cause: the nearest of each other kind, then the rest."""
+    """What the data cannot separate from a cause: the nearest of each other kind, then the rest."""
     apart = found.problem.criteria.rivals.log_odds
     rivals = sorted(
         (one for one in found.alternatives[number] if one.behind < apart),
@@ -92,12 +92,12 @@ def rivals_of(found: Found, number: int) -> list[Alternative]:
     return [*others, *(one for one in rivals if all(one is not other for other in others))]
 
 
-def _with_advice(told: Sequence[Cause], found: Found, record: Record) -> list[Cause]:
-    """The causes with what would tell each from its nearest rival."""
+def _with_advice(causes: Sequence[Cause], found: Found, record: Record) -> list[Cause]:
+    """The causes with what would separate each from its nearest rival."""
     model, problem, advice = found.base.model, found.problem, None
     together = explanation("the causes", model, estimated_effects(found.fit, record))
     advised = []
-    for number, cause in enumerate(told):
+    for number, cause in enumerate(causes):
         words = ""
         if found.alternatives[number]:
             nearest = found.alternatives[number][0].fit
@@ -129,8 +129,8 @@ def _sizes(found: Found, number: int, nearest: Alternative | None) -> tuple[floa
 def _onset_interval(
     found: Found, number: int, record: Record
 ) -> tuple[float | str, float | str] | None:
-    told = found.fit.hypotheses[number].onset
-    if told is None:
+    onset = found.fit.hypotheses[number].onset
+    if onset is None:
         return None
     possible = beginnings(found.problem, found.base, found.fit, number)
     moments, below = possible.moments, np.cumsum(possible.chances)
@@ -138,7 +138,7 @@ def _onset_interval(
     first = moments[max(0, int(np.searchsorted(below, 0.05)) - 1)]
     last = moments[min(int(np.searchsorted(below, 0.95)), len(moments) - 1)]
     # The likeliest beginning may not be at the likeliest moment of all beginnings together.
-    first, last = min(first, told), max(last, told)
+    first, last = min(first, onset), max(last, onset)
     early, late = (record.time_label(float(moment) - record.origin) for moment in (first, last))
     return early, late
 

@@ -66,7 +66,7 @@ def _effect(one: Fit, number: int, record: Record) -> Effect:
 
 
 def _dead(effect: Effect, least: float) -> Effect:
-    """A gain of nearly nothing told as what it is: a channel that is dead."""
+    """A gain of nearly nothing reported as what it is: a channel that is dead."""
     if isinstance(effect, SensorGain) and isinstance(effect.factor, Estimated):
         low, high = effect.factor.ci90
         if low < least < high or abs(effect.factor.value) < least:

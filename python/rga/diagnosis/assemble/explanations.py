@@ -24,7 +24,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
         return []
     nothing = tried[0]
     named = next((one for one in tried if one.fit and _same(one.fit, found.fit)), nothing)
-    told = []
+    explanations = []
     for one in tried:
         if one.fit is None:
             words, effects, odds = "a free gain on every channel", [], 0.0
@@ -34,7 +34,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
             odds = one.fit.log_evidence
             remark = _remark(one, nothing, named, found)
-        told.append(
+        explanations.append(
             Explanation(
                 words=words,
                 effects=effects,
@@ -44,7 +44,7 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
                 remark=remark,
             )
         )
-    return sorted(told, key=lambda one: -one.log_odds)
+    return sorted(explanations, key=lambda one: -one.log_odds)
 
 
 def unidentifiable(prospects: Sequence[Prospect], smallest: float) -> list[Unidentifiable]:
@@ -62,7 +62,7 @@ def unidentifiable(prospects: Sequence[Prospect], smallest: float) -> list[Unide
 
 def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
     """Why an explanation was kept or rejected."""
-    assert one.fit is not None  # the caller tells free gains apart
+    assert one.fit is not None  # the caller takes free gains out
     if not one.fit.hypotheses:
         return "what every other explanation is measured against"
     causes, criteria = found.fit, found.problem.criteria

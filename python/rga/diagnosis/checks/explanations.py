@@ -63,7 +63,7 @@ def compare(
     Args:
         found: the search's end.
         prospects: of the first screening, the best first.
-        progress: told the share that is done.
+        progress: called with the share that is done.
     """
     problem, base = found.problem, found.base
     causes = found.fit
@@ -141,13 +141,13 @@ def _off_axis(
     stiff = [p for p in best if p.hypothesis.name == "joint_rigidity"]
     found = []
     for prospect in stiff:
-        bent = base.extended({"stiff joints": prospect.hypothesis.effect(prospect.z)})
+        stiffened = base.extended({"stiff joints": prospect.hypothesis.effect(prospect.z)})
         gauges = [
             one
-            for one in hypotheses(bent.model, problem.data.sensors, ())
+            for one in hypotheses(stiffened.model, problem.data.sensors, ())
             if one.name == "gauge_position"
         ]
-        gauge = Screening(problem, bent, gauges).first[:1]
+        gauge = Screening(problem, stiffened, gauges).first[:1]
         found += [([prospect.hypothesis, one.hypothesis], [*prospect.z, *one.z]) for one in gauge]
     return found
 

@@ -24,7 +24,7 @@ class Contrast:
     Attributes:
         against: the alternative's effect as fitted: kind and parameters.
         lead: log-odds of the cause over it, all channels counted.
-        channels: names, the one that tells them apart best first.
+        channels: names, the one that separates them best first.
         time: of the rows [s], float[rows].
         measured: readings less what the alternative predicts, float[rows, channels]; NaN where
             missing.
@@ -108,7 +108,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
         return []
     nothing = fit(problem, base, [], [])
     spread = variance(problem)
-    told = []
+    words = []
     for word, names in groups.items():
         blind = refit(hiding(problem, names), base, causes)
         columns = [problem.data.sensors.index(name) for name in names]
@@ -120,7 +120,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
             squares = problem.whole_residual(one.simulated) ** 2 / spread
             return float(squares[:, columns][seen].mean())
 
-        told.append(
+        words.append(
             Unseen(
                 group=word,
                 channels=list(names),
@@ -131,7 +131,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
                 gap_with=gap(blind),
             )
         )
-    return told
+    return words
 
 
 def hold(found: Found, number: int) -> Hold | None:

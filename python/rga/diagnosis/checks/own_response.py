@@ -1,8 +1,8 @@
 """A channel that answers the loads in a way of its own.
 
 A wire that picks up another channel, or a gauge that reads more than its member, answers the loads
-linearly, as a structure does, and alone among the channels. Causes of the structure may be bent to
-look like that. So a channel whose responses are free is held against all causes of the structure
+linearly, as a structure does, and alone among the channels. Causes of the structure may imitate
+that. So a channel whose responses are free is held against all causes of the structure
 together: by the marginal likelihood, which charges for every response that is free. Such a channel
 need not be broken (a gauge at a welded gusset reads the bending there): it is left out of the
 search, and reported as one that does not fit.

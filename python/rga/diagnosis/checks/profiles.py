@@ -58,7 +58,7 @@ def profiles(found: Found, number: int) -> list[Profile]:
     one = found.fit
     hypothesis, where = one.hypotheses[number], one.slices()[number]
     covariance = np.linalg.inv(one.information)
-    told = []
+    profiles = []
     for column, (name, prior) in zip(
         range(where.start, where.stop), hypothesis.priors.items(), strict=True
     ):
@@ -67,8 +67,8 @@ def profiles(found: Found, number: int) -> list[Profile]:
         values = [prior.value(float(one.z[column] + step * along[column])) for step in AWAY]
         height = heights - heights[len(AWAY) // 2]
         unit = hypothesis.kind.unit(name, hypothesis.place)
-        told.append(Profile(name, unit, np.array(values), AWAY, height))
-    return told
+        profiles.append(Profile(name, unit, np.array(values), AWAY, height))
+    return profiles
 
 
 def onset_profile(found: Found, number: int, first: float) -> Onset | None:

@@ -1,7 +1,7 @@
-"""Causes under doubt: where structure is left, the noise is not all that it is taken for.
+"""Causes examined: where structure is left, the noise is not all that it is taken for.
 
 Evidence is exact only for the noise that it assumes. Where sensors share a pattern that no cause
-explains, three things are asked of a cause beyond its evidence: that it helps channels which were
+explains, a cause needs three things beyond its evidence: that it helps channels which were
 not fitted, that its lead over a rival does not hang on a single channel, and where it does, that
 the rival does not predict unseen channels much better.
 """
@@ -85,7 +85,7 @@ def _nearer(one: Alternative, behind: float | None) -> Alternative:
 def with_better_prediction(found: Found) -> Found:
     """The causes, with a rival in the place of one where channels unseen speak for it.
 
-    Where the lead of a cause hangs on a channel, evidence cannot tell the two. What predicts
+    Where the lead of a cause hangs on a channel, evidence cannot separate the two. What predicts
     channels to which it was not fitted much better then goes before what fits better.
     """
     problem, base, criteria = found.problem, found.base, found.problem.criteria.rivals

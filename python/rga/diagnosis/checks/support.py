@@ -3,7 +3,7 @@
 Evidence is only as good as the noise and the freedom that it assumes. A cause of the structure
 stays where it brings the model closer to held-out rows, by an interval that leaves zero out, and
 where channels left out of the fit get no worse by it. Channels are left out in groups. That the
-others tell a parameter badly, and miss a group by chance, is no harm: a larger gap counts where
+others know a parameter badly, and miss a group by chance, is no harm: a larger gap counts where
 the readings of a group are less likely, as the others predict them. A cause at a sensor, which
 harms nobody else, stays where held-out rows do not speak against it, or where it is twice as sure.
 """

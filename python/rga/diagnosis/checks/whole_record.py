@@ -76,7 +76,7 @@ class WholeRecord:
         Within three deviations of what errors of the zero may be.
 
         Args:
-            part: tells the errors of the zero.
+            part: gives the errors of the zero.
             simulated: of all rows, float[rows, sensors].
         """
         variance = part.zero_variance
@@ -96,7 +96,7 @@ class WholeRecord:
         """What one simulation gains over another by the held-out readings.
 
         Rows that were held out right before an onset are not compared: in which of them the cause
-        began no row that was fitted tells.
+        began no row that was fitted shows.
 
         Args:
             before, after: float[rows, sensors].

@@ -30,7 +30,7 @@ EXACT = 1e-9
 
 @dataclass(frozen=True)
 class Level:
-    """What is known beforehand of the level of a family of random effects.
+    """The prior of the level of a family of random effects.
 
     Attributes:
         median, spread: of its log-normal prior [-].
@@ -105,8 +105,8 @@ def scatter_effects(
     of_contexts = [change for change, _ in calibrations]
     courses = _courses(np.hstack(known), [simulated, *members, *of_contexts, *moved])
 
-    def share(course: FloatArray) -> FloatArray:
-        return np.asarray(courses.T @ course)
+    def share(history: FloatArray) -> FloatArray:
+        return np.asarray(courses.T @ history)
 
     own = np.zeros((sensors, 1 + patterns.shape[1], sensors, courses.shape[1]))
     every = np.arange(sensors)
@@ -116,7 +116,7 @@ def scatter_effects(
         *(share(change).T for change in members),
         *own.reshape(-1, *own.shape[2:]),
         *(share(change).T for change in of_contexts),
-        *(np.outer(factor, share(course)) for factor in factors.T for course in drift.T),
+        *(np.outer(factor, share(history)) for factor in factors.T for history in drift.T),
         *(share(change).T for change in moved),
     ]
     of_channel = [1, *[2] * patterns.shape[1]]

@@ -112,7 +112,7 @@ def _step(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None
 def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
     """The row from which on a channel drifts in another way than before, if any does.
 
-    A reading is told by the one before, with a line that bends at a row or without: what only
+    A reading is predicted by the one before, with a line that bends at a row or without: what only
     wanders needs no such line. The loads fit a large drift in part, so that they are fitted anew
     beside it.
 
@@ -132,20 +132,20 @@ def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | No
             continue
         places = np.linspace(BESIDE, len(rows) - BESIDE, MOMENTS).astype(int)
         bends = np.maximum(clock[:, None] - clock[places - 1], 0.0)
-        # All moments at once: what neither the loads nor the reading before tells of each line.
+        # All moments at once: what neither the loads nor the reading before predicts of each line.
         known, strength, _ = thin_svd(before)
         known = known[:, strength > 1e-12 * strength[0]]
         together = np.column_stack([column[1:], clock, bends])
         rest = together - known @ (known.T @ together)
-        told, lines = rest[:, 0], rest[:, 1:]
+        unexplained, lines = rest[:, 0], rest[:, 1:]
         lines = np.where((lines**2).sum(0) > SEEN * (together[:, 1:] ** 2).sum(0), lines, 0.0)
         line, bends = lines[:, 0], lines[:, 1:]
         whole = np.maximum((bends**2).sum(0), TINY)
         bends = bends - np.outer(line, line @ bends) / max(float(line @ line), TINY)
         bends = np.where((bends**2).sum(0) > SEEN * whole, bends, 0.0)
-        fitted = (line @ told) ** 2 / max(float(line @ line), TINY)
-        fitted = fitted + (bends.T @ told) ** 2 / np.maximum((bends**2).sum(0), TINY)
-        wandering = max(float(told @ told), TINY)
+        fitted = (line @ unexplained) ** 2 / max(float(line @ line), TINY)
+        fitted = fitted + (bends.T @ unexplained) ** 2 / np.maximum((bends**2).sum(0), TINY)
+        wandering = max(float(unexplained @ unexplained), TINY)
         gained = -freedom / 2 * np.log(np.maximum(1 - fitted / wandering, SEEN))
         place = int(np.argmax(gained))
         if gained[place] > GROWS and (best is None or gained[place] > best[0]):
@@ -347,7 +347,7 @@ def _heavy_tailed(
 
 
 def _widening(freedom: float) -> float:
-    """Variance that Gaussian noise has where it tells as much as Student's t of scale one."""
+    """Variance that Gaussian noise has where it informs as much as Student's t of scale one."""
     return (freedom + 3) / (freedom + 1)
 
 

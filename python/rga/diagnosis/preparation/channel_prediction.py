@@ -16,7 +16,7 @@ from rga.model.schema import Model
 DRAWN_IN = 4.0
 #: readings that a least-squares fit leaves out: beyond so many robust deviations, at so many goes
 FAR, GOES = 4.0, 4
-#: rows for each course that is fitted, at least
+#: rows for each time history that is fitted, at least
 ROWS_PER_COURSE = 12
 #: channels of a kind of which a median says how noisy one is usually
 ALIKE = 3
@@ -40,7 +40,7 @@ class OwnParts:
         own: the same less what the other channels predict of it, float[rows, sensors]; zero where
             missing.
         usual: root mean square that `own` of a working channel has, float[sensors]; NaN where
-            nothing tells.
+            nothing shows it.
         usual_slow: the same of its means over some rows.
     """
 

@@ -4,7 +4,7 @@ For a line (where a train stands, how fast it goes) the guess must not lean on t
 response, since the model is wrong somewhere: each sensor is compared after the gain that suits it
 best, by the share of its variance that is left. For contexts that are free in every row all rows
 are searched over the ranges and then moved by Gauss-Newton steps of their own, because products of
-contexts (how much load stands where) mislead a search that begins in the middle of the ranges.
+contexts (how much load stands where) mislead a search that begins at the centre of the ranges.
 """
 
 from collections.abc import Callable
@@ -36,7 +36,7 @@ def guess_lines(simulator: Simulator, data: Data, progress: Callable[[float], No
     Args:
         simulator: the simulation as it was given.
         data: readings and belief.
-        progress: told the share that is done.
+        progress: called with the share that is done.
     """
     for name in data.belief.lines:
         variable = simulator.model.context[name]

@@ -69,7 +69,7 @@ def prepare(
     Args:
         model: as it was given.
         record: as it was measured.
-        progress: told the share that is done.
+        progress: called with the share that is done.
         criteria: what decides a verdict; None: the default ones.
 
     Raises:
@@ -92,7 +92,7 @@ def prepare(
         data = _without(data, lost)
     chosen = _loaded_rows(simulator, data)
     data = guess_rows(simulator, data.rows(chosen))
-    doubts = _doubts(model, data, data.predict(simulator), record)
+    suspicious = _suspicious(model, data, data.predict(simulator), record)
     for _ in range(GOES):
         broken = _broken(simulator, data, record)
         if not broken:
@@ -108,7 +108,7 @@ def prepare(
         )
     basis = load_basis(simulator, data)
     spikes = lone_spikes(data.readings, data.observed, basis, criteria.channels)
-    warnings = [*record.warnings, *rezeroed, *doubts]
+    warnings = [*record.warnings, *rezeroed, *suspicious]
     if chosen.sum() < criteria.record.few_rows:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -178,9 +178,9 @@ def _beyond_loads(
     return found
 
 
-def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
+def _suspicious(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
     """What looks like a slip with units, or a context that is measured no more."""
-    told = []
+    warnings = []
     limits = data.criteria.record
     readings = np.where(data.observed, data.readings, np.nan)
     factors = [
@@ -191,7 +191,7 @@ def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> 
     if len(factors) > data.readings.shape[1] / 2:
         factor = float(np.median(factors))
         if not 1 / limits.unit_factor < factor < limits.unit_factor:
-            told.append(
+            warnings.append(
                 f"the readings go with the simulation and are about {factor:.2g} times as large: "
                 "check the units of record and model before any cause"
             )
@@ -201,17 +201,17 @@ def _doubts(model: Model, data: Data, simulated: FloatArray, record: Record) -> 
             continue
         low, high = model.context[name].range
         if ((column < low) | (column > high)).all():
-            told.append(
+            warnings.append(
                 f"{name} lies outside its range {low:g}..{high:g} in every row: check its unit and "
                 "its zero before any cause"
             )
         last = int((column[::-1] == column[-1]).argmin() if (column != column[-1]).any() else 0)
         if last > limits.still_share * len(column):
-            told.append(
+            warnings.append(
                 f"{name} reads {column[-1]:g} exactly in the last {last} of {len(column)} rows: "
                 "check its sensor before any cause"
             )
-    return told
+    return warnings
 
 
 def _correlation(own: FloatArray, shown: FloatArray, limits: RecordCriteria) -> float:
@@ -235,8 +235,8 @@ def _data(model: Model, record: Record, criteria: Criteria) -> Data:
     order = {name: number for number, name in enumerate(model.sensors)}
     belief = first_belief(model, record.origin + record.time, record.contexts)
     # A row whose context is missing cannot be simulated: its readings are left aside.
-    told = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
-    complete = np.all(told, axis=0) if told else np.ones(len(record.time), dtype=bool)
+    known = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
+    complete = np.all(known, axis=0) if known else np.ones(len(record.time), dtype=bool)
     columns = [order[name] for name in record.sensors]
     return Data(
         sensors=tuple(record.sensors),

@@ -1,9 +1,9 @@
-"""Channels that do not work, told by what the loads and the other channels predict of them.
+"""Channels that do not work, found by what the loads and the other channels predict of them.
 
 A channel is rejected where it says what no structure under these loads says, alone among the
 channels, and far beyond its noise: whatever broke it. What an effect of the vocabulary could do to
 a channel is left to the search for causes: a jump, a slope, another response from some row on, or
-the course of a bearing that sticks.
+the time history of a bearing that sticks.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,7 +27,7 @@ from rga.findings.criteria.channels import ChannelCriteria
 from rga.model.effects.sensors.zero_offset import offset_scale
 from rga.model.schema import Model
 
-#: rows for each course of the loads to which the response may change from a moment on
+#: rows for each time history of the loads to which the response may change from a moment on
 ROWS_PER_CHANGE = 16
 #: shares of the record over which a broken channel may have worked
 PARTS = np.arange(0.3, 0.96, 0.05)
@@ -58,8 +58,8 @@ def broken_channels(
         observed: bool[rows, sensors].
         simulated: float[rows, sensors].
         basis: courses of the loads, float[rows, courses].
-        effects: asked where a channel is suspect: what effects of the structure change that no
-            course of the loads shows, float[rows, sensors] each.
+        effects: called where a channel is suspect: what effects of the structure change that no
+            time history of the loads shows, float[rows, sensors] each.
         onsets: whether a search for causes may say that something begins late.
         criteria: when a channel is broken.
     """

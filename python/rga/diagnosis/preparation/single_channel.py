@@ -1,4 +1,4 @@
-"""Faults of a channel that its readings tell by themselves, or beside the simulation."""
+"""Faults of a channel that its readings show by themselves, or beside the simulation."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -102,18 +102,20 @@ def silent(
     criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
     """A channel that repeats itself to the last reading, where it should move."""
-    told, expected = column[seen], simulated[seen]
-    changes = np.flatnonzero(np.diff(told) != 0)
+    measured, expected = column[seen], simulated[seen]
+    changes = np.flatnonzero(np.diff(measured) != 0)
     first = int(changes[-1]) + 1 if len(changes) else 0
     # Readings of coarse steps repeat themselves by chance, the more the coarser.
-    repeats = float((np.diff(told[: first + 1]) == 0).mean()) if first else 1.0
-    by_chance = 1 + np.log(len(told)) / np.log(1 / max(repeats, 1e-3)) if repeats < 1 else np.inf
-    silent = len(told) - first
+    repeats = float((np.diff(measured[: first + 1]) == 0).mean()) if first else 1.0
+    by_chance = np.inf
+    if repeats < 1:
+        by_chance = 1 + np.log(len(measured)) / np.log(1 / max(repeats, 1e-3))
+    silent = len(measured) - first
     if silent < max(criteria.still_rows, criteria.still_chance * by_chance):
         return None
     if expected[first:].std() <= criteria.still_moves * expected.std():
         return None
-    row, value = int(np.flatnonzero(seen)[first]), told[first]
+    row, value = int(np.flatnonzero(seen)[first]), measured[first]
     why = f"it reads {value:.6g} exactly from row {row + 1} to the last"
     return BrokenChannel(sensor, "dead" if value == 0 else "stuck", why, silent, row)
 

@@ -2,7 +2,7 @@
 
 A logger without a tare shows every channel from a zero of its own. Then nothing but changes can be
 compared, and the record is taken as zeroed over all of its rows. A logger that is zeroed again in
-mid-record starts anew there: the longer part is kept. Both are told. Where contexts have to be
+mid-record starts anew there: the longer part is kept. Both are reported. Where contexts have to be
 inferred the readings are taken as they are.
 """
 
@@ -44,11 +44,11 @@ def with_own_zeros(
     if again is not None and not _one_cause(model, simulator, data, simulated, noise, again):
         return _longer_part(record, again)
     if not len(data.tare) and _start_anywhere(model, simulator, data, simulated, noise):
-        told = (
+        warning = (
             "the readings start from zeros of their own: offsets of all channels are taken as "
             "unknown, and the record as zeroed over all of its rows"
         )
-        return _zeroed(record, np.ones(len(record), dtype=bool)), [told]
+        return _zeroed(record, np.ones(len(record), dtype=bool)), [warning]
     return record, []
 
 
@@ -115,13 +115,13 @@ def _changes(
 
 
 def _constant(simulator: Simulator, data: Data) -> FloatArray:
-    """A constant course, less what the courses of the loads have of it, float[rows]."""
+    """A constant, less what the time histories of the loads have of it, float[rows]."""
     loads = simulator.load_coefficients(data.belief.table)
     u, s, _ = thin_svd(loads)
     courses = u[:, s > 1e-6 * s.max(initial=0.0)]
     ones = np.ones(len(data.time))
     rest = ones - courses @ (courses.T @ ones)
-    # Under loads that hardly vary no constant can be told from their response.
+    # Under loads that hardly vary no constant can be distinguished from their response.
     return rest if rest @ rest > 1e-3 * len(rest) else ones
 
 
@@ -203,11 +203,11 @@ def _longer_part(record: Record, row: int) -> tuple[Record, list[str]]:
     later = row < len(record) - row
     kept = rows >= row if later else rows < row
     part = replace(record, readings=np.where(kept[:, None], record.readings, np.nan))
-    told = (
+    warning = (
         f"all channels read zero again from {record.time_label(float(record.time[row]))} on: the "
         f"logger was zeroed anew, and only what comes {'after' if later else 'before'} is used"
     )
-    return _zeroed(part, kept) if later else part, [told]
+    return _zeroed(part, kept) if later else part, [warning]
 
 
 def _zeroed(record: Record, rows: BoolArray) -> Record:

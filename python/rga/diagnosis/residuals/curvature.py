@@ -3,7 +3,7 @@
 A linear structure shows combinations of the courses of its loads, whatever its stiffnesses. What
 the channels show along the square of a context beyond such combinations was put there by no cause
 that acts in proportion: the specification test of Ramsey (1969, J. Royal Statistical Society B 31,
-350), all channels together. A cause that follows the straight part of such a response is none.
+350), all channels together. A cause that follows the linear part of such a response is none.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from rga.arrays import FloatArray
-from rga.diagnosis.residuals.slopes import STRAIGHT, squares, straight_courses
+from rga.diagnosis.residuals.slopes import STRAIGHT, linear_histories, squares
 from rga.diagnosis.search.linearised import Calibration, Problem, load_basis
 from rga.numerics.decompositions import thin_svd
 
@@ -37,15 +37,15 @@ class Curve:
 def curves(problem: Problem) -> list[Curve]:
     """Measured contexts with whose square the channels go beyond chance."""
     data, rows = problem.data, problem.covariance.rows
-    bent = squares(straight_courses(problem))
-    names = [name for name in bent if name not in data.belief.latent]
+    curved = squares(linear_histories(problem))
+    names = [name for name in curved if name not in data.belief.latent]
     if not names:
         return []
     residual = problem.residual(problem.simulated)
     left = np.where(data.observed, residual - problem.explained_by_scatter(residual), 0.0)
     courses = _courses(load_basis(problem.simulator, data))
     known = courses.shape[1]
-    together = np.column_stack([courses, *(bent[name] for name in names)])
+    together = np.column_stack([courses, *(curved[name] for name in names)])
     sensors = len(data.sensors)
     sizes, squared, count = np.zeros((3, sensors, len(names)))
     for sensor in range(sensors):
@@ -79,14 +79,14 @@ def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
         problem: in which there are curves.
         found: those.
     """
-    straight = straight_courses(problem)
-    bent = squares(straight)
+    linear = linear_histories(problem)
+    curved = squares(linear)
     free = []
     for curve in found:
         size = STRAIGHT * float(np.sqrt((curve.sizes**2).mean()))
         for sensor, one in enumerate(np.diag(problem.noise.sigma)):
             if problem.data.observed[:, sensor].any():
-                free += [(np.outer(along[curve.context], one), size) for along in (straight, bent)]
+                free += [(np.outer(along[curve.context], one), size) for along in (linear, curved)]
     return free
 
 

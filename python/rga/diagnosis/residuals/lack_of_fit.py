@@ -76,7 +76,7 @@ def misfits(
 
 
 def _weight(problem: Problem, simulated: FloatArray, columns: list[int]) -> FloatArray | None:
-    """What a residual is multiplied by to tell the share by which channels read too much.
+    """What a residual is multiplied by to give the share by which channels read too much.
 
     float[rows, columns]; None where nothing is simulated.
     """

@@ -80,7 +80,7 @@ def shared_pattern(problem: Problem) -> Pattern | None:
         if rows < LEAST_PIECES:
             break
         scale = np.sqrt((columns**2).mean(0))
-        # A channel that tells a context has little left, all of it by what the others show.
+        # A channel that follows a context has little left, all of it by what the others show.
         largest = np.linalg.norm(columns / np.maximum(scale, 1.0), 2) ** 2 / rows
         edge = (1 + np.sqrt(sensors / rows)) ** 2
         if largest <= problem.criteria.structure.pattern_margin * edge:
@@ -175,19 +175,19 @@ def in_words(problem: Problem, contexts: Values) -> str:
     """What is left: patterns with what they follow, and the scatter that had to be assumed."""
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
     chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
-    bent = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
-    bent += [f"the readings go with the square of {one.context}" for one in curves(problem)]
-    scatter = "; ".join([*bent, chance])
+    curved = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
+    curved += [f"the readings go with the square of {one.context}" for one in curves(problem)]
+    scatter = "; ".join([*curved, chance])
     if problem.factors.shape[1] == 0:
         return f"nothing that varies in common from row to row; {scatter}"
-    told = []
+    patterns = []
     for one in leftovers(problem, contexts):
         strongest = np.argsort(-np.abs(one.pattern))[:4]
         signs = (
             f"{problem.data.sensors[k]} ({'+' if one.pattern[k] > 0 else '-'})" for k in strongest
         )
-        told.append(f"a pattern of {', '.join(signs)} that {one.follows}")
-    return f"{'; '.join(told)}; {scatter}"
+        patterns.append(f"a pattern of {', '.join(signs)} that {one.follows}")
+    return f"{'; '.join(patterns)}; {scatter}"
 
 
 def _drivers(

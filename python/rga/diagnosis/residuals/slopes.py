@@ -1,8 +1,8 @@
-"""Bends: responses to measured contexts that are no straight lines.
+"""Bends: responses to measured contexts that are not linear.
 
 What a measured context does is proportional to it as long as the structure is linear. A response
 along a curve shows as a part that goes with the square of a context, its own or another. Where
-there is one, the straight part of the response is not what it was either, and a cause must not
+there is one, the linear part of the response is not what it was either, and a cause must not
 live by that.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.diagnosis.search.linearised import Calibration, Problem, pose
 
-#: how far off the straight part may be, in sizes of the bend, as a prior spread
+#: how far off the linear part may be, in sizes of the bend, as a prior spread
 STRAIGHT = 3.0
 #: share of its variance that a square must have beside the context itself
 OWN = 1e-3
@@ -43,20 +43,20 @@ def bends(problem: Problem) -> list[Bend]:
     scatter = covariance.scatter.at(covariance.scatter_estimate(residual))
     error = covariance.rows.context_error(residual - scatter)
     reduced = covariance.reduce(residual.T[None])
-    straight = straight_courses(problem)
-    bent = squares(straight)
+    linear_part = linear_histories(problem)
+    squared = squares(linear_part)
     found = []
     for number, name in enumerate(belief.spread):
         along = covariance.rows.context_jacobian[:, :, number]
         if name in belief.latent or not along.any():
             continue
-        courses = [np.ones(len(along)), *straight.values(), *bent.values()]
+        courses = [np.ones(len(along)), *linear_part.values(), *squared.values()]
         columns = covariance.reduce(np.stack([(along * one[:, None]).T for one in courses]))
         product = covariance.product(columns, columns)
         sums = covariance.product(columns, reduced)[:, 0]
-        size = dict.fromkeys(bent, (0.0, 0.0))
-        linear = range(1 + len(straight))
-        for place, by in enumerate(bent, len(linear)):
+        size = dict.fromkeys(squared, (0.0, 0.0))
+        linear = range(1 + len(linear_part))
+        for place, by in enumerate(squared, len(linear)):
             chosen = [*linear, place]
             inverse = np.linalg.pinv(product[np.ix_(chosen, chosen)], hermitian=True)
             bend = float((inverse @ sums[chosen])[-1])
@@ -68,7 +68,7 @@ def bends(problem: Problem) -> list[Bend]:
 
 
 def with_free_slopes(problem: Problem, found: list[Bend], further: list[Calibration]) -> Problem:
-    """The problem where a bent response may follow any context, and no other keeps its slope.
+    """The problem where a nonlinear response may follow any context, and no other keeps its slope.
 
     Args:
         problem: in which there are bends.
@@ -81,24 +81,24 @@ def with_free_slopes(problem: Problem, found: list[Bend], further: list[Calibrat
             belief.spread, problem.covariance.rows.context_jacobian.transpose(2, 0, 1), strict=False
         )
     )
-    straight = straight_courses(problem)
-    bent = squares(straight)
+    linear_part = linear_histories(problem)
+    squared = squares(linear_part)
     more = list(further)
     share = 0.0
     for bend in found:
-        courses = [np.ones(len(problem.data.time)), *straight.values(), *bent.values()]
+        courses = [np.ones(len(problem.data.time)), *linear_part.values(), *squared.values()]
         along, size = jacobian[bend.context], STRAIGHT * abs(bend.size)
         more += [(along * course[:, None], size) for course in courses]
         if bend.by == bend.context:
             share = max(share, size / float(belief.centre[bend.context].std()))
     if share > 0:
-        for name in sorted(straight.keys() & set(belief.measured)):
+        for name in sorted(linear_part.keys() & set(belief.measured)):
             along = jacobian[name] * belief.centre[name][:, None]
-            more += [(along, share), (along * straight[name][:, None], share)]
+            more += [(along, share), (along * linear_part[name][:, None], share)]
     return pose(problem.simulator, problem.data, problem, more=more)
 
 
-def straight_courses(problem: Problem) -> dict[str, FloatArray]:
+def linear_histories(problem: Problem) -> dict[str, FloatArray]:
     """Contexts that vary, about their means and in their standard deviations."""
     centre = problem.data.belief.centre
     return {
@@ -108,10 +108,10 @@ def straight_courses(problem: Problem) -> dict[str, FloatArray]:
     }
 
 
-def squares(straight: dict[str, FloatArray]) -> dict[str, FloatArray]:
+def squares(linear_part: dict[str, FloatArray]) -> dict[str, FloatArray]:
     """The part of the squares that no straight line has; none of a context of two values."""
     found = {}
-    for name, scaled in straight.items():
+    for name, scaled in linear_part.items():
         design = np.column_stack([np.ones(len(scaled)), scaled])
         square = scaled**2
         rest = square - design @ np.linalg.lstsq(design, square, rcond=None)[0]

@@ -1,7 +1,7 @@
 """Channels whose noise is far beyond what the model states of it.
 
 Noise is estimated from the record. A channel that wanders, or reads what has nothing to do with
-the structure, shows no more than a large noise with a long memory where no other channel tells what
+the structure, shows no more than a large noise with a long memory where no other channel shows what
 it should read; and so do channels that wander together. Then nothing else is off by more than that
 noise, and only the stated one says that it is none.
 """
@@ -10,8 +10,8 @@ from collections.abc import Collection
 
 from rga.diagnosis.search.linearised import Problem
 
-#: channels that are told by name
-MOST_TOLD = 5
+#: channels that are reported by name
+MOST_NAMED = 5
 
 
 def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
@@ -22,15 +22,15 @@ def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
         told_already: channels that do not work for a part of the record, left out here.
     """
     model, sensors = problem.simulator.model, problem.data.sensors
-    told = []
+    found = []
     for name, deviation in zip(sensors, problem.noise.deviation, strict=True):
         stated = model.sensors[name].noise
         if name in told_already or stated is None:
             continue
         if deviation > problem.criteria.fit.stated_noise * stated:
-            told.append(
+            found.append(
                 f"channel {name} varies by {deviation:.2g} {model.sensors[name].unit} that no load "
                 f"explains, {deviation / stated:.2g} times its stated noise"
             )
-    more = len(told) - MOST_TOLD
-    return told if more <= 0 else [*told[:MOST_TOLD], f"{more} more channels vary as much"]
+    more = len(found) - MOST_NAMED
+    return found if more <= 0 else [*found[:MOST_NAMED], f"{more} more channels vary as much"]

@@ -18,7 +18,7 @@ from rga.simulation import Simulator
 
 #: pieces of the record whose sums are worked out, and rows about the best that stand alone
 PIECES, ALONE = 60, 12
-#: lengths of a ramp that are told apart, in shares of what is left of the record
+#: lengths of a ramp that are distinguished, in shares of what is left of the record
 LENGTHS = (0.2, 0.4, 0.6, 0.8, 1.0)
 
 

@@ -1,4 +1,4 @@
-"""Hypotheses: kinds of effects at places, with what is known of their parameters beforehand."""
+"""Hypotheses: kinds of effects at places, with priors of their parameters."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from rga.model.effect import Effect
 from rga.model.parameter import Prior
 from rga.model.schema import Model
 
-#: onsets that are told apart when the prior is spread over time
+#: onsets that are distinguished when the prior is spread over time
 ONSETS = 20
 #: log prior of an onset and a profile, against acting always: both count alike together
 LATE = -float(np.log(2 * ONSETS))

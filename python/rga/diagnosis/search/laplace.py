@@ -1,6 +1,6 @@
 """The evidence for hypotheses: fits on the real model, and Laplace's approximation.
 
-For parameters theta(z) with z standard normal beforehand, the log evidence against no effect is
+For parameters theta(z) with z standard normal a priori, the log evidence against no effect is
 
     1/2 (r0' C^-1 r0 - r' C^-1 r - z' z - log det(I + S' C^-1 S)) + log prior
 

@@ -218,8 +218,8 @@ def _calibrations(
     for number, name in enumerate(belief.spread):
         if name in belief.latent:
             continue
-        along, course = jacobian[:, :, number], belief.centre[name]
-        offset, gain = along, along * course[:, None]
+        along, history = jacobian[:, :, number], belief.centre[name]
+        offset, gain = along, along * history[:, None]
         if name in at_zero:
             slope, there = at_zero[name], data.tare.contexts[name]
             offset = offset - data.taken_off(slope)

@@ -152,7 +152,7 @@ class Screening:
         problem: gives residual and covariance.
         simulator: the simulation to which the candidates are added.
         candidates: hypotheses without onset.
-        progress: told the share that is done.
+        progress: called with the share that is done.
 
     Attributes:
         first: prospects about that simulation, the best first, each candidate once.
@@ -263,8 +263,8 @@ def _promises(
     members = block.members
     onsets = not data.belief.passing
     largest = np.sqrt([judged.size, judged.whole_size if onsets else judged.size])
-    straight = block.straight & block.free
-    largest[:, straight] *= 2 / np.abs(block.z[straight, 0])
+    linear = block.linear & block.free
+    largest[:, linear] *= 2 / np.abs(block.z[linear, 0])
     before = np.array([hypothesis.log_prior for _, hypothesis, _ in members])
     later = before + LATE
     options: list[tuple[FloatArray, FloatArray]] = []
@@ -332,16 +332,16 @@ def _scored(
     """
     sized = size > NO_SIZE**2
     size, along = np.where(sized, size, 1.0), np.where(sized, along, 0.0)
-    first = np.where(block.free & block.straight, block.z[:, 0], 1.0)
-    # A straight line in z: the evidence is exact.
+    first = np.where(block.free & block.linear, block.z[:, 0], 1.0)
+    # Linear in z: the evidence is exact.
     per_z = size / first**2
-    straight = (along / first) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
+    linear = (along / first) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
     # A curve: the amplitude may differ a little from that of the trial, not in sign.
     amplitude = np.clip(along / size, 0.0, 3.0)
     curve = amplitude * along - amplitude**2 * size / 2 - (block.z**2).sum(1) / 2
     fixed = along - size / 2
-    score = np.where(block.free, np.where(block.straight, straight, curve), fixed)
-    start = np.where(block.free & block.straight, along / first / (1 + per_z), np.nan)
+    score = np.where(block.free, np.where(block.linear, linear, curve), fixed)
+    start = np.where(block.free & block.linear, along / first / (1 + per_z), np.nan)
     return np.where(sized, score + prior, -np.inf), start
 
 

@@ -102,7 +102,7 @@ class Block:
         values: less what the logger's zero takes off, float[k, channels, rows].
         zero: what it takes off, float[k, channels].
         z: float[k, parameters], zero behind the last parameter of each.
-        straight: bool[k], all parameters have normal priors: the response is straight in z.
+        linear: bool[k], all parameters have normal priors: the response is linear in z.
         free: bool[k], has a parameter.
     """
 
@@ -111,7 +111,7 @@ class Block:
     values: FloatArray
     zero: FloatArray
     z: FloatArray
-    straight: NDArray[np.bool_]
+    linear: NDArray[np.bool_]
     free: NDArray[np.bool_]
 
     @classmethod
@@ -127,7 +127,7 @@ class Block:
             values=np.stack([one.values for one in several]),
             zero=np.stack([one.zero for one in several]),
             z=z,
-            straight=np.array(
+            linear=np.array(
                 [
                     all(isinstance(prior, Normal) for prior in one.hypothesis.priors.values())
                     for one in several
@@ -160,6 +160,6 @@ class Block:
             values=self.values[which],
             zero=self.zero[which],
             z=self.z[which],
-            straight=self.straight[which],
+            linear=self.linear[which],
             free=self.free[which],
         )

@@ -86,7 +86,7 @@ def search(
         base: that simulation.
         candidates: all hypotheses.
         screening: of these, about `start`.
-        progress: told what is done and which share of it.
+        progress: called with what is done and the share of it.
     """
     problem, current = start, fit(start, base, [], [])
     criteria = start.criteria.naming

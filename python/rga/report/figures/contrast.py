@@ -1,4 +1,4 @@
-"""A cause against its nearest rival, on the channels that tell them apart best."""
+"""A cause against its nearest rival, on the channels that separate them best."""
 
 import numpy as np
 from markupsafe import Markup

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-# Okabe and Ito's colours: told apart by colour-blind readers and in grey print.
+# Okabe and Ito's colours: distinguished by colour-blind readers and in grey print.
 MEASURED, BEFORE, AFTER = "#1f2328", "#d55e00", "#0072b2"
 STEEL, INK, FAINT, MARKED = "#8b949e", "#24292f", "#d0d7de", "#f0c808"
 

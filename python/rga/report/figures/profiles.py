@@ -73,7 +73,7 @@ def _onset(axes: Axes, onset: Onset, likeliest: str) -> None:
     axes.set_ylim(0, 1.08 * float(onset.chances.max()))
     axes.set_xlabel(f"onset, from the first row [{unit}]")
     axes.set_ylabel("probability")
-    axes.set_title(f"told: {likeliest}")
+    axes.set_title(f"estimate: {likeliest}")
     axes.locator_params(axis="x", nbins=5)
     grid(axes, "y")
 

@@ -45,7 +45,7 @@ def mean(values: FloatArray, axis: int | None = None) -> FloatArray:
 
 
 def usual(by_row: FloatArray) -> float:
-    """Median of what is finite, as the events tell a gap; NaN where nothing is."""
+    """Median of what is finite, as the events report a gap; NaN where nothing is."""
     known = by_row[np.isfinite(by_row)]
     return float(np.median(known)) if len(known) else float("nan")
 
@@ -129,7 +129,7 @@ def _title(history: History, event: Event) -> str:
 
 
 def version_number(history: History, event: Event) -> int | None:
-    """The number of the version that an event brought, where the history tells it."""
+    """The number of the version that an event brought, where the history has it."""
     return next((one.number for one in history.versions if one.row == event.row > 0), None)
 
 

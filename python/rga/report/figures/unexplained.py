@@ -82,7 +82,7 @@ def draw_amplitudes(
 
 
 def draw_bends(found: list[Bend], problem: Problem, units: dict[str, str]) -> Markup:
-    """The error that each bent context would need, over time and over what it bends with."""
+    """The error that each nonlinear context would need, over time and over what it bends with."""
     contexts = {one.by: problem.data.belief.table[one.by] for one in found}
     return _panels(
         [(one.error, {one.by: True}) for one in found],
@@ -107,7 +107,7 @@ def unexplained(account: DiagnosisArrays) -> dict[str, object]:
         return shown
     problem = account.found.problem
     contexts = known_contexts(problem, set(account.record.contexts))
-    found, bent = leftovers(problem, contexts), bends(problem)
+    found, bending = leftovers(problem, contexts), bends(problem)
     units = {name: one.unit for name, one in account.model.context.items()}
     if found:
         time = problem.data.time
@@ -118,8 +118,8 @@ def unexplained(account: DiagnosisArrays) -> dict[str, object]:
             (number, one.follows, ", ".join(strongest_rows(one, account, time)))
             for number, one in zip(_numbers(found), found, strict=True)
         ]
-    if bent:
-        shown["bends"] = draw_bends(bent, problem, units)
+    if bending:
+        shown["bends"] = draw_bends(bending, problem, units)
     return shown
 
 

@@ -19,11 +19,11 @@ LOG_ODDS = (
 )
 SIZE = (
     "size of the effect in units of all that could look like it by chance: noise, errors of the "
-    "measured contexts, scatter of the members; below 3 it cannot be told from chance"
+    "measured contexts, scatter of the members; below 3 it cannot be distinguished from chance"
 )
 APART = (
     f"what is left of {D_PRIME} once all that the nearest rival can imitate is taken off; where it "
-    "is small, these sensors cannot tell the two apart"
+    "is small, these sensors cannot separate the two"
 )
 
 

@@ -30,7 +30,7 @@ def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
     found = account.found
     if found is None:
         return None
-    # Faults of channels were told before what the search found.
+    # Faults of channels were reported before what the search found.
     place = findings.causes.index(cause)
     place -= len(findings.causes) - len(found.fit.hypotheses)
     rivalry = part("The rival's fit", _rivalry, account, found, place)
@@ -38,7 +38,7 @@ def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
         "profiles": part("The profiles", _profiles, account, found, place, cause),
         "onset": cause.onset is not None,
         "rivalry": rivalry,
-        "doubts": doubts(found, place, cause, account.model, rivalry.lead if rivalry else ""),
+        "caveats": caveats(found, place, cause, account.model, rivalry.lead if rivalry else ""),
     }
 
 
@@ -75,36 +75,36 @@ def _rivalry(account: DiagnosisArrays, found: Found, place: int) -> Rivalry | No
     apart = found.problem.criteria.rivals.log_odds
     lead = (
         f"It leads by {number(against.lead)} log-odds over its nearest rival, {rival}; below "
-        f"{apart:g} the two cannot be told apart. On no channel do they differ by more than "
+        f"{apart:g} the two cannot be separated. On no channel do they differ by more than "
         f"{number(max(against.size), 2)} times its noise (root mean square)."
     )
     figure = draw_contrast(against, account.model, runs_on(account), f"contrast-{place}")
     return Rivalry(rival, lead, figure)
 
 
-def doubts(found: Found, place: int, cause: Cause, model: Model, lead: str) -> list[str]:
+def caveats(found: Found, place: int, cause: Cause, model: Model, lead: str) -> list[str]:
     """What would change the verdict, in words and numbers.
 
     Args:
         found, place: the end of a search, and the number of the cause in it.
-        cause: as it is told.
+        cause: as it is reported.
         model: as it was given.
         lead: of the cause over its nearest rival, in words; empty where it has none.
     """
     alone = f"It leads by {number(cause.log_odds)} log-odds over leaving it out; "
     criteria = found.problem.criteria
-    told = [f"{alone}below {criteria.naming.log_odds:g} it would not be named."]
+    words = [f"{alone}below {criteria.naming.log_odds:g} it would not be named."]
     if lead:
-        told.append(lead)
+        words.append(lead)
     hangs = part("What its lead hangs on", hold, found, place)
     least = part("The smallest effect that would have been named", least_seen, found, place)
     if hangs is not None:
-        told.append(hangs.words if isinstance(hangs, Lost) else _hold_words(hangs, criteria))
+        words.append(hangs.words if isinstance(hangs, Lost) else _hold_words(hangs, criteria))
     if least is not None:
-        told.append(least.words if isinstance(least, Lost) else _least_words(least, cause, model))
+        words.append(least.words if isinstance(least, Lost) else _least_words(least, cause, model))
     if cause.separated_by:
-        told.append(f"To tell it from its rivals: {cause.separated_by}.")
-    return told
+        words.append(f"To separate it from its rivals: {cause.separated_by}.")
+    return words
 
 
 def _hold_words(one: Hold, criteria: Criteria) -> str:

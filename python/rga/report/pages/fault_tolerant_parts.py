@@ -1,4 +1,4 @@
-"""The parts of a page, each worked out by itself: a fault in one is told in its place."""
+"""The parts of a page, each worked out by itself: a fault in one is reported in its place."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -11,14 +11,14 @@ BY_VERDICT = {
     "nothing_wrong": "Nothing needs doing: the model as it is predicts this record. What these "
     "data could not have shown stands below.",
     "named": "What each cause calls for stands with it.",
-    "ambiguous": "First tell the causes from their rivals: what would separate them stands with "
-    "each. Until then act on the one that is worse for the bridge.",
+    "ambiguous": "First separate the causes from their rivals: what would do so stands with each. "
+    "Until then act on the one that is worse for the bridge.",
     "partial": "What each cause calls for stands with it. Something is left that no kind explains: "
     "what it follows stands below, and the log-odds are less sure than they look.",
     "unknown": "Do not use the model for what it gets wrong here until the reason is known. Where "
     "it shows, when, and what it goes with stand below: look at the bridge, the sensors and the "
     "log book there and then.",
-    "unidentifiable": "Measure more: what was asked cannot show in these data.",
+    "unidentifiable": "Measure more: what was sought cannot show in these data.",
 }
 #: what a place is a part of, and what stands before its name
 PARTS = ("member", "group", "support", "sensor", "context", "effect", "material")

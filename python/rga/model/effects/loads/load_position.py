@@ -31,7 +31,7 @@ class LoadPosition(Effect):
 
     @classmethod
     def places(cls, model: Model) -> Iterator[dict[str, Any]]:
-        # The offset of a position that is inferred cannot be told from the position itself.
+        # The offset of a position that is inferred cannot be separated from the position itself.
         names = [
             name
             for name, effect in model.effects.items()

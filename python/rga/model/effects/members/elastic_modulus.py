@@ -23,7 +23,7 @@ class ElasticModulus(Effect):
             "the modulus and the sections in the drawings, the weights of the loads, and the "
             "calibration of all gauges together: a common factor is in one of them"
         ),
-        test="{vehicle}: known weights tell the stiffness from the load",
+        test="{vehicle}: known weights separate the stiffness from the load",
     )
     usual = (
         f"factor {USUAL}: a judgement between steel, whose modulus has a coefficient of variation "

@@ -69,7 +69,7 @@ class StiffnessTemperature(Effect):
     def change_values(
         self, all_values: dict[str, Values], values: Values, time: FloatArray
     ) -> None:
-        # The factor itself is the parameter of the structure: stiffnesses are straight in it.
+        # The factor itself is the parameter of the structure: stiffnesses are linear in it.
         warm = next(other for other in all_values.values() if "reference" in other)
         above = warm["temperature"] - values.pop("kink", warm["reference"])
         if self.kink is not None:

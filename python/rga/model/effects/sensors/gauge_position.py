@@ -54,11 +54,11 @@ class GaugePosition(Effect):
     @classmethod
     def priors(cls, model: Model, place: Mapping[str, Any]) -> dict[str, Prior]:
         (sensor,) = listed(place["sensor"])[:1]
-        bent = bending_axes(model, str(model.sensors[sensor].member))
-        return dict.fromkeys(bent, USUAL)
+        bending = bending_axes(model, str(model.sensors[sensor].member))
+        return dict.fromkeys(bending, USUAL)
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         # A simulation may be asked for other sensors than those of the model: member forces, say.
-        asked = [name for name in listed(self.sensor) if name in structure.sensors]
-        rows = [structure.sensors[name] for name in asked]
+        present = [name for name in listed(self.sensor) if name in structure.sensors]
+        rows = [structure.sensors[name] for name in present]
         structure.outputs["vector"][rows, 1:] += value["y"], value["z"]

@@ -39,4 +39,6 @@ class SensorTemperature(Effect):
         return {"rate": USUAL.times(offset_scale(model, place["sensor"]) / KELVIN)}
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        readings.values[:, readings.at(self.sensor)] += (values["rate"] * readings.warmth)[:, None]
+        readings.values[:, readings.at(self.sensor)] += (
+            values["rate"] * readings.temperature_change
+        )[:, None]

@@ -23,12 +23,12 @@ def directions(
 def rotations(model: Model, *, held: bool) -> Iterator[dict[str, Any]]:
     """The same of rotations that bend a frame member there: that of a pin means nothing."""
     for dof in _in_plane(model, DOFS[3:]):
-        bent = [
+        bending = [
             name
             for name in _acting(model, dof, held)
             if bending_at(model, model.supports[name].node, dof) > 0
         ]
-        yield from _alone_and_together(model, dof, bent)
+        yield from _alone_and_together(model, dof, bending)
 
 
 def turns(dof: str) -> bool:

@@ -28,7 +28,7 @@ class Temperature(Effect):
     def check(self, model: Model) -> None:
         """ValueError where groups are missing or overlap, or delta follows a logarithm."""
         if isinstance(self.delta, Driven) and self.delta.log10:
-            raise ValueError("delta: a temperature follows its context straight, not by log10")
+            raise ValueError("delta: a temperature follows its context linearly, not by log10")
         seen: dict[str, str] = {}
         for group in self.groups:
             if group not in model.groups:
