@@ -15,8 +15,8 @@ from threadpoolctl import threadpool_info
 from rga import _core
 
 PACKAGES = ("rga", "numpy", "scipy", "scikit-sparse", "PyNiteFEA", "river", "bottleneck")
-#: tells the BLAS of what the benchmarks compute with
-ASKED = """
+#: prints the BLAS of what the benchmarks compute with
+BLAS = """
 import scipy.linalg
 from rga_bench.machine import cholmod, loaded
 cholmod()
@@ -51,22 +51,22 @@ def loaded() -> str:
 def _blas() -> str:
     """Those of NumPy, SciPy and CHOLMOD, whatever else this process has loaded by now.
 
-    So a process that loads these alone tells them.
+    So a process that loads these alone reports them.
     """
-    asked = subprocess.run(
-        [sys.executable, "-c", ASKED],
+    done = subprocess.run(
+        [sys.executable, "-c", BLAS],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
         stdout=subprocess.PIPE,
         text=True,
         check=True,
     )
-    return asked.stdout.strip()
+    return done.stdout.strip()
 
 
 def _processor() -> str:
-    told = Path("/proc/cpuinfo")
-    if told.exists():
-        for line in told.read_text(encoding="utf-8").splitlines():
+    path = Path("/proc/cpuinfo")
+    if path.exists():
+        for line in path.read_text(encoding="utf-8").splitlines():
             if line.startswith("model name"):
                 return line.split(":", 1)[1].strip()
     return platform.processor() or platform.machine()
@@ -86,7 +86,7 @@ def _version(name: str) -> str | None:
 
 
 def cholmod() -> str | None:
-    """The version that the library itself tells."""
+    """The version that the library itself reports."""
     path = find_library("cholmod")
     if path is None:
         return None

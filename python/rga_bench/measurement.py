@@ -17,7 +17,7 @@ class Measurement:
         peer: what does the same in the same run, or nothing.
         peer_value: that of the peer; nothing where it is not installed.
         ratio: how many times as fast as the peer, or as good.
-        least: what is asked of the ratio.
+        least: that the ratio should be at least.
     """
 
     case: str

@@ -10,7 +10,7 @@ from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.score import Score, gap
 
-#: rows of a table that are no methods; they tell an RG and infer nothing
+#: rows of a table that are no methods; they have an RG and infer nothing
 NOISE, TRUE_CONTEXT, BEST_CONTEXT = FLOORS = ("noise", "true context", "best context")
 #: beside noise as small as this the prior says nothing [mm]
 SHARP = 0.1

@@ -6,7 +6,8 @@ an alarm. A method infers row by row, or forward in time, so that each state inf
 
 What is watched is the log of the gap of each row. The residuals themselves follow the contexts in a
 few patterns that all sensors have in common, and far more rows than a calibration has would be
-needed to tell these from a change. Stored states are told apart by the residuals of each sensor.
+needed to distinguish these from a change. Stored states are distinguished by the residuals of each
+sensor.
 """
 
 from collections.abc import Callable, Sequence
@@ -73,7 +74,7 @@ class CalibratedMethod:
     def likely(self, rows: FloatArray) -> float:
         """Log density of residuals of rows, float[n, sensors], after the usual ones.
 
-        Each sensor's are normal, with a mean and a deviation that the usual rows tell (Student's
+        Each sensor's are normal, with a mean and a deviation from the usual rows (Student's
         predictive distribution: Gelman et al., Bayesian Data Analysis, 3rd ed., section 3.2).
         """
         count = len(self.usual)
@@ -116,7 +117,7 @@ Learned = Callable[[CalibratedMethod, slice], CalibratedMethod]
 
 
 @dataclass
-class Life:
+class StreamRun:
     """What became of a twin on a stream.
 
     Attributes:
@@ -136,8 +137,10 @@ class Life:
     recalled: int = 0
 
 
-def live(first: CalibratedMethod, sizes: Sizes, learned: Learned, *, stores: bool) -> Life:
-    """Let a twin live through the stream.
+def run_stream(
+    first: CalibratedMethod, sizes: Sizes, learned: Learned, *, stores: bool
+) -> StreamRun:
+    """Run a twin through the stream.
 
     Args:
         first: as it was calibrated.
@@ -145,29 +148,29 @@ def live(first: CalibratedMethod, sizes: Sizes, learned: Learned, *, stores: boo
         learned: makes a state of a state.
         stores: whether stored states are taken up (level C).
     """
-    life = Life(first, [first])
+    run = StreamRun(first, [first])
     monitor, began = first.monitor(sizes), 0
     raised: int | None = None
     since = 0
     for row in range(len(first.stream)):
         if raised is None:
-            seen = log_gaps(life.state.stream[row : row + 1])
+            seen = log_gaps(run.state.stream[row : row + 1])
             if not monitor.update(seen) or monitor.alarm is None:
                 continue
             raised, since = row, began + monitor.alarm.since
-            life.alarms.append(row)
+            run.alarms.append(row)
         waited = row + 1 - raised
-        if stores and waited == sizes.recall and _recall(life, slice(raised, row + 1)):
+        if stores and waited == sizes.recall and _recall(run, slice(raised, row + 1)):
             pass
         elif waited == sizes.settle:
             # A state for its own rows must not learn from those before the change.
             begun = raised if stores else since
             rows = slice(begun, row + 1), slice(raised, row + 1)
-            _learn(life, *rows, sizes, learned, alone=stores)
+            _learn(run, *rows, sizes, learned, alone=stores)
         else:
             continue
-        monitor, began, raised = life.state.monitor(sizes), row + 1, None
-    return life
+        monitor, began, raised = run.state.monitor(sizes), row + 1, None
+    return run
 
 
 def most_likely(states: Sequence[CalibratedMethod], rows: Sequence[FloatArray]) -> int:
@@ -180,29 +183,29 @@ def most_likely(states: Sequence[CalibratedMethod], rows: Sequence[FloatArray]) 
     return int(np.argmax([one.likely(own) for one, own in zip(states, rows, strict=True)]))
 
 
-def _recall(life: Life, recent: slice) -> bool:
+def _recall(run: StreamRun, recent: slice) -> bool:
     """Take up the likeliest of the stored states, if it explains the rows and is another."""
-    best = life.stored[most_likely(life.stored, [one.stream[recent] for one in life.stored])]
-    if best is life.state or not best.explains(best.stream[recent]):
+    best = run.stored[most_likely(run.stored, [one.stream[recent] for one in run.stored])]
+    if best is run.state or not best.explains(best.stream[recent]):
         return False
-    life.state = best
-    life.recalled += 1
+    run.state = best
+    run.recalled += 1
     return True
 
 
 def _learn(
-    life: Life, recent: slice, latest: slice, sizes: Sizes, learned: Learned, *, alone: bool
+    run: StreamRun, recent: slice, latest: slice, sizes: Sizes, learned: Learned, *, alone: bool
 ) -> None:
     """Learn from rows; where that does harm, only take for usual what the latest are like."""
-    before = life.state
+    before = run.state
     after = learned(before, recent)
     if after.calibrated is not before.calibrated:
-        life.recalibrations += 1
+        run.recalibrations += 1
         if after.harms(before, recent, sizes, alone=alone):
-            life.taken_back += 1
+            run.taken_back += 1
             after = before
-    life.state = after.settled(latest)
-    life.stored.append(life.state)
+    run.state = after.settled(latest)
+    run.stored.append(run.state)
 
 
 def delays(alarms: Sequence[int], changes: Sequence[int], rows: int) -> tuple[int | None, ...]:

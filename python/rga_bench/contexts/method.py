@@ -50,7 +50,7 @@ class Estimate:
 
     Attributes:
         value: float[n, contexts], in the units of the contexts.
-        spread: standard deviation of each, of the same shape; None where a method tells none.
+        spread: standard deviation of each, of the same shape; None where a method has none.
     """
 
     value: FloatArray

@@ -33,7 +33,7 @@ class Row:
         learn: a `Method`; that of an oracle takes the physical twin beside the problem.
         oracle: whether it knows the physical twin as it was at first.
         load_tests: measured rows whose contexts it gets as well.
-        manners: of contexts that it is played under, `DRIFTING` among them; None: under all.
+        manners: of contexts that it is run under, `DRIFTING` among them; None: under all.
         needs: packages that rga does without.
     """
 
@@ -106,6 +106,6 @@ PAPERS = {
 
 
 def applies(task: ContextsTask) -> bool:
-    """Whether the row of a task is played under its manner of contexts."""
+    """Whether the row of a task is run under its manner of contexts."""
     row = METHODS.get(task.row)
     return row is None or row.manners is None or task.manner in row.manners

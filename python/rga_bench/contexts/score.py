@@ -14,14 +14,14 @@ REACH = 1.6449
 
 @dataclass(frozen=True)
 class Score:
-    """What is told of inferred contexts.
+    """How good inferred contexts are.
 
     Attributes:
         rg: mean over rows and sensors of the squared gap [mm^2].
         error: mean over contexts of MSE / (range^2 / 12) [-]; None where nothing is inferred.
         errors: root of the mean squared error of each context, in its unit.
         coverage: share of the rows whose 90 % interval holds each context; None where a method
-            tells none.
+            has none.
     """
 
     rg: float

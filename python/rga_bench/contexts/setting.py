@@ -1,4 +1,4 @@
-"""How much is played, and of what."""
+"""how much is run, and of what."""
 
 from dataclasses import dataclass
 from zlib import crc32
@@ -7,7 +7,7 @@ from rga_bench.contexts.context_regime import MANNERS
 from rga_bench.contexts.drift import DRIFTS
 from rga_bench.synthetic.physical_twin import GAPS
 
-#: a task of this manner plays all drifts; its ordinary rows lack what drifts bring
+#: a task of this manner has all drifts; its ordinary rows lack what drifts bring
 DRIFTING = "drifting"
 #: what level C stores
 REPOSITORIES = ("measured", "paper")
@@ -15,7 +15,7 @@ REPOSITORIES = ("measured", "paper")
 
 @dataclass(frozen=True)
 class Sizes:
-    """How many rows there are, and by what rules streams are lived through.
+    """How many rows there are, and by what rules twins run through streams.
 
     Attributes:
         source: simulated rows.
@@ -53,7 +53,7 @@ class ContextsTask:
         gap: in what the physical twin differs from the model.
         manner: how contexts of measured rows lie in their ranges, or `DRIFTING`.
         row: name of the method, or of a floor.
-        drifts: that are played where the manner is `DRIFTING`.
+        drifts: that are run where the manner is `DRIFTING`.
         sizes: how much there is of everything.
     """
 
@@ -74,7 +74,7 @@ class ContextsTask:
 
 @dataclass(frozen=True)
 class ContextsSetting:
-    """How much is played, and of what.
+    """how much is run, and of what.
 
     Attributes:
         seed: of everything.

@@ -9,10 +9,10 @@ from rga_bench.contexts.levels import (
     LEVELS,
     CalibratedMethod,
     Learned,
-    Life,
+    StreamRun,
     delays,
-    live,
     residuals,
+    run_stream,
 )
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.novel import with_novel
@@ -23,7 +23,7 @@ from rga_bench.contexts.setting import ContextsTask
 
 @dataclass(frozen=True)
 class StreamResult:
-    """A method at a level, after it has lived through a stream.
+    """A method at a level, after it has run through a stream.
 
     Attributes:
         drift: that came into the stream.
@@ -48,7 +48,7 @@ class StreamResult:
     recalled: int = 0
 
 
-def lived(
+def results_of_streams(
     task: ContextsTask, known: CalibrationData, calibrated: Calibrated, usual: Examination
 ) -> list[StreamResult]:
     """Every drift of a task at every level.
@@ -76,30 +76,30 @@ def lived(
             learned = _fine_tuned(known.problem.real, rows, alone=stores)
             if level == LEVELS[-1] and not stores:
                 learned = with_novel(METHODS[task.row], known, rows)
-            life = live(first, sizes, learned, stores=stores)
-            states = life.stored if stores else [life.state]
+            run = run_stream(first, sizes, learned, stores=stores)
+            states = run.stored if stores else [run.state]
             scores = usual.score_of_likeliest(states), examination.score_of_likeliest(states)
-            played.append(_played(drift, level, scores, stream, life))
+            played.append(_played(drift, level, scores, stream, run))
     return played
 
 
 def _played(
-    drift: str, level: str, score: tuple[Score, Score], stream: DriftStream, life: Life
+    drift: str, level: str, score: tuple[Score, Score], stream: DriftStream, run: StreamRun
 ) -> StreamResult:
     rows = len(stream.rows.readings)
     quiet = stream.changes[0] if stream.changes else rows
-    raised = life.alarms[0] if life.alarms else rows
+    raised = run.alarms[0] if run.alarms else rows
     return StreamResult(
         drift,
         level,
         *score,
-        delays=delays(life.alarms, stream.changes, rows),
+        delays=delays(run.alarms, stream.changes, rows),
         watched=min(raised + 1, quiet),
         false_alarm=raised < quiet,
-        alarms=len(life.alarms),
-        recalibrations=life.recalibrations,
-        taken_back=life.taken_back,
-        recalled=life.recalled,
+        alarms=len(run.alarms),
+        recalibrations=run.recalibrations,
+        taken_back=run.taken_back,
+        recalled=run.recalled,
     )
 
 

@@ -1,4 +1,4 @@
-"""A row of the table on a split: a method learns, lives through streams, and is scored."""
+"""A row of the table on a split: a method learns, runs through streams, and is scored."""
 
 import time
 from dataclasses import dataclass, field, replace
@@ -14,7 +14,7 @@ from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import METHODS
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import DRIFTING, ContextsTask
-from rga_bench.contexts.stream_results import StreamResult, lived
+from rga_bench.contexts.stream_results import StreamResult, results_of_streams
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def run_task(task: ContextsTask) -> TaskOutcome:
         usual = Examination(known.test, known.problem.ranges, task.sizes.settle)
         score = usual.score(calibrated)
         inferred = time.perf_counter()
-        played = lived(task, known, calibrated, usual) if drifts else []
+        played = results_of_streams(task, known, calibrated, usual) if drifts else []
         return replace(
             _outcome(task, score, played),
             learning=learned - begun,

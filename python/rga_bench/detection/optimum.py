@@ -44,7 +44,7 @@ def expected_delay(fault: StreamChange, sensors: int, arl0: float) -> float:
 
 
 def _joint(fault: StreamChange, sensors: int) -> bool:
-    """Whether all sensors change alike, so that their sum tells all."""
+    """Whether all sensors change alike, so that their sum is sufficient."""
     return fault.count == sensors and not fault.signed
 
 
@@ -147,7 +147,7 @@ def optimal_limit(courses: Sequence[Course], arl0: float) -> float:
 
     That takes E[R_T] rows on average, A times the mean of R_T / A. Weighting paths by R_T turns it
     round: the mean of R_T / A without the change is one over the mean of A / R_T with it, which
-    needs no false alarms to be waited for. Where one row can tell, A / R_T is too wild for its mean
+    needs no false alarms to be waited for. Where one row suffices, A / R_T is too wild for its mean
     to be known: use it where `expected_delay` is more than a few rows, else `limit_for`.
 
     Args:

@@ -12,7 +12,7 @@ from rga_bench.detection.watch import Course
 LEVEL = 0.9
 #: of baselines
 RESAMPLES = 2000
-#: run lengths that are not told from the steps between whole numbers
+#: run lengths that cannot be distinguished from the steps between whole numbers
 SHORT = 20
 
 

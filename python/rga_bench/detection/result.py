@@ -48,7 +48,7 @@ class Alarms:
         Args:
             world: where their streams come from.
             method: what watched.
-            limit: that is told.
+            limit: that is reported.
             rows: that should be between alarms.
             found: the courses.
         """
@@ -119,14 +119,14 @@ class Point:
 
 @dataclass(frozen=True)
 class JudgedFigure:
-    """A figure that something is asked of.
+    """A figure with a target.
 
     Attributes:
         name: what it is.
-        value: what was found; None where it cannot be told.
+        value: what was found; None where it is unknown.
         low, high: its 90 % interval.
         rare: whether false alarms are as rare as they should be; else the figure means nothing.
-        least, aim: bounds that are asked for and aimed at.
+        least, aim: bounds required and aimed at.
     """
 
     name: str
@@ -163,7 +163,7 @@ class DetectionResult:
         alarms: false alarms.
         delays: of every change.
         points: a detector at other limits.
-        judged: what is held against what is asked.
+        judged: figures held against their targets.
         throughput: what detectors cost, on one core.
     """
 

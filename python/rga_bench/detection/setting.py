@@ -30,7 +30,7 @@ class DetectionSetting:
         sizes: of steps [sd]; 1 is among them.
         counts: of sensors that change; 1 is among them.
         seconds: that what a detector costs is measured for, a figure.
-        judged: whether what is found is held against what is asked.
+        judged: whether figures are held against their targets.
     """
 
     seed: int = 0

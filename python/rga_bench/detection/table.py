@@ -20,7 +20,7 @@ Delay: rows from the onset to the alarm, the row of the onset counted: mean, and
 onset are left out. "≥": some runs ended without an alarm.
 
 Baseline estimated: the window rule and MEWMA keep their limits for known noise, and have the false
-alarms that the first table tells.
+alarms that the first table shows.
 
 Optimum: knows the change, its size and the number of sensors, but not which sensors nor when."""
 
@@ -111,7 +111,7 @@ def _judged(judged: Sequence[JudgedFigure]) -> Sheet:
         ]
         for one in judged
     ]
-    return Sheet("What is asked", ["figure", "found", "90 %", "least", "aim", ""], rows)
+    return Sheet("Targets", ["figure", "found", "90 %", "least", "aim", ""], rows)
 
 
 def _arl0(one: Arl0) -> str:
@@ -132,8 +132,8 @@ def _delay(one: Delay) -> str:
 
 
 def _interval(low: float | None, high: float | None) -> str:
-    told = ["?" if one is None else digits(one) for one in (low, high)]
-    return f"{told[0]} to {told[1]}"
+    bounds = ["?" if one is None else digits(one) for one in (low, high)]
+    return f"{bounds[0]} to {bounds[1]}"
 
 
 def _bounds(bounds: Bounds) -> str:

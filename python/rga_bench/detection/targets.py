@@ -1,4 +1,4 @@
-"""What is asked of the monitor."""
+"""Targets of the monitor."""
 
 import math
 from collections.abc import Sequence
@@ -8,9 +8,9 @@ from rga_bench.detection.optimum import OPTIMUM
 from rga_bench.detection.rates import Delay
 from rga_bench.detection.result import Alarms, Bounds, JudgedFigure, Seen
 
-#: delay over the optimum's: asked for, and aimed at for one sensor and for more
+#: delay over the optimum's: required, and aimed at for one sensor and for more
 OVER_OPTIMUM, ONE, MORE = 1.6, 1.2, 1.4
-#: the window rule's delay over the monitor's: asked for and aimed at
+#: the window rule's delay over the monitor's: required and aimed at
 SHORTER, MUCH_SHORTER = 30.0, 130.0
 #: streams without an alarm in as many rows as there should be between alarms; 0.37 is right
 QUIET: Bounds = (0.2, 0.6)
@@ -20,7 +20,7 @@ RARE = 0.8
 
 
 def targets(arl0: float, alarms: Sequence[Alarms], delays: Sequence[Seen]) -> list[JudgedFigure]:
-    """All that is asked, of figures that are there.
+    """Figures that are there, each with its target.
 
     Args:
         arl0: rows that should be between false alarms.

@@ -1,6 +1,6 @@
 """What the paper's rule and the monitor cost: rows a second, beside memory and other packages.
 
-What a row costs from Rust, `cargo bench -p rga-detect --bench gaussian_window` tells: `update`
+What a row costs from Rust, `cargo bench -p rga-detect --bench gaussian_window` shows: `update`
 beside `read`.
 """
 

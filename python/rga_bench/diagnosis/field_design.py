@@ -102,7 +102,7 @@ class FieldDraw(Draw):
         )
 
 
-#: generators of cases, by the word that asks for them
+#: generators of cases, by the value of `--generator`
 GENERATORS: dict[str, type[Draw]] = {"bridges": Draw, "field": FieldDraw}
 
 

@@ -1,4 +1,4 @@
-"""The figures of a challenge, each against what is asked for."""
+"""The figures of a challenge, each against its target."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class ChallengeFigure:
         value: the figure; None where no draw bears on it.
         low, high: its interval, Wilson's for a rate.
         count: draws that count; `of` those that bear on it.
-        least, aim: bounds asked for and aimed at; None: told for itself.
+        least, aim: bounds required and aimed at; None: there are none.
     """
 
     name: str
@@ -179,7 +179,7 @@ def _finding(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
 def _sureness(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     outside = [o for o in of(outcomes, "outside") if o.hidden[0]["d_prime"] >= LARGE]
     apart = [o for o in outside if o.hidden[0]["d_perp"] >= LARGE]
-    told = [*of(outcomes, "single"), *of(outcomes, "pair")]
+    inside = [*of(outcomes, "single"), *of(outcomes, "pair")]
     figures = []
     for several, which in ((outside, "d'"), (apart, "d_perp")):
         figures += [
@@ -197,7 +197,7 @@ def _sureness(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
     figures += [
         rate(
             "unknown or partial, though the vocabulary has it",
-            (o.verdict in UNSURE for o in told),
+            (o.verdict in UNSURE for o in inside),
             (0.0, 0.05), (0.0, 0.02),
         ),
         rate("unknown on a null record", (o.verdict in UNSURE for o in outcomes if o.draw.null)),
@@ -210,7 +210,7 @@ def _sureness(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
             f"90 % intervals of parameters: {known}",
             (
                 abs(off) <= NORMAL_90
-                for o in told
+                for o in inside
                 if knowledge(o) == known
                 for off in _deviations(o)
             ),
@@ -263,7 +263,7 @@ def _gains(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
 
 
 def _onsets(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
-    told = [one for o in outcomes for one in o.onsets]
+    late = [one for o in outcomes for one in o.onsets]
     large = [
         onset["error"]
         for o in outcomes
@@ -275,7 +275,7 @@ def _onsets(outcomes: Sequence[DrawOutcome]) -> list[ChallengeFigure]:
         *(
             rate(
                 f"onset within its 90 % interval: {word}",
-                (one["inside"] for one in told if one["ramp"] == ramp),
+                (one["inside"] for one in late if one["ramp"] == ramp),
                 (0.85, 0.95), (0.88, 0.92),
             )
             for ramp, word in ((False, "a jump"), (True, "a ramp"))

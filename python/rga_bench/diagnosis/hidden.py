@@ -57,7 +57,7 @@ class Truth:
 
     @property
     def can_be_simulated(self) -> bool:
-        """Whether a model could tell what it does; not where a sensor is broken."""
+        """Whether a model could simulate what it does; not where a sensor is broken."""
         return self.kind in Effect.vocabulary and self.kind != "sensor_fault"
 
     def effect(self) -> Effect:

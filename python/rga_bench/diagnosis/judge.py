@@ -110,8 +110,8 @@ def judge(draw: Draw) -> DrawOutcome:
         for truth, size in zip(truths, sizes, strict=True):
             number = _cause_of(truth, causes)
             if number is not None:
-                told = reference.deviations_reported(truth, causes[number].effect)
-                deviations |= {truth.kind: told} if told else {}
+                off = reference.deviations_reported(truth, causes[number].effect)
+                deviations |= {truth.kind: off} if off else {}
             hidden.append(
                 {
                     "kind": truth.kind,
@@ -142,7 +142,7 @@ def judge(draw: Draw) -> DrawOutcome:
         chances=_chances(findings, truths, permitted),
         seconds=seconds,
         model_sha256=findings.model_sha256,
-        broken_told=permitted.told(findings),
+        broken_told=permitted.broken_reported(findings),
     )
 
 
@@ -152,10 +152,10 @@ def _added(findings: Findings) -> dict[str, Effect]:
 
 
 def _named(cause: Cause, truths: list[Truth]) -> dict[str, Any]:
-    told = [cause.effect, *cause.rivals]
+    candidates = [cause.effect, *cause.rivals]
     return {
         **kind_and_place(cause.effect),
-        "hidden": any(truth.is_at(one) for truth in truths for one in told),
+        "hidden": any(truth.is_at(one) for truth in truths for one in candidates),
         "onset": cause.onset,
         "log_odds": cause.log_odds,
         "d_perp": cause.d_perp,
@@ -174,8 +174,8 @@ def _cause_of(truth: Truth, causes: Sequence[Cause]) -> int | None:
 
 
 def _among(truth: Truth, cause: Cause) -> bool:
-    told = [cause.effect, *cause.rivals]
-    return len(cause.rivals) <= FEW_RIVALS and any(truth.is_at(one) for one in told)
+    candidates = [cause.effect, *cause.rivals]
+    return len(cause.rivals) <= FEW_RIVALS and any(truth.is_at(one) for one in candidates)
 
 
 def _onsets(case: Case, truths: list[Truth], causes: list[Cause]) -> list[dict[str, Any]]:
@@ -188,12 +188,12 @@ def _onsets(case: Case, truths: list[Truth], causes: list[Cause]) -> list[dict[s
         onset, interval = causes[number].onset, causes[number].onset_ci90
         late = onset is not None and interval is not None
         low, high = map(float, interval) if late and interval else (np.nan, np.nan)
-        told = float(onset) if late and onset is not None else float(case.time[0])
+        estimate = float(onset) if late and onset is not None else float(case.time[0])
         out.append(
             {
                 "kind": truth.kind,
                 "inside": bool(low <= truth.onset <= high),
-                "error": abs(told - truth.onset) / length,
+                "error": abs(estimate - truth.onset) / length,
                 "ramp": truth.end is not None,
             }
         )

@@ -53,7 +53,7 @@ class PermittedCauses:
         """Whether an effect is one of these."""
         return effect["kind"] in self.kinds or self._on_broken(effect) or self._of_batch(effect)
 
-    def told(self, findings: Findings) -> bool | None:
+    def broken_reported(self, findings: Findings) -> bool | None:
         """Whether the broken channel is a cause or a rival; None: there is none."""
         if self.broken is None:
             return None
@@ -86,8 +86,8 @@ class PermittedCauses:
         if not several or effect.get("onset") is not None:
             return False
         true = float(np.exp(np.mean([np.log(self.stiffness[name]) for name in several])) - 1.0)
-        told = effect["factor"]
-        off = float(told["value"] if isinstance(told, Mapping) else told) - 1.0
+        factor = effect["factor"]
+        off = float(factor["value"] if isinstance(factor, Mapping) else factor) - 1.0
         return abs(true) > OFF and abs(off - true) < NEAR * abs(true)
 
 

@@ -104,13 +104,13 @@ def _odds(axes: Axes, outcomes: Sequence[DrawOutcome]) -> None:
     pairs = [pair for o in outcomes if o.draw.stratum != "outside" for pair in o.chances]
     shares = np.array([share for share, _ in pairs])
     right = np.array([hit for _, hit in pairs], dtype=bool)
-    told = np.clip(logit(np.clip(shares, 1e-6, 1 - 1e-6)), -12, 12)
+    odds = np.clip(logit(np.clip(shares, 1e-6, 1 - 1e-6)), -12, 12)
     grid = np.linspace(-12, 12, 100)
     axes.plot(grid, 1 / (1 + np.exp(-grid)), color="0.7", lw=1, label="as told")
     for low, high in pairwise(ODDS):
-        within = (told >= low) & (told < high)
+        within = (odds >= low) & (odds < high)
         if within.any():
-            _bar(axes, float(told[within].mean()), rate("", right[within]))
+            _bar(axes, float(odds[within].mean()), rate("", right[within]))
     axes.set(
         title="Chances of explanations", xlabel="log-odds told", ylabel="share that is true",
         ylim=(-0.08, 1.04),

@@ -106,11 +106,11 @@ class ReferenceFit:
         off = {}
         values = _turned(truth, effect)
         for name, prior in one.priors.items():
-            told = effect.get(name)
-            if not isinstance(told, dict) or "ci90" not in told:
+            estimate = effect.get(name)
+            if not isinstance(estimate, dict) or "ci90" not in estimate:
                 continue
-            low, high = (prior.z(end) for end in told["ci90"])
-            middle, true = prior.z(told["value"]), prior.z(values[name])
+            low, high = (prior.z(end) for end in estimate["ci90"])
+            middle, true = prior.z(estimate["value"]), prior.z(values[name])
             if np.isfinite([low, high, middle, true]).all() and high > low:
                 off[name] = (true - middle) / ((high - low) / (2 * NORMAL_90))
         return off

@@ -32,7 +32,7 @@ def tables(outcomes: Sequence[DrawOutcome]) -> str:
     """All tables of a challenge."""
     middle, slow = np.quantile([o.seconds for o in outcomes], [0.5, 0.95])
     parts = [
-        f"{len(outcomes)} diagnoses, {middle:.1f} s each in the middle, {slow:.1f} s at the 95 %\n",
+        f"{len(outcomes)} diagnoses, {middle:.1f} s each (median), {slow:.1f} s at the 95 %\n",
         *_figures(figures(outcomes)),
         "\nsingle effects by kind",
         *_kinds(outcomes),
@@ -51,13 +51,13 @@ def tables(outcomes: Sequence[DrawOutcome]) -> str:
 def _figures(several: Sequence[ChallengeFigure]) -> Iterator[str]:
     yield f"{'':50} {'measured':>8} {'90 % interval':>15} {'draws':>11} {'least':>10} {'aim':>10}"
     for one in several:
-        asked = f"{_bounds(one.least):>10} {_bounds(one.aim):>10}  {one.judged}"
+        bounds = f"{_bounds(one.least):>10} {_bounds(one.aim):>10}  {one.judged}"
         if one.value is None:
-            yield f"{one.name:50} {'none':>8} {'':15} {'':11} {asked}".rstrip()
+            yield f"{one.name:50} {'none':>8} {'':15} {'':11} {bounds}".rstrip()
             continue
         interval = f"{_percent(one.low)} to {_percent(one.high)}"
         count = str(one.of) if one.count is None else f"{one.count} of {one.of}"
-        line = f"{one.name:50} {_percent(one.value):>8} {interval:>15} {count:>11} {asked}"
+        line = f"{one.name:50} {_percent(one.value):>8} {interval:>15} {count:>11} {bounds}"
         yield line.rstrip()
 
 
@@ -126,8 +126,8 @@ def _confusion(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
 def _outside(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
     several = [o for o in of(outcomes, "outside") if o.hidden[0]["d_prime"] >= LARGE]
     for kind in dict.fromkeys(o.hidden[0]["kind"] for o in several):
-        told = Counter(o.verdict for o in several if o.hidden[0]["kind"] == kind)
-        yield f"{kind:22} " + ", ".join(f"{word} {many}" for word, many in told.most_common())
+        verdicts = Counter(o.verdict for o in several if o.hidden[0]["kind"] == kind)
+        yield f"{kind:22} " + ", ".join(f"{word} {many}" for word, many in verdicts.most_common())
 
 
 def _structures(outcomes: Sequence[DrawOutcome]) -> Iterator[str]:
@@ -154,7 +154,7 @@ def _failure(one: DrawOutcome) -> str:
     if one.draw.stratum == "outside":
         large = one.hidden[0]["d_prime"] >= LARGE
         return (
-            f"outside the vocabulary, told {one.verdict}"
+            f"outside the vocabulary, reported as {one.verdict}"
             if (large and one.verdict not in UNSURE)
             else ""
         )

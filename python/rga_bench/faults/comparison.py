@@ -10,7 +10,7 @@ from rga_bench.faults.trial import LEFT_OUT, SOUND
 
 #: ratio of the gap to the one before above which it rises
 RISING = 1.01
-#: the channels that a misfit is compared with are not themselves told
+#: the channels that a misfit is compared with are not themselves reported
 _LIKE = re.compile(r"its like \([^)]*\)")
 #: gap on held-out rows above which "nothing is wrong" is no true word
 NEAR_ONE = 2.0
@@ -28,7 +28,7 @@ class Comparison:
         told: every broken channel is a cause of a sensor's kind, among the rivals of a cause, or
             in a warning that the sound record does not have.
         named: every broken channel is a cause of a sensor's kind, or among the rivals of a cause.
-        calm: `nothing_wrong` or `named`, and that is wrong: with a broken channel untold, with
+        calm: `nothing_wrong` or `named`, and that is wrong: with a broken channel unreported, with
             the gap rising on held-out rows, or with nothing wrong at a gap above 2.
         times: seconds over those of the sound record.
     """
@@ -62,14 +62,14 @@ def _compared(one: FaultOutcome, sound: FaultOutcome) -> Comparison:
     healthy = one.verdict != ERROR
     known = [now for now, before in zip(one.found, sound.found, strict=True) if before]
     gone = [] if one.way == LEFT_OUT else [each["sensor"] for each in one.broken]
-    told = all(_told(sensor, one, sound) for sensor in gone)
+    reported = all(_reported(sensor, one, sound) for sensor in gone)
     return Comparison(
         outcome=one,
         unmoved=healthy and _alike(_others(one), _others(sound)),
         kept=all(known) if known else None,
-        told=told and healthy,
+        told=reported and healthy,
         named=healthy and all(_is_named(sensor, one) for sensor in gone),
-        calm=_calm(one, told),
+        calm=_calm(one, reported),
         times=one.seconds / sound.seconds,
     )
 
@@ -105,7 +105,7 @@ def _same(one: dict[str, Any], other: dict[str, Any]) -> bool:
     return own == its or own in other["rivals"] or its in one["rivals"]
 
 
-def _told(sensor: str, one: FaultOutcome, sound: FaultOutcome) -> bool:
+def _reported(sensor: str, one: FaultOutcome, sound: FaultOutcome) -> bool:
     if _is_named(sensor, one):
         return True
     name = re.compile(rf"(?<!\w){re.escape(sensor)}(?!\w)")
@@ -123,9 +123,9 @@ def _is_cause(sensor: str, one: FaultOutcome) -> bool:
     return any(sensor in _sensors(cause) for cause in one.causes)
 
 
-def _calm(one: FaultOutcome, told: bool) -> bool:
+def _calm(one: FaultOutcome, reported: bool) -> bool:
     if one.verdict not in ("nothing_wrong", "named") or one.before is None or one.after is None:
         return False
     rising = one.verdict == "named" and one.after > RISING * one.before
     untrue = one.verdict == "nothing_wrong" and one.after > NEAR_ONE
-    return not told or rising or untrue
+    return not reported or rising or untrue

@@ -33,15 +33,15 @@ def broken(trial: FaultTrial, model: Model, record: Record) -> tuple[Record, lis
     others = [name for name in FAULTS if name != trial.fault]
     faults = [trial.fault, *(others[k] for k in rng.choice(len(others), many - 1, replace=False))]
     readings = record.readings.copy()
-    told: list[dict[str, Any]] = []
+    faulty: list[dict[str, Any]] = []
     for fault in faults:
         late = trial.way == "late" or (many > 1 and rng.random() < 0.5)
         row = int(rng.uniform(*ONSETS) * len(record)) if late else 0
-        taken = {one["sensor"] for one in told}
+        taken = {one["sensor"] for one in faulty}
         column, spoiled = _spoiled(fault, rng, model, record, row, taken)
         readings[:, column] = spoiled
-        told.append({"sensor": record.sensors[column], "fault": fault, "row": row})
-    return replace(record, readings=readings), told
+        faulty.append({"sensor": record.sensors[column], "fault": fault, "row": row})
+    return replace(record, readings=readings), faulty
 
 
 def _spoiled(
@@ -85,5 +85,5 @@ def _other(rng: np.random.Generator, model: Model, record: Record, column: int) 
 def _without(record: Record, gone: NDArray[np.int64]) -> tuple[Record, list[dict[str, Any]]]:
     kept = np.setdiff1d(np.arange(len(record.sensors)), gone)
     sensors = tuple(record.sensors[k] for k in kept)
-    told = [{"sensor": record.sensors[k], "fault": LEFT_OUT, "row": 0} for k in np.sort(gone)]
-    return replace(record, sensors=sensors, readings=record.readings[:, kept]), told
+    left_out = [{"sensor": record.sensors[k], "fault": LEFT_OUT, "row": 0} for k in np.sort(gone)]
+    return replace(record, sensors=sensors, readings=record.readings[:, kept]), left_out

@@ -92,8 +92,8 @@ def judge(trial: FaultTrial) -> FaultOutcome:
 def _found(hidden: dict[str, Any], findings: Findings) -> bool:
     truth = Truth(hidden["kind"], hidden["place"], {}, None, None, 0.0)
     return any(
-        truth.is_at(told)
+        truth.is_at(effect)
         for cause in findings.causes
         if len(cause.rivals) <= FEW_RIVALS
-        for told in (cause.effect, *cause.rivals)
+        for effect in (cause.effect, *cause.rivals)
     )

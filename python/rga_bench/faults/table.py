@@ -16,7 +16,7 @@ HEADINGS = [
     "",
     "records",
     "unmoved %",
-    "told %",
+    "reported %",
     "both %",
     "as a cause %",
     "hidden kept %",
@@ -34,13 +34,13 @@ WAYS = {
     "three of twenty left out, none broken": (LEFT_OUT,),
 }
 NOTES = """\
-Unmoved: the causes that are no sensor's are those of the sound record. Told: every broken channel
-is a cause of a sensor's kind, among the rivals of a cause, or in a warning that the sound record
-does not have; as a cause: not in a warning alone. Hidden kept: what is hidden, and was found in the
-sound record, is still found. Calm, wrong: `nothing_wrong` or `named`, with a broken channel untold,
-with the gap rising on held-out rows, or with nothing wrong at a gap above 2. Time: of the
-processor, over that of the sound record, in the middle and at worst. Intervals are Wilson's, at
-90 %. Records that lose channels without a fault show what the other channels can tell."""
+Unmoved: the causes that are no sensor's are those of the sound record. Reported: every broken
+channel is a cause of a sensor's kind, among the rivals of a cause, or in a warning that the sound
+record does not have; as a cause: not in a warning alone. Hidden kept: what is hidden, and was found
+in the sound record, is still found. Calm, wrong: `nothing_wrong` or `named`, with a broken channel
+unreported, with the gap rising on held-out rows, or with nothing wrong at a gap above 2. Time: of
+the processor, over that of the sound record, median and worst. Intervals are Wilson's, at 90 %.
+Records that lose channels without a fault bound what the other channels can show."""
 
 
 def page(result: FaultsResult, command: str) -> MarkdownPage:
@@ -124,7 +124,7 @@ def _failure(one: Comparison) -> str:
     words = {
         "calm": one.calm,
         "moved": not one.unmoved,
-        "untold": not one.told,
+        "unreported": not one.told,
     }
     return ", ".join(word for word, is_so in words.items() if is_so)
 

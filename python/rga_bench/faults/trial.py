@@ -8,7 +8,7 @@ from rga_bench.faults.library import FAULTS
 
 #: one channel from the first row; one from an onset; two; three of twenty
 WAYS = ("whole", "late", "whole", "late", "pair", "several")
-#: nothing is broken; as many channels as in `several` are left out: what the others could tell
+#: nothing is broken; as many channels as in `several` are left out: what the others can show
 SOUND, LEFT_OUT = "sound", "left out"
 #: broken records of a quick run, and the rows of its drawn ones; those of another run
 QUICK, QUICK_ROWS, ROWS = 18, 100, 200

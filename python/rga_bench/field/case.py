@@ -102,7 +102,7 @@ def _case(
         for one in hidden
     ]
 
-    def told(channels: Array) -> Array:
+    def as_read(channels: Array) -> Array:
         """As the record would have them: after the tare, in its rows and those after it."""
         zero = 0.0 if tare is None else channels[tare].mean(axis=0)
         return np.asarray((channels - zero)[rows])
@@ -117,13 +117,13 @@ def _case(
         sensors=place.model["sensors"],
         time=site.time[rows] - first,
         contexts={key: course[rows] for key, course in site.contexts.items()},
-        clean=told(clean),
+        clean=as_read(clean),
         unseen=unseen,
-        signatures=[told(one) for one in signatures],
-        together=told(clean - healthy.clean),
+        signatures=[as_read(one) for one in signatures],
+        together=as_read(clean - healthy.clean),
     )
     channels = dict(zip(sensors, shown.T, strict=True))
-    channels |= {key: course[record] for key, course in healthy.told.items()}
+    channels |= {key: course[record] for key, course in healthy.measured.items()}
     truth = {
         **head,
         "bridge": name,

@@ -73,7 +73,7 @@ def observe(world: FieldWorld, site: FieldSite) -> Array:
 
 
 def _play(course: Array, width: float) -> Array:
-    """The play operator: follows at a distance of half of ``width``, [n]."""
+    """The play operator of hysteresis: follows at a distance of half of ``width``, [n]."""
     out = np.empty_like(course)
     last = course[0]
     for k, now in enumerate(course):

@@ -53,7 +53,7 @@ class HealthyCase(NamedTuple):
 
     world: FieldWorld
     site: FieldSite
-    told: Contexts
+    measured: Contexts
     clean: Array
     record: np.ndarray
     facts: dict[str, Any]
@@ -76,7 +76,7 @@ def healthy_case(
         kept[second : second + lost - lost // 2] = False
     time = np.asarray(step * np.arange(grid + LATER), dtype=np.float64)
     contexts = courses(place, stream(seed, "contexts"), time)
-    told, noises = measured(place, stream(seed, "context errors"), contexts, spread)
+    read, noises = measured(place, stream(seed, "context errors"), contexts, spread)
     for name, variable in place.model["context"].items():
         if rng.random() < 0.5:
             variable["noise"] = float(f"{noises[name]:.3g}")
@@ -87,7 +87,7 @@ def healthy_case(
     return HealthyCase(
         world,
         site,
-        told,
+        read,
         observe(world, site),
         np.flatnonzero(kept),
         facts(world, welded, spread),
@@ -105,7 +105,7 @@ def reading_covariance(
     gains = 1.0 + 0.01 * spread * rng.standard_normal((_REALITIES, 1, drawn.shape[2]))
     scatter = gains * drawn - drawn.mean(axis=0)
     blur = (
-        respond(healthy.world, healthy.told)[rows]
+        respond(healthy.world, healthy.measured)[rows]
         - respond(healthy.world, healthy.site.contexts)[rows]
     )
     variance = healthy.site.logger.long_run + (blur**2).mean(axis=0)

@@ -19,7 +19,7 @@ class PoliciesExperiment(Experiment[Sequence[PolicyResult]]):
     """Policies beside each other.
 
     Attributes:
-        setting: streams, and the twins that live through them.
+        setting: streams, and the twins that run through them.
     """
 
     name = "policies"

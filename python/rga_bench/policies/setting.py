@@ -1,4 +1,4 @@
-"""What is played: streams, and policies with their intervals."""
+"""What is run: streams, and policies with their intervals."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,7 +16,7 @@ STREAMS: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class PolicySetting:
-    """How much is played.
+    """How much is run.
 
     Attributes:
         streams: drawn of each sort.
@@ -33,7 +33,7 @@ class PolicySetting:
     settings: Settings = field(default_factory=Settings)
 
     def policies(self) -> dict[str, Settings]:
-        """Settings of the twins, by what is told of their policy."""
+        """Settings of the twins, by the name of their policy."""
         usual = self.rows // 6
         chosen: dict[str, dict[str, Any]] = {"event": {"policy": "event"}}
         for rows in (self.rows // parts for parts in self.clocks):
@@ -55,7 +55,7 @@ class PolicySetting:
 
 @dataclass(frozen=True)
 class PolicyTask:
-    """A stream that a twin is to live through.
+    """A stream that a twin is to run through.
 
     Attributes:
         stream: its name.

@@ -13,7 +13,7 @@ from rga_bench.sheet import Sheet
 COLUMNS = {
     "recalibrations": ("recalibrations", ".3g"),
     "alarms": ("alarms", ".3g"),
-    "diagnoses asked": ("diagnoses", ".3g"),
+    "diagnoses requested": ("diagnoses", ".3g"),
     "optimiser steps": ("steps", ".0f"),
     "simulations": ("simulations", ".0f"),
     "gap [-]": ("gap", ".2f"),
@@ -24,7 +24,7 @@ COLUMNS = {
 NOTES = """\
 Means over the streams of a sort. All costs are those after the first calibration, which every twin
 of a stream has in common. Nothing is hidden in the structure, and no diagnosis is made: those that
-a twin asked for, because a recalibration did not bring the gap down, are counted.
+a twin requested, because a recalibration did not bring the gap down, are counted.
 
 The gap is the mean over rows and sensors of the squared gap over the variance of the noise, RG the
 mean of the squared gap over displacement sensors, both as the twin stood at the time, before a

@@ -27,9 +27,9 @@ class PolicyResult:
     Attributes:
         stream, seed, policy: of the task.
         recalibrations, alarms: number of each.
-        diagnoses: that were asked for.
+        diagnoses: that were requested.
         steps: of the optimiser, in all trainings.
-        simulations: that were asked for.
+        simulations: that were requested.
         gap: mean over the rows and sensors of the squared gap over the variance of the noise, as
             the twin stood at the time [-].
         rg: the paper's RG, the mean of the squared gap over the rows and displacement sensors,
@@ -58,9 +58,9 @@ class PolicyResult:
 
 
 def run_twin(task: PolicyTask) -> PolicyResult:
-    """Draw the stream, and let the twin live through it up to the closing diagnosis.
+    """Draw the stream, and let the twin run through it up to the closing diagnosis.
 
-    Nothing is hidden in the structure: a diagnosis that the twin asks for is counted, not made.
+    Nothing is hidden in the structure: a diagnosis that the twin requests is counted, not made.
     """
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)

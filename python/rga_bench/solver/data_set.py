@@ -12,7 +12,7 @@ from rga_bench.synthetic.bridges.case_study import case_study_bridge
 
 #: sensors of the data set
 SENSORS = 16
-#: runs a command and tells its peak memory; a process that we started ourselves would count ours
+#: runs a command and prints its peak memory; a process that we started ourselves would count ours
 WATCH = """\
 import resource, subprocess, sys
 status = subprocess.call(sys.argv[1:])

@@ -21,7 +21,7 @@ from rga_bench.timing import shortest
 
 #: orderings of CHOLMOD that are tried; supernodal is its best mode by far
 ORDERINGS = ("amd", "metis", "nesdis", "default", "best")
-#: times as fast as CHOLMOD's factorisation, as is asked of grids by their panels
+#: times as fast as CHOLMOD's factorisation, the target of grids by their panels
 LEAST = {64: 1 / 1.5, 204: 1 / 2}
 #: of displacements: roofs without columns are soft, so that rounding shows
 AGREEMENT = 1e-8
@@ -56,8 +56,8 @@ def grid(panels: int, setting: SolverSetting, roofs: Roofs) -> list[Measurement]
     case = f"double-layer grid, {system.size} DOFs"
     return [
         *(
-            Measurement(case, way, own, "s").beside(peer, their, asked)
-            for way, own, peer, their, asked in zip(
+            Measurement(case, way, own, "s").beside(peer, their, least)
+            for way, own, peer, their, least in zip(
                 WAYS, taken[:2], known_as, their_times, (LEAST.get(panels), None), strict=True
             )
         ),

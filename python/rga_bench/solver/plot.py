@@ -9,7 +9,7 @@ from rga_bench.solver.result import SolverResult
 
 
 def plot(result: SolverResult, path: Path) -> None:
-    """Write bars of the ratios, and what is asked of them, to a PNG file."""
+    """Write bars of the ratios, and their targets, to a PNG file."""
     shown = [(one, one.ratio) for one in result.figures if one.ratio is not None]
     cases = list(dict.fromkeys(one.case for one, _ in shown))
     canvas = Canvas(figsize=(11, 1.4 + 0.34 * len(shown)), layout="constrained")

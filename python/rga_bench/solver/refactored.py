@@ -21,7 +21,7 @@ from rga_bench.timing import shortest
 
 #: samples that are compared before anything is timed
 COMPARED = 8
-#: times as fast as CHOLMOD, as is asked of an instruction set
+#: times as fast as CHOLMOD, the target of each instruction set
 LEAST = {"avx512": 17.0, "avx2": 9.0}
 LEAST_TEN_SPANS = 10.0
 
@@ -60,11 +60,11 @@ def one_span(setting: SolverSetting, roofs: Roofs) -> list[Measurement]:
     ]
     if cholmod is not None:
         factor, solves = least_operations(system)
-        for work, told in (
+        for work, which in (
             (factor, "least factorisation"),
             (factor + solves, "and two triangular solves"),
         ):
-            name = f"share of the dgemm roof, {told}: {work / 1e3:.1f} kflop"
+            name = f"share of the dgemm roof, {which}: {work / 1e3:.1f} kflop"
             figures.append(Measurement(case, name, fast[best] * work / roofs.arithmetic))
     return figures
 

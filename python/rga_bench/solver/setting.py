@@ -17,7 +17,7 @@ class SolverSetting:
         panels: along a side of the double-layer grids.
         data_set: rows that are written.
         seed: of structures, loads and samples.
-        judged: whether figures are held against what is asked of them.
+        judged: whether figures are held against their targets.
     """
 
     rows: int = 262_144

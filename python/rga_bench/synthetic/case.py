@@ -30,7 +30,7 @@ class Beyond:
     """What only a judge gets to see of a case.
 
     Over the rows of the record and those after it, [n]: ``time``, ``contexts`` as sensors
-    without noise would tell them, and the channels ``clean`` [n, c] of noise, of all ``sensors``
+    without noise would show them, and the channels ``clean`` [n, c] of noise, of all ``sensors``
     as a model has them. ``unseen`` [n, c] is True where the record has nothing: after its end,
     and of sensors that the case leaves out.
     ``signatures`` [n, c]: what each effect changes beside the others, and all of them together.
@@ -51,7 +51,7 @@ class Case:
 
     ``model``: a model file; ``time`` [n] [s]; ``channels``: sensors in their units, then
     measured contexts, each [n], NaN where missing; ``truth``: what was hidden; ``beyond``: what
-    the record does not show, where that was asked for; ``mapping``: how the record is to be
+    the record does not show, where the conditions have it; ``mapping``: how the record is to be
     read, where that is not plain.
     """
 
@@ -92,7 +92,7 @@ def draw_case(
     conditions: Conditions = _USUAL,
     aims: tuple[float, float] | None = None,
 ) -> Case:
-    """A case of ``rows`` samples; what is not asked for is drawn by ``seed``.
+    """A case of ``rows`` samples; what is not given is drawn by ``seed``.
 
     Same seed, same bits. With the same bridge, reality and conditions, cases of different kinds
     share scatter, contexts and noise, so that they differ by the hidden effects alone. Several
@@ -135,8 +135,8 @@ def draw_case(
     sensors = {name: one for (name, one), has in zip(every.items(), base.given, strict=True) if has}
     columns = dict(zip(every, shown.T, strict=True))
     channels = {name: columns[name] for name in sensors}
-    told = measure(world, base.measured)
-    channels.update({n: course[:rows] for n, course in told.items() if n not in base.latent})
+    measured = measure(world, base.measured)
+    channels.update({n: course[:rows] for n, course in measured.items() if n not in base.latent})
     beyond = _beyond(base, placed, clean) if conditions.later or conditions.unseen else None
     return Case({**place.model, "sensors": sensors}, time, channels, truth, beyond)
 

@@ -26,7 +26,7 @@ class Reality(NamedTuple):
 
     Over the ``rows`` of the record and those after it, [n]: ``time``, ``contexts`` as they are
     and as ``measured``, and the channels ``clean`` [n, c] of noise. ``noise`` [rows, c] is that
-    of the record, ``given`` [c] tells which sensors are in it, ``latent`` which contexts are
+    of the record, ``given`` [c] says which sensors are in it, ``latent`` which contexts are
     not. ``size`` gives the d' of a change of the given sensors' channels [rows, given].
     """
 

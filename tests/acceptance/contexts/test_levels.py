@@ -12,19 +12,19 @@ from context_tasks import SIZES, Nearest, nearest, task
 from rga.arrays import FloatArray
 from rga_bench.contexts.data import DriftStream, calibration_of, stream_of
 from rga_bench.contexts.examination import Examination
-from rga_bench.contexts.levels import CalibratedMethod, Learned, live, most_likely
+from rga_bench.contexts.levels import CalibratedMethod, Learned, most_likely, run_stream
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
 from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.novel import with_novel
 from rga_bench.contexts.rows import Row
 from rga_bench.contexts.setting import ContextsTask, Sizes
-from rga_bench.contexts.stream_results import StreamResult, lived
+from rga_bench.contexts.stream_results import StreamResult, results_of_streams
 
 
-def lives(
+def run_of(
     levels: list[float], learned: Callable[[FloatArray], FloatArray], *, stores: bool
 ) -> tuple[Any, list[slice]]:
-    """A life on a stream of parts of 100 rows, each with a mean gap of its own.
+    """A run through a stream of parts of 100 rows, each with a mean gap of its own.
 
     Args:
         levels: mean gaps of the parts.
@@ -46,7 +46,7 @@ def lives(
 
     state = CalibratedMethod(first, ordinary, stream, ordinary)
     checked: Learned = learn
-    return live(state, Sizes(), checked, stores=stores), begun
+    return run_stream(state, Sizes(), checked, stores=stores), begun
 
 
 def halved(residuals: FloatArray) -> FloatArray:
@@ -54,24 +54,24 @@ def halved(residuals: FloatArray) -> FloatArray:
 
 
 def test_nothing_happens_on_the_null_twin() -> None:
-    life, begun = lives([1.0, 1.0, 1.0], halved, stores=False)
-    assert life.alarms == []
+    run, begun = run_of([1.0, 1.0, 1.0], halved, stores=False)
+    assert run.alarms == []
     assert begun == []
 
 
 def test_an_alarm_gathers_rows_and_recalibrates() -> None:
-    life, begun = lives([1.0, 4.0], halved, stores=False)
-    assert life.recalibrations == len(begun) == 1
-    assert life.taken_back == 0
-    (alarm,) = life.alarms
+    run, begun = run_of([1.0, 4.0], halved, stores=False)
+    assert run.recalibrations == len(begun) == 1
+    assert run.taken_back == 0
+    (alarm,) = run.alarms
     assert 100 <= alarm < 110
     assert begun[0].stop == alarm + Sizes().settle
     assert 60 <= begun[0].start <= alarm
 
 
 def test_a_state_that_is_stored_learns_from_rows_behind_the_alarm() -> None:
-    life, begun = lives([1.0, 4.0], halved, stores=True)
-    (alarm,) = life.alarms
+    run, begun = run_of([1.0, 4.0], halved, stores=True)
+    (alarm,) = run.alarms
     assert begun == [slice(alarm, alarm + Sizes().settle)]
 
 
@@ -79,11 +79,11 @@ def test_a_recalibration_that_does_harm_is_taken_back() -> None:
     def worse(residuals: FloatArray) -> FloatArray:
         return 1.1 * residuals
 
-    life, begun = lives([1.0, 4.0], worse, stores=False)
-    assert life.recalibrations == life.taken_back == len(begun) == 1
-    assert life.state.calibrated is life.stored[0].calibrated
+    run, begun = run_of([1.0, 4.0], worse, stores=False)
+    assert run.recalibrations == run.taken_back == len(begun) == 1
+    assert run.state.calibrated is run.stored[0].calibrated
     # What could not be learned is usual from then on: no further alarm.
-    assert len(life.alarms) == 1
+    assert len(run.alarms) == 1
 
 
 def test_a_recalibration_that_forgets_is_taken_back() -> None:
@@ -125,16 +125,16 @@ def test_what_recurs_is_taken_up_where_it_is_stored(stores: bool) -> None:
     def same(residuals: FloatArray) -> FloatArray:
         return residuals.copy()
 
-    life, begun = lives([1.0, 4.0, 1.0, 4.0, 1.0], same, stores=stores)
+    run, begun = run_of([1.0, 4.0, 1.0, 4.0, 1.0], same, stores=stores)
     for change in (100, 200, 300, 400):
-        assert any(change <= alarm < change + 30 for alarm in life.alarms)
-    assert life.recalibrations == len(begun) == len(life.alarms) - life.recalled
-    assert (life.recalibrations == 1) is stores
+        assert any(change <= alarm < change + 30 for alarm in run.alarms)
+    assert run.recalibrations == len(begun) == len(run.alarms) - run.recalled
+    assert (run.recalibrations == 1) is stores
 
 
 def test_what_is_new_is_not_taken_for_what_is_stored() -> None:
-    life, begun = lives([1.0, 4.0, 16.0], lambda left: left.copy(), stores=True)
-    assert life.recalled == 0
+    run, begun = run_of([1.0, 4.0, 16.0], lambda left: left.copy(), stores=True)
+    assert run.recalled == 0
     assert len(begun) == 2
 
 
@@ -142,7 +142,7 @@ def test_a_method_lives_through_drifts(few_methods: dict[str, Row]) -> None:
     known = calibration_of(task())
     method = nearest(known.problem)
     usual = Examination(known.test, known.problem.ranges, SIZES.settle)
-    played = lived(task(drifts=("none", "sensor", "recurring")), known, method, usual)
+    played = results_of_streams(task(drifts=("none", "sensor", "recurring")), known, method, usual)
     by_place = {(one.drift, one.level): one for one in played}
     assert len(by_place) == len(played) == 9
     assert all(one.recalibrations == 0 for one in played if one.level == "A")
@@ -201,11 +201,11 @@ def modes() -> Remembering:
 
 
 def levels() -> list[StreamResult]:
-    """What is lived through at every level, where offsets are learned."""
+    """Results at every level, where offsets are learned."""
     known = calibration_of(RIGHT)
     method = Levelled(modes(), np.zeros(84))
     usual = Examination(known.test, known.problem.ranges, FEW.settle)
-    return lived(RIGHT, known, method, usual)
+    return results_of_streams(RIGHT, known, method, usual)
 
 
 @pytest.fixture(scope="module")

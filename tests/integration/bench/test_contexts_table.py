@@ -19,7 +19,7 @@ from rga_bench.contexts.setting import DRIFTING, ContextsSetting, ContextsTask
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.sheets_levels import order
 from rga_bench.contexts.tables.table import page
-from rga_bench.contexts.tables.targets import asked
+from rga_bench.contexts.tables.targets import targets
 from rga_bench.contexts.task_run import TaskOutcome, run_task
 from rga_bench.experiment import Execution
 from rga_bench.ledger import NAME
@@ -67,7 +67,7 @@ def test_a_method_beside_others_is_told_of(few_methods: dict[str, Row]) -> None:
     text = page(found, "rga benchmark loi").text()
     assert "| true context |" in text
     assert "| 0.405 / 297 |" in text
-    assert "The paper's order cannot be told" in text
+    assert "The paper's order cannot be judged" in text
     by_row = {one.row: one.score for one in found.outcomes if one.manner == "same"}
     assert by_row["prior mean"].error == pytest.approx(1.0, abs=0.15)
     assert "†" not in text.partition("## RG")[2].partition("##")[0].replace("†:", "")
@@ -120,7 +120,7 @@ def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatc
         "labelled": (0.3, 0.3, 0.3),
         ORACLE: (0.2, 0.2, 0.2),
     }
-    told = {figure: found for figure, found, _ in asked(made(errors)).rows}
+    told = {figure: found for figure, found, _ in targets(made(errors)).rows}
     assert told["(1 - Error) / (1 - floor): good, no load tests"].startswith("0.62")
     assert told["(1 - Error) / (1 - floor): labelled, 20 load tests"].startswith("0.87")
     assert told["Error on drifted rows (sensor), B against A: good"].startswith("-19.8%")

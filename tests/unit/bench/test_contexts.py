@@ -145,6 +145,6 @@ def test_intervals_over_splits() -> None:
     assert difference is not None
     assert difference.value == pytest.approx(0.5)
     assert difference.reach == pytest.approx(0.0, abs=1e-12)
-    assert Mean.of([2.0]).told(".1f") == "2.0"
-    assert Mean(-0.25, 0.1).told("+.2f") == "-0.25 ± 0.10"
+    assert Mean.of([2.0]).text(".1f") == "2.0"
+    assert Mean(-0.25, 0.1).text("+.2f") == "-0.25 ± 0.10"
     assert paired({0: 1.0}, {1: 1.0}) is None

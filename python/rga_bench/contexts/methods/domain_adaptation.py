@@ -39,7 +39,7 @@ class Adapted:
     learn: Method
 
     def infer(self, readings: FloatArray) -> Estimate:
-        """Contexts of measured rows, float[n, sensors]; it tells no spread."""
+        """Contexts of measured rows, float[n, sensors]; without spread."""
         middle, scale = standard(self.twin.ranges)
         if not len(readings):
             return Estimate(np.empty((0, len(scale))), None)
@@ -47,7 +47,7 @@ class Adapted:
         return Estimate(middle + scale * np.clip(found, -EDGE, EDGE), None)
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
-        """What the model tells, float[n, sensors]."""
+        """What the model simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
     def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:

@@ -1,4 +1,4 @@
-"""Measured rows as straight in their contexts: what their readings tell of an error of the twin."""
+"""Measured rows linearised in their contexts: what their readings show of an error of the twin."""
 
 from dataclasses import dataclass
 

@@ -46,7 +46,7 @@ class Modes:
         return Estimate(mode.value, mode.spread)
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
-        """What the twin tells, float[n, sensors]."""
+        """What the twin simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
     def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:

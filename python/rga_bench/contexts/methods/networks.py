@@ -26,7 +26,7 @@ from rga_bench.contexts.method import Estimate, LearningProblem, Method
 
 #: simulated rows, drawn anew, on which intervals are stretched
 UNSEEN = 200
-#: of the real rows, one in so many tells when to stop
+#: of the real rows, one in so many decides when to stop
 HELD_OUT = 5
 
 
@@ -129,8 +129,8 @@ _BASE = TrainingSettings(
 
 def _settings(**changes: object) -> TrainingSettings:
     """Settings of a row; a fine-tuning follows its training."""
-    told = _BASE.model_copy(update=changes)
-    return told.model_copy(update={"fine_gamma": told.gamma, "fine_physics": told.physics})
+    changed = _BASE.model_copy(update=changes)
+    return changed.model_copy(update={"fine_gamma": changed.gamma, "fine_physics": changed.physics})
 
 
 # Weights of the physics, of the adversary beside them and of coral: what `selection.choose` takes

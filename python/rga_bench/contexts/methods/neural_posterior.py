@@ -48,7 +48,7 @@ class NeuralPosterior:
         return Estimate(middle + scale * drawn.mean(axis=0), scale * drawn.std(axis=0))
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
-        """What the model tells, float[n, sensors]."""
+        """What the model simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
     def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:

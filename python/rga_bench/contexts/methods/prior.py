@@ -23,7 +23,7 @@ class PriorMean:
         return Estimate(np.broadcast_to(middle, shape), np.broadcast_to(scale, shape))
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
-        """What the model tells, float[n, sensors]."""
+        """What the model simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
     def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:

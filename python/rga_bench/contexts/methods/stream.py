@@ -14,8 +14,8 @@ from rga_bench.contexts.methods.modes import Modes, maximum_posterior
 
 #: rows apart at which memory is measured: sensors' noise has forgotten itself by then
 LAG = 5
-#: most memory, and least share of a context that readings must tell for its own to be told
-MOST, TOLD = 0.99, 0.6
+#: most memory, and least share of a context that readings must determine for an estimate of its own
+MOST, DETERMINED = 0.99, 0.6
 #: standard errors of the likeness of rows without order that count as chance
 CHANCE = 3.0
 
@@ -46,7 +46,7 @@ class Filtered:
         return Estimate(middle + scale * mean, scale * np.sqrt(variance))
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
-        """What the model tells, float[n, sensors]."""
+        """What the model simulates, float[n, sensors]."""
         return self.modes.simulate(contexts)
 
     def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
@@ -82,39 +82,39 @@ def relearned(modes: Modes, readings: FloatArray, by: Filter) -> Filtered:
 def drift_memory(mode: Mode, ranges: FloatArray) -> FloatArray:
     """Memory of each context over consecutive rows, float[contexts], from their modes.
 
-    A mode that tells the share w of its context has the variance w (1 - w) of its error beside w^2
-    times that of the context; what modes some rows apart differ by beyond the first tells how far
+    A mode that determines the share w of its context has the variance w (1 - w) of its error beside
+    w^2 times that of the context; what modes some rows apart differ by beyond the first is how far
     contexts drift. Rows without order have no memory, and every row stands for itself.
     """
     middle, scale = standard(ranges)
-    z, told = (mode.value - middle) / scale, 1.0 - ((mode.spread / scale) ** 2).mean(axis=0)
-    told = np.clip(told, 1e-3, 1.0)
+    z, share = (mode.value - middle) / scale, 1.0 - ((mode.spread / scale) ** 2).mean(axis=0)
+    share = np.clip(share, 1e-3, 1.0)
     apart = ((z[LAG:] - z[:-LAG]) ** 2).mean(axis=0)
-    alike = 1.0 - (apart - 2.0 * told * (1.0 - told)) / (2.0 * told**2)
-    chance = CHANCE / (told**2 * np.sqrt(len(z)))
+    alike = 1.0 - (apart - 2.0 * share * (1.0 - share)) / (2.0 * share**2)
+    chance = CHANCE / (share**2 * np.sqrt(len(z)))
     alike = np.where(alike < chance, 0.0, np.minimum(alike, MOST**LAG))
-    memory, well = alike ** (1.0 / LAG), told > TOLD
+    memory, well = alike ** (1.0 / LAG), share > DETERMINED
     return np.where(well, memory, np.median(memory[well]) if well.any() else 0.0)
 
 
 def recursion(
-    told: FloatArray, pull: FloatArray, memory: FloatArray
+    information: FloatArray, pull: FloatArray, memory: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The Kalman filter of rows that are straight in their contexts, in the form of information.
+    """The Kalman filter of rows that are linear in their contexts, in information form.
 
     Args:
-        told: H' R^-1 H of each row, float[n, contexts, contexts].
+        information: H' R^-1 H of each row, float[n, contexts, contexts].
         pull: H' R^-1 y, float[n, contexts].
         memory: of the contexts, float[contexts].
 
     Returns:
         Means within the ranges, float[n, contexts], and covariances, in standard units.
     """
-    mean, covariance = np.empty(pull.shape), np.empty(told.shape)
+    mean, covariance = np.empty(pull.shape), np.empty(information.shape)
     here, spread, still = np.zeros(len(memory)), np.eye(len(memory)), np.zeros(1)
     for row in range(len(pull)):
         before = np.linalg.inv(spread * np.outer(memory, memory) + np.diag(1.0 - memory**2))
-        normal = before + told[row]
+        normal = before + information[row]
         toward = before @ (memory * here) + pull[row] - normal @ here
         here = here + bounded_step(normal[None], toward[None], here[None], still, EDGE)[0]
         spread = np.linalg.inv(normal)

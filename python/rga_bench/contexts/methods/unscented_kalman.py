@@ -36,15 +36,17 @@ def _filter(
         points = np.clip(mean[:, None] + arms, -EDGE, EDGE)
         shown = twin.simulate(middle + scale * points.reshape(-1, len(scale)))
         shown = np.where(seen[:, None], shown.reshape(*points.shape[:2], readings.shape[1]), 0.0)
-        told, pull = _straight(points, shown, np.where(seen, readings, 0.0), modes.covariance)
-        mean, covariance = recursion(told, pull, memory)
+        information, pull = _straight(
+            points, shown, np.where(seen, readings, 0.0), modes.covariance
+        )
+        mean, covariance = recursion(information, pull, memory)
     return mean, np.diagonal(covariance, axis1=1, axis2=2)
 
 
 def _straight(
     points: FloatArray, shown: FloatArray, measured: FloatArray, noise: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """H' R^-1 H and H' R^-1 y of straight lines through sigma points, R with what they bend by.
+    """H' R^-1 H and H' R^-1 y of lines through sigma points, R with their nonlinearity.
 
     Args:
         points: float[n, points, contexts].

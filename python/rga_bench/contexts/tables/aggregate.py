@@ -1,4 +1,4 @@
-"""What outcomes tell of each row, split by split."""
+"""Outcomes of each row, split by split."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -30,10 +30,10 @@ def scores(
     return {split: value for split, value in found.items() if value is not None}
 
 
-def lives(
+def at_level(
     outcomes: Sequence[TaskOutcome], row: str, drifts: Sequence[str], level: str
 ) -> Mapping[int, list[StreamResult]]:
-    """What a row lived through at a level, by split; empty where it did not."""
+    """Results of a row at a level, by split; empty where it ran through none."""
     found = {
         one.split: [p for p in one.played if p.level == level and p.drift in drifts]
         for one in outcomes
@@ -42,11 +42,11 @@ def lives(
     return {split: played for split, played in found.items() if played}
 
 
-def mean_lives(
-    lived: Mapping[int, Sequence[StreamResult]], of: Callable[[StreamResult], float | None]
+def over_drifts(
+    results: Mapping[int, Sequence[StreamResult]], of: Callable[[StreamResult], float | None]
 ) -> Values:
-    """The mean over drifts of a number of what was lived through."""
-    found = {split: [of(one) for one in played] for split, played in lived.items()}
+    """The mean over drifts of a number of the results."""
+    found = {split: [of(one) for one in played] for split, played in results.items()}
     known = {split: [one for one in values if one is not None] for split, values in found.items()}
     return {split: float(np.mean(values)) for split, values in known.items() if values}
 
@@ -64,11 +64,11 @@ def paired(values: Values, than: Values) -> Mean | None:
 def whole(of: Callable[[Score], float | None]) -> Callable[[StreamResult], float | None]:
     """The mean of both halves of the test rows."""
 
-    def told(played: StreamResult) -> float | None:
+    def mean_of_both(played: StreamResult) -> float | None:
         ordinary, drifted = of(played.ordinary), of(played.drifted)
         return None if ordinary is None or drifted is None else (ordinary + drifted) / 2.0
 
-    return told
+    return mean_of_both
 
 
 def coverage(score: Score) -> float | None:
@@ -76,9 +76,9 @@ def coverage(score: Score) -> float | None:
     return None if score.coverage is None else float(np.mean(score.coverage))
 
 
-def gap_told(row: str, gap: Mean | None, true: Mean | None) -> str:
+def gap_text(row: str, gap: Mean | None, true: Mean | None) -> str:
     """An RG in words, marked where a method leaves less than the true contexts do."""
     if gap is None:
         return ""
     hides = row not in FLOORS and true is not None and gap.value < true.value
-    return gap.told(".3g") + (HIDES if hides else "")
+    return gap.text(".3g") + (HIDES if hides else "")

@@ -9,7 +9,7 @@ from rga_bench.contexts.floors import FLOORS
 from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE
-from rga_bench.contexts.tables.aggregate import lives, mean, mean_lives, scores
+from rga_bench.contexts.tables.aggregate import at_level, mean, over_drifts, scores
 from rga_bench.contexts.tables.sheets_levels import NULL
 
 
@@ -77,8 +77,8 @@ def levels(result: ContextsResult) -> Canvas:
         for number, row in enumerate(streamed):
             found = [
                 mean(
-                    mean_lives(
-                        lives(result.outcomes, row, [drift], level),
+                    over_drifts(
+                        at_level(result.outcomes, row, [drift], level),
                         lambda played: played.drifted.error,
                     )
                 )

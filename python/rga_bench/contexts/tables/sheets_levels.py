@@ -10,7 +10,14 @@ from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import PAPERS
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.stream_results import StreamResult
-from rga_bench.contexts.tables.aggregate import gap_told, lives, mean, mean_lives, paired, whole
+from rga_bench.contexts.tables.aggregate import (
+    at_level,
+    gap_text,
+    mean,
+    over_drifts,
+    paired,
+    whole,
+)
 from rga_bench.measurement import digits
 from rga_bench.sheet import Sheet
 
@@ -26,7 +33,7 @@ NULL, RECURRING = "none", "recurring"
 
 
 def published() -> Sheet:
-    """What the paper tells of its own bridge."""
+    """What the paper reports of its own bridge."""
     rows = [
         [column, *(" / ".join(f"{one:g}" for one in of_level[level]) for level in LEVELS)]
         for column, of_level in PUBLISHED.items()
@@ -40,12 +47,12 @@ def order(result: ContextsResult) -> str:
     drifts = _drifts(result)
     missing = [PAPERS[one] for one in ORDER if PAPERS[one] not in result.rows]
     if missing or not drifts:
-        return "The paper's order cannot be told: not all of its columns were played."
+        return "The paper's order cannot be judged: not all of its columns were run."
     found = []
     for level in LEVELS:
         for name, of in (("Error", _error), ("RG", _rg)):
             values = [
-                mean(mean_lives(lives(result.outcomes, PAPERS[one], drifts, level), whole(of)))
+                mean(over_drifts(at_level(result.outcomes, PAPERS[one], drifts, level), whole(of)))
                 for one in ORDER
             ]
             known = [one.value for one in values if one is not None]
@@ -81,18 +88,18 @@ def _levels(result: ContextsResult, title: str, drifts: Sequence[str]) -> Sheet:
     headings = ["method"]
     for level in LEVELS:
         headings += [f"{level}: Error", "RG [mm²]", *([] if level == "A" else ["AD (seen)"])]
-    true = mean(mean_lives(lives(result.outcomes, TRUE_CONTEXT, drifts, LEVELS[0]), whole(_rg)))
+    true = mean(over_drifts(at_level(result.outcomes, TRUE_CONTEXT, drifts, LEVELS[0]), whole(_rg)))
     rows = []
     for row in _streamed(result):
         cells = [row]
         for level in LEVELS:
-            lived = lives(result.outcomes, row, drifts, level)
-            error, gap = (mean(mean_lives(lived, whole(of))) for of in (_error, _rg))
-            cells.append("" if error is None else error.told(".3f"))
-            cells.append(gap_told(row, gap, true))
+            results = at_level(result.outcomes, row, drifts, level)
+            error, gap = (mean(over_drifts(results, whole(of))) for of in (_error, _rg))
+            cells.append("" if error is None else error.text(".3f"))
+            cells.append(gap_text(row, gap, true))
             if level != "A":
-                cells.append(_delay([one for several in lived.values() for one in several]))
-        everywhere = lives(result.outcomes, row, result.setting.drifts, LEVELS[1])
+                cells.append(_delay([one for several in results.values() for one in several]))
+        everywhere = at_level(result.outcomes, row, result.setting.drifts, LEVELS[1])
         rows.append([*cells, _arl([one for several in everywhere.values() for one in several])])
     return Sheet(title, [*headings, "ARL"], rows)
 
@@ -107,10 +114,10 @@ def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> Sheet:
     for row in _streamed(result):
         if row in FLOORS:
             continue
-        a, b, c = (lives(result.outcomes, row, drifts, level) for level in LEVELS)
-        drifted = [mean_lives(one, lambda played: played.drifted.error) for one in (a, b, c)]
-        ordinary = [mean_lives(one, lambda played: played.ordinary.error) for one in (a, b, c)]
-        learned = [mean_lives(one, lambda played: played.recalibrations) for one in (b, c)]
+        a, b, c = (at_level(result.outcomes, row, drifts, level) for level in LEVELS)
+        drifted = [over_drifts(one, lambda played: played.drifted.error) for one in (a, b, c)]
+        ordinary = [over_drifts(one, lambda played: played.ordinary.error) for one in (a, b, c)]
+        learned = [over_drifts(one, lambda played: played.recalibrations) for one in (b, c)]
         differences = [
             (mean(drifted[0]), ".3f"),
             (paired(drifted[1], drifted[0]), "+.3f"),
@@ -120,27 +127,29 @@ def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> Sheet:
             (mean(learned[0]), ".2f"),
             (mean(learned[1]), ".2f"),
             (paired(learned[1], learned[0]), "+.2f"),
-            (mean(mean_lives(b, lambda played: played.taken_back)), ".2f"),
-            (mean(mean_lives(c, lambda played: played.recalled)), ".2f"),
+            (mean(over_drifts(b, lambda played: played.taken_back)), ".2f"),
+            (mean(over_drifts(c, lambda played: played.recalled)), ".2f"),
         ]
-        cells = ["" if one is None else one.told(form) for one, form in differences]
+        cells = ["" if one is None else one.text(form) for one, form in differences]
         rows.append([row, *cells])
     title = f"What recalibration changes: drifts {name} ({', '.join(drifts)})"
     return Sheet(title, headings, rows)
 
 
 def _streamed(result: ContextsResult) -> list[str]:
-    """Rows that lived through streams."""
-    return [row for row in result.rows if lives(result.outcomes, row, result.setting.drifts, "A")]
+    """Rows that ran through streams."""
+    return [
+        row for row in result.rows if at_level(result.outcomes, row, result.setting.drifts, "A")
+    ]
 
 
 def _delay(played: Sequence[StreamResult]) -> str:
     """Mean delay of the changes that were seen, and the share of them."""
-    told = [one for several in played for one in several.delays]
-    seen = [one for one in told if one is not None]
-    if not told:
+    delays = [one for several in played for one in several.delays]
+    seen = [one for one in delays if one is not None]
+    if not delays:
         return ""
-    return f"{digits(float(np.mean(seen))) if seen else '-'} ({len(seen) / len(told):.0%})"
+    return f"{digits(float(np.mean(seen))) if seen else '-'} ({len(seen) / len(delays):.0%})"
 
 
 def _arl(played: Sequence[StreamResult]) -> str:

@@ -12,12 +12,12 @@ from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.tables.aggregate import Values, coverage, gap_told, mean, scores
+from rga_bench.contexts.tables.aggregate import Values, coverage, gap_text, mean, scores
 from rga_bench.measurement import digits
 from rga_bench.sheet import Sheet
 from rga_bench.synthetic.bridges.full_case_study import full_case_study
 
-#: rows by which it is told what sensors see
+#: rows from which follows what sensors see
 LOOKED_AT = 512
 
 
@@ -29,16 +29,16 @@ def by_place(result: ContextsResult) -> list[Sheet]:
     places += [(full, manner) for manner in setting.manners[1:]]
     names = [gap if manner == first else f"{gap}, {manner}" for gap, manner in places]
 
-    def sheet(title: str, rows: tuple[str, ...], told: Callable[[str, str, str], str]) -> Sheet:
-        cells = [[row, *(told(row, gap, manner) for gap, manner in places)] for row in rows]
+    def sheet(title: str, rows: tuple[str, ...], cell: Callable[[str, str, str], str]) -> Sheet:
+        cells = [[row, *(cell(row, gap, manner) for gap, manner in places)] for row in rows]
         return Sheet(title, ["method", *names], [one for one in cells if any(one[1:])])
 
     def number(of: Callable[[Score], float | None], form: str) -> Callable[[str, str, str], str]:
-        def told(row: str, gap: str, manner: str) -> str:
+        def cell(row: str, gap: str, manner: str) -> str:
             found = mean(scores(result.outcomes, row, gap, manner, of))
-            return "" if found is None else found.told(form)
+            return "" if found is None else found.text(form)
 
-        return told
+        return cell
 
     def error(row: str, gap: str, manner: str) -> Values:
         return scores(result.outcomes, row, gap, manner, lambda one: one.error)
@@ -47,14 +47,14 @@ def by_place(result: ContextsResult) -> list[Sheet]:
         own, floor = error(row, gap, manner), error(ORACLE, gap, manner)
         gained = {k: (1.0 - own[k]) / (1.0 - floor[k]) for k in own if k in floor}
         found = mean(gained)
-        return "" if found is None else found.told(".2f")
+        return "" if found is None else found.text(".2f")
 
     def gap_left(row: str, gap: str, manner: str) -> str:
         own, true = (
             mean(scores(result.outcomes, one, gap, manner, lambda one: one.rg))
             for one in (row, TRUE_CONTEXT)
         )
-        return gap_told(row, own, true)
+        return gap_text(row, own, true)
 
     methods = tuple(row for row in result.rows if row not in FLOORS)
     sheets = [

@@ -40,10 +40,10 @@ class Mean:
         """Whether the interval leaves out 0."""
         return self.reach is not None and abs(self.value) > self.reach
 
-    def told(self, form: str) -> str:
+    def text(self, form: str) -> str:
         """In words, with a format of the numbers.
 
-        >>> Mean(0.5, 0.021).told(".2f")
+        >>> Mean(0.5, 0.021).text(".2f")
         '0.50 ± 0.02'
         """
         if self.reach is None:

@@ -3,7 +3,7 @@
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.tables.sheets_levels import order, papers, published, worth
 from rga_bench.contexts.tables.sheets_methods import by_context, by_place, cost
-from rga_bench.contexts.tables.targets import asked
+from rga_bench.contexts.tables.targets import targets
 from rga_bench.page import MarkdownPage
 from rga_bench.sheet import Sheet
 
@@ -56,7 +56,7 @@ def _about(result: ContextsResult) -> list[str]:
         ", ".join(named),
         f"seed {setting.seed}; splits of full gap and drifts {setting.splits}, of others {few}",
         f"rows simulated {sizes.source}, unlabelled {sizes.unlabelled}, of a stream {sizes.stream}",
-        f"rows of a test {sizes.test}, between false alarms {sizes.arl0:g} asked",
+        f"rows of a test {sizes.test}, target between false alarms {sizes.arl0:g}",
         f"repository: {sizes.repository}",
     ]
     for name, packages in result.absent.items():
@@ -69,5 +69,5 @@ def _sheets(result: ContextsResult) -> list[Sheet]:
     levels = papers(result)
     if levels:
         levels.insert(1, published())
-    others = [by_context(result), asked(result), cost(result)]
+    others = [by_context(result), targets(result), cost(result)]
     return [*levels, *worth(result), *by_place(result), *(one for one in others if one.rows)]

@@ -1,4 +1,4 @@
-"""What is asked of the table, and what was found."""
+"""Targets of the table, and what was found."""
 
 from collections.abc import Callable
 
@@ -10,10 +10,10 @@ from rga_bench.contexts.score import Score
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.aggregate import (
     Values,
+    at_level,
     coverage,
-    lives,
     mean,
-    mean_lives,
+    over_drifts,
     scores,
     whole,
 )
@@ -21,19 +21,19 @@ from rga_bench.contexts.tables.sheets_levels import NULL, RECURRING
 from rga_bench.sheet import Sheet
 
 #: share of what there is to gain, and coverage, by load tests: at least, and the aim
-ASKED = {
+TARGETS = {
     0: ("0.71; 0.79", "0.80; 0.88 to 0.92"),
     20: ("0.80; 0.91", "0.85; 0.88 to 0.92"),
 }
 
 
-def asked(result: ContextsResult) -> Sheet:
+def targets(result: ContextsResult) -> Sheet:
     """Figures under the full gap, those of methods of the best one of its sort.
 
     The best is that of the least Error at level A, on the very rows that it is judged by.
     """
     rows = []
-    for load_tests, (share, held) in ASKED.items():
+    for load_tests, (share, held) in TARGETS.items():
         best = _best(result, load_tests)
         if best is None:
             continue
@@ -44,8 +44,8 @@ def asked(result: ContextsResult) -> Sheet:
             if floor is not None
         }
         name = f"{best}, {load_tests or 'no'} load tests"
-        rows.append([f"(1 - Error) / (1 - floor): {name}", _told(gained, ".2f"), share])
-        covered = _told(_first(result, best, coverage), ".2f")
+        rows.append([f"(1 - Error) / (1 - floor): {name}", _text(gained, ".2f"), share])
+        covered = _text(_first(result, best, coverage), ".2f")
         rows.append([f"coverage of 90 % intervals: {name}", covered, held])
         if not load_tests:
             rows += _levels(result, best)
@@ -53,9 +53,9 @@ def asked(result: ContextsResult) -> Sheet:
         _first(result, PAPERS[one], lambda score: score.rg)
         for one in ("with physics", "without physics")
     )
-    found = _told(_change(physics, plain), "+.1%")
+    found = _text(_change(physics, plain), "+.1%")
     rows.append(["RG with physics against without, level A", found, "-42 %; -80 %"])
-    return Sheet("What is asked", ["figure", "found", "at least; aim"], [r for r in rows if r[1]])
+    return Sheet("Targets", ["figure", "found", "at least; aim"], [r for r in rows if r[1]])
 
 
 def _levels(result: ContextsResult, row: str) -> list[list[str]]:
@@ -63,7 +63,7 @@ def _levels(result: ContextsResult, row: str) -> list[list[str]]:
     once = [one for one in result.setting.drifts if one not in (NULL, RECURRING)]
 
     def of(drifts: list[str], level: str, number: Callable[[StreamResult], float | None]) -> Values:
-        return mean_lives(lives(result.outcomes, row, drifts, level), number)
+        return over_drifts(at_level(result.outcomes, row, drifts, level), number)
 
     a, b, c = LEVELS
     them = ", ".join(once)
@@ -78,7 +78,7 @@ def _levels(result: ContextsResult, row: str) -> list[list[str]]:
     return [
         [
             f"{name}: {row}",
-            _told(_change(of(drifts, now, number), of(drifts, then, number)), "+.1%"),
+            _text(_change(of(drifts, now, number), of(drifts, then, number)), "+.1%"),
             wanted,
         ]
         for name, drifts, now, then, number, wanted in figures
@@ -107,9 +107,9 @@ def _change(values: Values, than: Values) -> Values:
     return {k: one / than[k] - 1.0 for k, one in values.items() if than.get(k)}
 
 
-def _told(values: Values, form: str) -> str:
+def _text(values: Values, form: str) -> str:
     found = mean(values)
-    return "" if found is None else found.told(form)
+    return "" if found is None else found.text(form)
 
 
 def _error(score: Score) -> float | None:

@@ -1,4 +1,4 @@
-"""All hidden kinds, and the drawing of one: a place, then a value of the size asked for."""
+"""All hidden kinds, and the drawing of one: a place, then a value of the size wanted."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from rga_bench.synthetic.bridges.model_draft import Bridge
 from rga_bench.synthetic.hidden.effect import EffectSetting, Kind, Span
 from rga_bench.synthetic.hidden.gauge import GAUGE
 from rga_bench.synthetic.hidden.load import HYSTERESIS, LOAD
-from rga_bench.synthetic.hidden.structure import PLAY, STRUCTURE
+from rga_bench.synthetic.hidden.structure import CLEARANCE, STRUCTURE
 
 DRAWN: dict[str, Kind] = {**STRUCTURE, **LOAD, **GAUGE}
-HIDDEN: dict[str, Kind] = {**DRAWN, **PLAY, **HYSTERESIS}
+HIDDEN: dict[str, Kind] = {**DRAWN, **CLEARANCE, **HYSTERESIS}
 KINDS = ("null", *HIDDEN)
 _PLACES = 8
 _HALVINGS = 9

@@ -136,7 +136,7 @@ def signature(reality: Reality, placed: Sequence[Placed]) -> Array:
     change = readings(reality, placed) - reality.clean
     world = inhabited(reality, placed)
     if world.context_ops:
-        told = measure(world, reality.measured)
-        expected = observe(reality.world, told, reality.time)
+        measured = measure(world, reality.measured)
+        expected = observe(reality.world, measured, reality.time)
         change -= expected - observe(reality.world, reality.measured, reality.time)
     return change

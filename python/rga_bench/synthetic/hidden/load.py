@@ -128,5 +128,5 @@ LOAD = {
     "unmodelled_load": Kind("rate", _weather, _blow),
     "unknown": Kind("", _strange, _puzzle),
 }
-#: drawn where it is asked for by name; the cases of a seed are those without it
+#: drawn where it is named; the cases of a seed are those without it
 HYSTERESIS = {"hysteresis": Kind("", _slow, _puzzle)}

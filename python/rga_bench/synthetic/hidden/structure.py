@@ -176,8 +176,8 @@ STRUCTURE = {
     "joint_rigidity": Kind("stiffness", _joints, _join),
     "bearing_friction": Kind("mu", _sticking, _stick),
 }
-#: drawn where they are asked for by name; the cases of a seed are those without them
-PLAY = {
+#: drawn where they are named; the cases of a seed are those without them
+CLEARANCE = {
     "joint_slip": Kind("slip", _loose_bolts, _slip),
     "support_gap": Kind("stiffness", _stopped, _stop),
 }

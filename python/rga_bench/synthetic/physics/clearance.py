@@ -14,8 +14,8 @@ _NO_FORCE = 1e-3  # [N]
 def slips(force: Array, unit: Array, slip: Array) -> Array:
     """How far each member has slipped [m], shape [n, k].
 
-    A member rests where its force is nil, or at an end of its play. ``force`` [n, k] [N] without
-    slip, ``unit`` [k, k] forces on the members per metre of slip of each, ``slip`` [k] [m].
+    A member rests where its force is nil, or at an end of its clearance. ``force`` [n, k] [N]
+    without slip, ``unit`` [k, k] forces on the members per metre of slip of each, ``slip`` [k] [m].
     """
     s = np.zeros_like(force)
     for _ in range(_SWEEPS):
