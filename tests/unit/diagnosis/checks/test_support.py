@@ -1,0 +1,92 @@
+"""Causes that nothing speaks for but the readings fitted are taken out; others stay."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from known_problem import candidate, change_of, found_with, with_white_noise
+from rga.diagnosis.checks.support import supported, worsens
+from rga.diagnosis.checks.whole_record import WholeRecord
+from rga.diagnosis.data.held_out import held_out_rows
+from rga.diagnosis.search.hypothesis import Hypothesis
+from rga.diagnosis.search.laplace import fit
+from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.search.stepwise import Found
+
+Split = tuple[Problem, WholeRecord]
+
+
+@pytest.fixture
+def sunk(noisy: Problem) -> Hypothesis:
+    return candidate(noisy, "support_settlement", support="east", dof="uz")
+
+
+@pytest.fixture
+def split(noisy: Problem) -> Callable[[np.ndarray, np.ndarray], Split]:
+    """A record off by one thing on the rows that are fitted, by another on those held out."""
+    held_out = held_out_rows(len(noisy.data.time))
+    noise = noisy.residual(noisy.simulated)
+
+    def of(fitted: np.ndarray, unseen: np.ndarray) -> Split:
+        off = noise + np.where(held_out[:, None], unseen, fitted)
+        whole = with_white_noise(noisy, off)
+        few = with_white_noise_of_rows(whole, ~held_out)
+        return few, WholeRecord.of(whole.data, held_out, few)
+
+    return of
+
+
+def with_white_noise_of_rows(problem: Problem, rows: np.ndarray) -> Problem:
+    off = problem.residual(problem.simulated)[rows]
+    data = problem.data.rows(rows)
+    return with_white_noise(replace(problem, data=data), off)
+
+
+def as_it_is(found: Found) -> Found:
+    return found
+
+
+def test_a_cause_that_held_out_rows_confirm_stays(
+    split: Callable[[np.ndarray, np.ndarray], Split], noisy: Problem, sunk: Hypothesis
+) -> None:
+    change = change_of(noisy, sunk, 0.2)
+    problem, whole = split(change, change)
+    found = found_with(problem, [sunk])
+    kept, dropped = supported(found, whole, 0, as_it_is)
+    assert kept is found
+    assert dropped == []
+
+
+def test_a_cause_that_held_out_rows_deny_goes(
+    split: Callable[[np.ndarray, np.ndarray], Split], noisy: Problem, sunk: Hypothesis
+) -> None:
+    change = change_of(noisy, sunk, 0.2)
+    problem, whole = split(change, -change)
+    kept, dropped = supported(found_with(problem, [sunk]), whole, 0, as_it_is)
+    assert kept.fit.hypotheses == ()
+    assert [one.name for one in dropped] == ["support_settlement"]
+
+
+def test_channels_that_get_worse_by_a_cause(noisy: Problem, sunk: Hypothesis) -> None:
+    change = change_of(noisy, sunk, 0.2)
+    true = with_white_noise(noisy, noisy.residual(noisy.simulated) + change)
+    found = found_with(true, [sunk])
+    assert not worsens(found, fit(true, true.simulator, [], []))
+    assert not worsens(found, found.fit)
+
+
+@pytest.mark.parametrize(("gap", "against"), [(1.5, True), (1.0, False)])
+def test_channels_get_worse_where_their_gap_and_their_likelihood_say_so(
+    noisy: Problem, sunk: Hypothesis, monkeypatch: pytest.MonkeyPatch, gap: float, against: bool
+) -> None:
+    """What a cause leads by on channels outside a group, and not on all, a group speaks against."""
+    found = found_with(noisy, [sunk])
+    without = fit(noisy, noisy.simulator, [], [])
+    sure = replace(found.fit, log_evidence=-20.0)
+    monkeypatch.setattr(
+        "rga.diagnosis.checks.support.unseen_gap",
+        lambda problem, base, one: gap if one.hypotheses else 1.0,
+    )
+    assert worsens(replace(found, fit=sure), without) == against
