@@ -59,7 +59,7 @@ class Effect(BaseModel):
     )
     #: What size is usual, in words: what `priors` say, and where it comes from.
     usual: ClassVar[str] = ""
-    #: True for what loads the structure by design: other effects scale, shift or keep it.
+    #: True for a load of the model as it is drawn: others, such as `load_scale`, may act on it.
     is_load: ClassVar[bool] = False
     #: True for a restraint that may let go at any time, so that it is normally not credited.
     may_let_go: ClassVar[bool] = False
@@ -84,7 +84,7 @@ class Effect(BaseModel):
             raise InputError(
                 f"the kind {kind!r} is that of {first.__module__}.{first.__qualname__} already",
                 f"class {cls.__qualname__}",
-                "give it a kind of its own",
+                f"give it a kind of its own, or first: del Effect.vocabulary[{kind!r}]",
             )
         if "title" not in vars(cls):
             cls.title = kind.replace("_", " ")

@@ -107,7 +107,7 @@ def _choices(annotation: Any) -> Iterator[str]:
 
 def _docstring(kind: type[Effect]) -> tuple[str, dict[str, str]]:
     """The text of a class, and what it says of its attributes, by name."""
-    text, _, listed = (inspect.getdoc(kind) or "").partition("\n\nAttributes:\n")
+    text, _, listed = inspect.cleandoc(kind.__doc__ or "").partition("\n\nAttributes:\n")
     attributes: dict[str, str] = {}
     name = ""
     for line in listed.splitlines():

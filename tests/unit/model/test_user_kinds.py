@@ -183,7 +183,12 @@ def test_a_kind_without_words_has_those_of_its_name(two_bars: dict[str, Any]) ->
             "test": f"{VEHICLE}, near member west",
         }
         assert list(Plain.places(read_model(two_bars, "test"))) == []
-        assert "usual size" not in entry(Plain)
+        assert entry(Plain).splitlines() == [
+            "### `of_my_own`",
+            "",
+            "- `member`: place, member",
+            "- `factor`: [-]; 1 does nothing",
+        ]
     finally:
         del Effect.vocabulary["of_my_own"]
 
