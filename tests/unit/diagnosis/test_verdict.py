@@ -11,7 +11,7 @@ from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.residuals.lack_of_fit import Misfit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found
-from rga.diagnosis.verdict import doubts_of, verdict
+from rga.diagnosis.verdict import reasons_for_doubt, verdict
 
 SOUND = Gain(1.0, 0.9, (0.05, 0.15))
 
@@ -56,7 +56,7 @@ def test_with_a_cause(cause: Found) -> None:
 def doubts(found: Found, **changes: Any) -> list[str]:
     given: dict[str, Any] = {"faults": [], "dropped": [], "off": [], "gained": SOUND, **changes}
     channels = found.problem.data.sensors
-    return doubts_of(
+    return reasons_for_doubt(
         channels, given["faults"], found, given["dropped"], given["off"], given["gained"]
     )
 

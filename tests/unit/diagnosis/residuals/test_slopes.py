@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.diagnosis.residuals.slopes import bends, squares, straight_courses, with_free_slopes
+from rga.diagnosis.residuals.slopes import bends, linear_histories, squares, with_free_slopes
 from rga.diagnosis.search.linearised import Problem
 
 
@@ -14,7 +14,7 @@ def following(posed: Problem, by: str, power: int) -> Problem:
     belief = posed.data.belief
     number = list(belief.spread).index("temperature")
     along = posed.covariance.rows.context_jacobian[:, :, number]
-    course = straight_courses(posed)[by] ** power
+    course = linear_histories(posed)[by] ** power
     readings = posed.data.readings + along * course[:, None]
     return replace(posed, data=replace(posed.data, readings=readings))
 
@@ -57,6 +57,6 @@ def test_a_square_is_what_no_line_has() -> None:
 
 
 def test_courses_are_standard_units_of_what_varies(posed: Problem) -> None:
-    for column in straight_courses(posed).values():
+    for column in linear_histories(posed).values():
         assert column.mean() == pytest.approx(0.0, abs=1e-9)
         assert column.std() == pytest.approx(1.0)
