@@ -19,7 +19,7 @@ from rga.diagnosis.checks.robustness import (
     with_hanging_leads,
     without_unhelpful,
 )
-from rga.diagnosis.checks.support import supported
+from rga.diagnosis.checks.support import supported, unseen_gaps
 from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
@@ -131,7 +131,10 @@ def _diagnose(
     share = patterns.share_left(found.problem)
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
-    reasons = reasons_for_doubt(record.sensors, prepared.faults, found, dropped, off, gained)
+    unseen = unseen_gaps(found)
+    reasons = reasons_for_doubt(
+        record.sensors, prepared.faults, found, dropped, off, gained, unseen
+    )
     reasons += [
         f"channel {name} answers the loads in a way of its own, likelier than causes that would "
         "move other channels too: no cause was looked for in it"

@@ -35,6 +35,7 @@ def reasons_for_doubt(
     dropped: Sequence[Hypothesis],
     off: Sequence[Misfit],
     gained: Gain,
+    unseen: tuple[float, float] | None,
 ) -> list[str]:
     """In words: why neither the model nor the causes account for the record.
 
@@ -45,11 +46,14 @@ def reasons_for_doubt(
         dropped: causes that only the readings fitted spoke for.
         off: channels and groups that do not fit.
         gained: gap of the held-out rows.
+        unseen: gap of channels left out, without the causes of the structure and with them.
     """
+    named = {(one.name, *one.place.items()) for one in found.fit.hypotheses}
     fallen = [
         f"{place_words([one.kind.title, *one.place.values()])} would explain the "
         "readings fitted, and rows and channels left out do not confirm it"
         for one in dropped
+        if (one.name, *one.place.items()) not in named
     ]
     # A kind with two parameters, or from another row on, is reported once.
     reasons = list(dict.fromkeys(fallen))
@@ -64,6 +68,13 @@ def reasons_for_doubt(
         reasons.append(
             "rows that no step saw come no closer by the causes: their gap is "
             f"{gained.before:.3g} times the noise without and {gained.after:.3g} with them"
+        )
+    elif unseen is not None and gained.interval[0] <= 0:
+        reasons.append("whether rows that no step saw come closer by the causes is not sure")
+    if unseen is not None and unseen[1] > criteria.unseen_rise * unseen[0]:
+        reasons.append(
+            "channels left out of the fit are predicted worse with the causes: their gap is "
+            f"{unseen[0]:.3g} times the noise without and {unseen[1]:.3g} with them"
         )
     if gained.after > criteria.held_out_gap:
         members, gains = found.problem.levels[:2]

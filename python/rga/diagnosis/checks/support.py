@@ -68,6 +68,21 @@ def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
     return min(gains, key=lambda number: gains[number]) if gains else None
 
 
+def unseen_gaps(found: Found) -> tuple[float, float] | None:
+    """Gap of channels left out of the fit, without the causes of the structure and with them.
+
+    None where nothing can be left out, or no cause is one of the structure.
+    """
+    hypotheses = found.fit.hypotheses
+    numbers = [k for k, one in enumerate(hypotheses) if not one.kind.on_sensors]
+    groups = sensor_groups(found.base.model, found.problem.data.sensors)
+    if not numbers or len(groups) < 2:
+        return None
+    without = without_cause(found.problem, found.base, found.fit, *numbers)
+    before = unseen_gap(found.problem, found.base, without)
+    return before, unseen_gap(found.problem, found.base, found.fit)
+
+
 def worsens(found: Found, without: Fit) -> bool:
     """Whether channels that were left out get worse by a cause.
 

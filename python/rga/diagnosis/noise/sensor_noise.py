@@ -45,31 +45,40 @@ FREEDOM, INVERSE_FREEDOM = 5.0, (0.01, 0.5)
 ABOUT = 12
 
 
-def unexplainable(residual: FloatArray, observed: BoolArray, basis: FloatArray) -> FloatArray:
+def unexplainable(
+    residual: FloatArray,
+    observed: BoolArray,
+    basis: FloatArray,
+    context_error: FloatArray | float = 0.0,
+) -> FloatArray:
     """The part of a residual that no linear structure under these loads has.
 
     Args:
         residual: float[rows, sensors].
         observed: bool[rows, sensors].
         basis: float[rows, patterns], the load coefficients.
+        context_error: part of the residual that errors of contexts account for, float[rows,
+            sensors]. Steps and drifts are looked for beside it: it is the same error in many
+            channels, and may be larger from row to row than a step of one of them.
 
     Returns:
         float[rows, sensors], scaled for the degrees of freedom that the fit takes.
     """
     span = _orthonormal(basis, max(1, len(residual) // 12))
-    left = _left(residual, observed, span)
+    own = residual - context_error
+    left = _left(own, observed, span)
     moment = _step(left, observed, span)
     if moment is not None:
         # A step would else pass for noise with a long memory, the better the larger it is.
         step = (np.arange(len(residual)) >= moment).astype(float)
         span = np.column_stack([span, step])
-        left = _left(residual, observed, span)
+        left = _left(own, observed, span)
     begun = _growth(left, observed, span)
     if begun is not None:
         clock = np.arange(len(residual)) / len(residual)
         later = np.maximum(clock - clock[begun], 0.0)
-        left = _left(residual, observed, np.column_stack([span, clock, later]))
-    return left
+        span = np.column_stack([span, clock, later])
+    return _left(residual, observed, span)
 
 
 def _left(residual: FloatArray, observed: BoolArray, span: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data, first_belief
 from rga.diagnosis.data.tare import Tare
+from rga.diagnosis.preparation.bad_contexts import denied_rows, without_limits
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
 from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
 from rga.diagnosis.preparation.single_channel import BrokenChannel, lost_zeros, stuck_channels
@@ -77,6 +78,7 @@ def prepare(
     """
     criteria = criteria or Criteria()
     check_length(record, criteria.record)
+    record, limits = without_limits(record, criteria.record)
     simulator = Simulator(model.without_zeros())
     given = _data(model, record, criteria)
     record, rezeroed = with_own_zeros(model, simulator, record, given)
@@ -108,7 +110,7 @@ def prepare(
         )
     basis = load_basis(simulator, data)
     spikes = lone_spikes(data.readings, data.observed, basis, criteria.channels)
-    warnings = [*record.warnings, *rezeroed, *suspicious]
+    warnings = [*record.warnings, *limits, *rezeroed, *suspicious]
     if chosen.sum() < criteria.record.few_rows:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -119,6 +121,14 @@ def prepare(
     silent = int((~data.observed.any(1)).sum())
     if silent:
         warnings.append(f"{silent} rows without a context or without any reading were left aside")
+    denied = denied_rows(spikes, data.observed, criteria.record)
+    if denied.any():
+        warnings.append(
+            f"{int(denied.sum())} rows in which many channels jump at once were left aside: their "
+            "contexts are not what acted, or something acted that no context says"
+        )
+        data = replace(data, observed=data.observed & ~denied[:, None])
+        spikes &= ~denied[:, None]
     if spikes.any():
         of = ", ".join(np.array(data.sensors)[spikes.any(0)])
         warnings.append(f"{int(spikes.sum())} lone spikes of {of} were taken as missing readings")

@@ -9,6 +9,9 @@ from rga.arrays import BoolArray, FloatArray
 from rga.findings.criteria.channels import ChannelCriteria
 from rga.model.schema import Model
 
+#: relative rounding of readings that are the same
+ROUNDING = 1e-9
+
 Mode = Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
 
 
@@ -133,14 +136,18 @@ def copied(
         both = observed[:, number] & observed[:, other]
         if other == number or both.sum() <= 3:
             continue
-        same = both & (readings[:, number] == readings[:, other])
+        rows = np.flatnonzero(both)
+        # A zero that was taken off each by itself leaves them a constant apart.
+        apart = readings[rows, number] - readings[rows, other]
+        rounding = ROUNDING * np.abs(readings[rows, other]).max()
+        same = np.abs(apart - np.median(apart)) <= rounding
         first, end = _longest(same)
-        copied = slice(first, end)
+        copied = rows[first:end]
         if end - first < criteria.still_rows or np.ptp(readings[copied, other]) == 0:
             continue
         own, theirs = (_misfit(readings[copied, k], simulated[copied, k]) for k in (number, other))
         if own > theirs:
-            row = first if end == len(same) and first > 0 else None
+            row = int(rows[first]) if end == len(same) and first > 0 else None
             why = f"{end - first} readings in a row are exactly those of {sensors[other]}"
             return BrokenChannel(sensors[number], "copy", why, end - first, row)
     return None

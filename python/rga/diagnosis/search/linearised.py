@@ -25,6 +25,8 @@ from rga.simulation import Simulator
 
 #: difference of a derivative by a context, in its range: above rounding, below curvature
 STEP = 1e-3
+#: share of what is left below which a step or a drift was found that errors of contexts had hidden
+ALIKE = 1.0 - 1e-9
 #: share of the noise that a sensor keeps beside a shared pattern, at least
 LEAST_OWN_NOISE = 0.6
 #: how well measured contexts are calibrated: offset in deviations of their noise, and gain [-]
@@ -145,6 +147,15 @@ def pose(
     unknown_spread = [False] * factors.shape[1]
     known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
     noise, tails = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
+    if jacobian.shape[2]:
+        error = RowCovariance(noise, data.time, data.observed, jacobian).context_error(left - tails)
+        shared = np.einsum("tsi,ti->ts", jacobian, error)
+        beside = unexplainable(residual, data.observed, basis, shared)
+        size = noise.deviation
+        if ((beside / size) ** 2).sum() < ALIKE * ((left / size) ** 2).sum():
+            noise, tails = estimate_noise(
+                beside, data.time, data.observed, jacobian, start, known, floor
+            )
     residual -= tails
     rows = RowCovariance(noise, data.time, data.observed, jacobian)
     given = simulator if before is None else before.given

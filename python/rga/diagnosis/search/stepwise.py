@@ -13,6 +13,7 @@ from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Fit, fit
 from rga.diagnosis.search.linearised import Problem, pose, relaxed, resimulated
 from rga.diagnosis.search.screening import Prospect, Screening
+from rga.errors import InputError
 from rga.simulation import Simulator
 
 #: prospects that are fitted, whatever their kinds: more are far behind (FAR)
@@ -97,6 +98,7 @@ def search(
             prospects = screening.again(problem, current.simulator(base), current.hypotheses)
         promising = [one for one in worth_fitting(prospects) if one.score > 0]
         fits = sorted(fitted_beside(problem, base, current, promising), key=evidence, reverse=True)
+        fits = fits[_first_simulated(problem, base, fits) :]
         if fits and fits[0].log_evidence - current.log_evidence >= criteria.log_odds:
             best = fits[0]
         elif (hidden := _hidden_by_scatter(problem, base, current, fits, screening)) is not None:
@@ -138,7 +140,9 @@ def weighed(
                 tuple(_alternatives(problem, base, current, without, number, screening))
             )
         found = Found(problem, current, base, tuple(alternatives), tuple(odds))
-        better = max((one[0].fit for one in alternatives if one), key=evidence, default=current)
+        likelier = [one[0].fit for one in alternatives if one and one[0].behind < 0]
+        ahead = sorted(likelier, key=evidence, reverse=True)
+        better = next(iter(ahead[_first_simulated(problem, base, ahead) :]), current)
         if better.log_evidence <= current.log_evidence + WORTH_EXCHANGE:
             break
         better = with_moment(problem, base, better, len(better.hypotheses) - 1)
@@ -148,6 +152,21 @@ def weighed(
 
 def evidence(one: Fit) -> float:
     return one.log_evidence
+
+
+def _first_simulated(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> int:
+    """The number of the first fit whose effects can be simulated together, or how many there are.
+
+    Beside others an effect is tried along their signatures; friction and play, say, are not
+    simulated in one model.
+    """
+    for number, one in enumerate(fits):
+        try:
+            problem.data.predict(one.simulator(base))
+        except InputError:
+            continue
+        return number
+    return len(fits)
 
 
 def settled(simulator: Simulator, data: Data) -> Problem:
@@ -336,9 +355,12 @@ def without_needless(problem: Problem, found: Found) -> Fit:
     return current
 
 
-def without_cause(problem: Problem, base: Simulator, current: Fit, number: int) -> Fit:
-    others = [one for k, one in enumerate(current.hypotheses) if k != number]
-    return fit(problem, base, others, np.delete(current.z, current.slices()[number]))
+def without_cause(problem: Problem, base: Simulator, current: Fit, *numbers: int) -> Fit:
+    """The fit anew without some of its hypotheses."""
+    others = [one for k, one in enumerate(current.hypotheses) if k not in numbers]
+    parts = [np.arange(len(current.z))[part] for part in current.slices()]
+    gone = np.concatenate([parts[number] for number in numbers])
+    return fit(problem, base, others, np.delete(current.z, gone))
 
 
 def _alternatives(

@@ -53,6 +53,24 @@ class RecordCriteria(CriteriaGroup):
         "last share of the record over which a context repeats one value, to be warned about",
         "judgement: a tenth of a record is more than a calm",
     )
+    limit_share: Share = criterion(
+        0.1,
+        "-",
+        "share of rows in which a context may stand at the limit of its instrument, at most",
+        "judgement: what stands there longer is how the structure is used",
+    )
+    denied_channels: Count = criterion(
+        3,
+        "channels",
+        "channels that jump in one row, at least, for the row to be left aside",
+        "two gauges of one cable may jump together",
+    )
+    denied_share: Share = criterion(
+        0.2,
+        "-",
+        "share of the channels that jump in one row, at least, for the row to be left aside",
+        "judgement: faults of loggers and cables are seen in fewer",
+    )
 
     @model_validator(mode="after")
     def _least_below_most(self) -> "RecordCriteria":
