@@ -66,7 +66,9 @@ def verdict_sentence(findings: "Findings") -> str:
     elif findings.verdict == "nothing_wrong":
         sentences.append("Nothing is wrong with the model that these data could show.")
     elif findings.verdict == "unknown":
-        sentences.append("The model is wrong, and no kind of effect that is known explains it.")
+        sentences.append(
+            "Something speaks against the model, and no kind of effect that is known explains it."
+        )
     elif findings.verdict == "unidentifiable":
         sentences.append("What was sought cannot show in these data.")
     if faults:

@@ -72,11 +72,15 @@ def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
     remarks = []
     if causes.hypotheses and all(held):
         added = len(one.fit.hypotheses) > len(causes.hypotheses)
-        earned = f"what is added earns {ahead:+.1f} log-odds, too little to be named"
+        earned = f"what is added earns {ahead:+.1f} log-odds, " + (
+            "too little to be named"
+            if ahead < criteria.naming.log_odds
+            else "and rows and channels left out do not confirm it"
+        )
         remarks.append(earned if added else "what is named")
     elif causes.hypotheses:
-        close = f"cannot be told from what is named ({ahead:+.1f} log-odds)"
-        hangs = f"its distance ({ahead:+.0f} log-odds) hangs on one channel: cannot be told apart"
+        close = f"cannot be separated from what is named ({ahead:+.1f} log-odds)"
+        hangs = f"its distance ({ahead:+.0f} log-odds) hangs on one channel: cannot be separated"
         rejected = (
             hangs
             if any(_same(one.fit, r.fit) for r in rivals)

@@ -20,10 +20,12 @@ def members_and_groups(model: Model, members: set[str]) -> Iterator[dict[str, An
 
 
 def trusses(model: Model) -> Iterator[dict[str, Any]]:
-    """Truss members one by one, and groups of nothing else."""
+    """Truss members one by one, and groups of two and more of them and of nothing else."""
     bars = {name for name, member in model.members.items() if member.kind == "truss"}
     yield from ({"member": name} for name in model.members if name in bars)
-    yield from ({"group": group} for group, names in model.groups.items() if bars >= set(names))
+    for group, names in model.groups.items():
+        if len(names) > 1 and bars >= set(names):
+            yield {"group": group}
 
 
 def some_member(
