@@ -1,7 +1,7 @@
 """What must hold of any findings, however broken the record: see `check`."""
 
 from rga import Findings
-from rga.diagnosis.checks.support import worsens
+from rga.diagnosis.checks.support import unseen_gaps, worsens
 from rga.diagnosis.search.stepwise import without_cause
 from rga.model.effect import Effect
 
@@ -20,6 +20,9 @@ def check(findings: Findings) -> None:
     if findings.verdict in ("named", "ambiguous") and set(kinds) - {"sensor_fault"}:
         assert held.after < held.before
         assert held.after <= NEAR_ONE
+        found = findings.account.found
+        unseen = None if found is None else unseen_gaps(found)
+        assert unseen is None or unseen[1] <= 1.5 * unseen[0]
     if findings.verdict in ("nothing_wrong", "unknown"):
         assert not kinds
         assert findings.account.extended.effects == findings.account.model.effects

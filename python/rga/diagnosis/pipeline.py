@@ -109,7 +109,9 @@ def _diagnose(
     def reweighed(left: Found) -> Found:
         return weighed(left.problem, base, left.fit, screening, progress)
 
-    found, dropped = supported(_confirmed(found, screening, progress), whole, seed, reweighed)
+    found, dropped = supported(
+        _confirmed(found, screening, progress), start, whole, seed, reweighed
+    )
     failed: list[str] = []
     no_explanations: list[Tried] = []
     tried = spared(

@@ -69,8 +69,6 @@ def reasons_for_doubt(
             "rows that no step saw come no closer by the causes: their gap is "
             f"{gained.before:.3g} times the noise without and {gained.after:.3g} with them"
         )
-    elif unseen is not None and gained.interval[0] <= 0:
-        reasons.append("whether rows that no step saw come closer by the causes is not sure")
     if unseen is not None and unseen[1] > criteria.unseen_rise * unseen[0]:
         reasons.append(
             "channels left out of the fit are predicted worse with the causes: their gap is "

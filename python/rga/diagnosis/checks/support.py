@@ -5,7 +5,8 @@ stays where it brings the model closer to held-out rows, by an interval that lea
 where channels left out of the fit get no worse by it. Channels are left out in groups. That the
 others know a parameter badly, and miss a group by chance, is no harm: a larger gap counts where
 the readings of a group are less likely, as the others predict them. A cause at a sensor, which
-harms nobody else, stays where held-out rows do not speak against it, or where it is twice as sure.
+harms nobody else, stays where held-out rows do not speak against it, or where it is twice as sure
+and they do not surely get worse.
 """
 
 from collections.abc import Callable
@@ -14,16 +15,22 @@ from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
 from rga.diagnosis.checks.whole_record import WholeRecord, about
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Fit, refit
+from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found, settled_with, without_cause
 
 
 def supported(
-    found: Found, whole: WholeRecord, seed: int, weighed: Callable[[Found], Found]
+    found: Found,
+    start: Problem,
+    whole: WholeRecord,
+    seed: int,
+    weighed: Callable[[Found], Found],
 ) -> tuple[Found, list[Hypothesis]]:
     """What was found, less the causes that nothing speaks for but the readings fitted.
 
     Args:
         found: the end of the search.
+        start: where it began.
         whole: the record with its held-out rows.
         seed: of the bootstrap.
         weighed: weighs causes that are left against each other anew.
@@ -33,7 +40,7 @@ def supported(
     """
     dropped: list[Hypothesis] = []
     while True:
-        number = _least_supported(found, whole, seed)
+        number = _least_supported(found, start, whole, seed)
         if number is None:
             return found, dropped
         one = found.fit.hypotheses[number]
@@ -48,11 +55,16 @@ def _settled(found: Found, fit: Fit) -> Found:
     return Found(problem, fit, found.base, none, none)
 
 
-def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
-    """The number of the cause that least speaks for, of those to take out; None: of none."""
+def _least_supported(found: Found, start: Problem, whole: WholeRecord, seed: int) -> int | None:
+    """The number of the cause that least speaks for, of those to take out; None: of none.
+
+    Causes may undo each other, as the stiffness of a member and the gain of its gauge do: each is
+    needed only because of the other. Where all of them together do not bring the model closer,
+    none of the structure is left.
+    """
     problem, base, criteria = found.problem, found.base, found.problem.criteria.naming
     after = whole.simulated(problem)
-    gains = {}
+    gains, of_structure = {}, {}
     for number, one in enumerate(found.fit.hypotheses):
         without = without_cause(problem, base, found.fit, number)
         before = whole.simulated(about(problem, without.simulator(base)))
@@ -60,11 +72,15 @@ def _least_supported(found: Found, whole: WholeRecord, seed: int) -> int | None:
         if one.kind.on_sensors:
             lead = found.fit.log_evidence - without.log_evidence
             sure = lead >= criteria.sensor_multiple * criteria.log_odds
-            harmful = gained.before <= gained.after and not sure
+            harmful = gained.interval[1] < 0 or (gained.before <= gained.after and not sure)
         else:
+            of_structure[number] = gained.interval[0]
             harmful = gained.interval[0] <= 0 or worsens(found, without)
         if harmful:
             gains[number] = gained.interval[0]
+    if not gains and of_structure:
+        together = whole.gain(whole.simulated(start), after, found.fit.hypotheses, seed)
+        gains = of_structure if together.interval[0] <= 0 else {}
     return min(gains, key=lambda number: gains[number]) if gains else None
 
 
