@@ -3,7 +3,8 @@
 Imports are read from the syntax of the files, wherever they stand, so that those within functions
 count too, and nothing has to be run for it. What only type checkers see does not count. A name
 that a package opens on first use (`rga.lazy`) leads to the module that has it where it is imported
-by name; `import rga` alone leads to the front of the package, as for the import contracts.
+by name; `import rga` alone leads to the front of the package, as for the import contracts. A
+package that walks through its own modules (`pkgutil`) opens them all.
 """
 
 import ast
@@ -20,6 +21,8 @@ PACKAGES = ("rga", "rga_bench")
 ROOT = Path(__file__).parents[1]
 #: parts of a file in which statements stand
 STATEMENTS = (ast.stmt, ast.excepthandler, ast.match_case)
+#: what a package imports that opens all modules within it
+WALK = "pkgutil.walk_packages"
 
 
 def code_hash(module: str, root: Path = ROOT) -> str:
@@ -55,7 +58,10 @@ def imported_files(module: str, root: Path = ROOT) -> set[Path]:
         waiting.append(parent)
         if path.suffix == ".py":
             tree, is_package = ast.parse(path.read_bytes()), path.stem == "__init__"
-            waiting += _imports(tree, name if is_package else parent)
+            imports = list(_imports(tree, name if is_package else parent))
+            waiting += imports
+            if is_package and WALK in imports:
+                waiting += _within(name, path.parent)
             homes |= {f"{name}.{own}": home for own, home in _homes(tree) if is_package}
     return set(found.values())
 
@@ -65,6 +71,13 @@ def _file(name: str, root: Path) -> Path | None:
     folder = root.joinpath(*name.split(".")[:-1])
     found = PathFinder.find_spec(name, [str(folder)])
     return None if found is None or found.origin is None else Path(found.origin)
+
+
+def _within(package: str, folder: Path) -> Iterator[str]:
+    """Full names of all modules in the folder of a package and those below."""
+    for path in folder.rglob("*.py"):
+        if path.stem != "__init__":
+            yield ".".join((package, *path.relative_to(folder).with_suffix("").parts))
 
 
 def _imports(tree: ast.Module, package: str) -> Iterator[str]:

@@ -23,8 +23,15 @@ FILES = {
     """,
     "rga/lazy.py": "",
     "rga/simulation/__init__.py": "from rga.simulation.solver import Simulator",
-    "rga/simulation/solver.py": "from rga._core import respond",
+    "rga/simulation/solver.py": "from rga import _core, kinds",
     "rga/_core.abi3.so": "compiled",
+    "rga/kinds/__init__.py": """
+        from pkgutil import walk_packages
+        for module in walk_packages(__path__, f"{__name__}."):
+            __import__(module.name)
+    """,
+    "rga/kinds/loads/__init__.py": "",
+    "rga/kinds/loads/creep.py": "",
     "rga/networks/__init__.py": "",
     "rga/networks/training.py": "",
     "rga_bench/__init__.py": "",

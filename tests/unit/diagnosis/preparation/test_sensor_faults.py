@@ -17,12 +17,22 @@ def broken(
     basis = load_basis(posed.simulator, data)
     model, simulated = posed.simulator.model, posed.simulated
     return broken_channels(
-        model, data.sensors, readings, data.observed, simulated, basis, lambda: effects, onsets
+        model,
+        data.sensors,
+        readings,
+        data.observed,
+        simulated,
+        basis,
+        lambda: effects,
+        onsets,
+        data.criteria.channels,
     )
 
 
 def spikes(posed: Problem, readings: np.ndarray) -> np.ndarray:
-    return lone_spikes(readings, posed.data.observed, load_basis(posed.simulator, posed.data))
+    data = posed.data
+    basis = load_basis(posed.simulator, data)
+    return lone_spikes(readings, data.observed, basis, data.criteria.channels)
 
 
 @pytest.fixture

@@ -14,6 +14,7 @@ from rga.diagnosis.preparation.single_channel import (
     silent,
     stuck_channels,
 )
+from rga.findings.criteria.channels import ChannelCriteria
 from rga.model import Model
 
 ROWS = 60
@@ -21,32 +22,36 @@ DRAW = np.random.default_rng(2)
 SIMULATED = 3.0 * np.sin(0.3 * np.arange(ROWS))
 SOUND = SIMULATED + 0.1 * DRAW.standard_normal(ROWS)
 SEEN = np.ones(ROWS, dtype=bool)
+CRITERIA = ChannelCriteria()
 
 
 def of_stuck(column: np.ndarray) -> list[BrokenChannel]:
-    return stuck_channels(("A",), column[:, None], SEEN[:, None])
+    return stuck_channels(("A",), column[:, None], SEEN[:, None], CRITERIA)
 
 
 def of_silent(column: np.ndarray) -> BrokenChannel | None:
-    return silent("A", column, SEEN, SIMULATED)
+    return silent("A", column, SEEN, SIMULATED, CRITERIA)
 
 
 def of_copied(readings: np.ndarray, simulated: np.ndarray, number: int) -> BrokenChannel | None:
-    return copied(("A", "B"), readings, np.ones(readings.shape, dtype=bool), simulated, number)
+    seen = np.ones(readings.shape, dtype=bool)
+    return copied(("A", "B"), readings, seen, simulated, number, CRITERIA)
 
 
 def of_dead(column: np.ndarray) -> BrokenChannel | None:
-    return dead("A", column, SIMULATED)
+    return dead("A", column, SIMULATED, CRITERIA)
 
 
 def of_lost(column: np.ndarray, loaded: np.ndarray) -> list[BrokenChannel]:
-    return lost_zeros(("A",), column[:, None], SEEN[:, None], loaded)
+    return lost_zeros(("A",), column[:, None], SEEN[:, None], loaded, CRITERIA)
 
 
 def of_scaled(model: Model, readings: np.ndarray, simulated: np.ndarray) -> list[str]:
     sensors = ("S L0-L1", "S L2-L3", "S U1-U2", "S U2-U3")
     seen = np.ones(readings.shape, dtype=bool)
-    every = (scaled(model, sensors, readings, seen, simulated, number) for number in range(4))
+    every = (
+        scaled(model, sensors, readings, seen, simulated, number, CRITERIA) for number in range(4)
+    )
     return [one.sensor for one in every if one is not None]
 
 
@@ -78,7 +83,7 @@ def test_a_channel_may_be_still_where_nothing_moves() -> None:
     quiet[35:] = quiet[35]
     column = SOUND.copy()
     column[35:] = 1.3
-    assert silent("A", column, SEEN, quiet) is None
+    assert silent("A", column, SEEN, quiet, CRITERIA) is None
 
 
 def test_the_channel_that_goes_with_the_other_is_the_copy() -> None:
