@@ -10,7 +10,8 @@ import pytest
 
 from rga_bench.diagnosis.design import Draw
 from rga_bench.diagnosis.judge import DrawOutcome, judge
-from rga_bench.diagnosis.run import run
+from rga_bench.experiment import Execution
+from rga_bench.ledger import outcomes_of
 
 NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
 
@@ -19,7 +20,8 @@ NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
 def outcomes() -> dict[str, DrawOutcome]:
     """A draw and its null twin for every name."""
     hidden = [Draw.parse(name) for name in NAMES]
-    done = run([*hidden, *(replace(one, null=True) for one in hidden)], workers=2)
+    tasks = [*hidden, *(replace(one, null=True) for one in hidden)]
+    done = outcomes_of(judge, tasks, DrawOutcome, Execution(workers=2))
     return {one.id: one for one in done}
 
 
