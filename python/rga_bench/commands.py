@@ -175,7 +175,7 @@ def _perform(
         console = Console()
         console.width = max(console.width, WIDTH)
         for part in page.terminal():
-            console.print(part)
+            console.print(part, crop=False)
 
 
 @_experiment(WORKERS, DASK, MINUTES, KEPT)

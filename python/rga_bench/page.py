@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from rich.console import RenderableType
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from rga_bench.sheet import Sheet
@@ -78,4 +78,5 @@ class PlainPage:
 
     def terminal(self) -> Iterator[RenderableType]:
         """The tables, whose lines are not broken."""
-        yield Text(self.tables, no_wrap=True, overflow="ignore", end="")
+        # In a group a text keeps its own rules of breaking.
+        yield Group(Text(self.tables, no_wrap=True, overflow="ignore", end=""))

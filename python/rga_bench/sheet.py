@@ -15,7 +15,7 @@ class Sheet:
     Attributes:
         title: above it; "": none.
         headings: of the columns.
-        rows: cells; a row of one cell is the heading of those below it.
+        rows: cells; one alone among several columns is the heading of the rows below it.
         numbers: whether all columns but the first one are set to the right.
     """
 
@@ -31,9 +31,10 @@ class Sheet:
             side: Literal["right", "left"] = "right" if self.numbers and number else "left"
             table.add_column(Text(heading), justify=side, no_wrap=number == 0)
         for row in self.rows:
-            if len(row) == 1:
+            section = self._is_section(row)
+            if section:
                 table.add_section()
-            table.add_row(*(Text(cell, style="bold" if len(row) == 1 else "") for cell in row))
+            table.add_row(*(Text(cell, style="bold" if section else "") for cell in row))
         return table
 
     def markdown(self) -> list[str]:
@@ -42,7 +43,10 @@ class Sheet:
         title = [f"## {self.title}", ""] if self.title else []
         return [*title, *map(self._line, [self.headings, rule, *self.rows]), ""]
 
+    def _is_section(self, row: Sequence[str]) -> bool:
+        return len(row) < len(self.headings)
+
     def _line(self, row: Sequence[str]) -> str:
-        if len(row) == 1:
+        if self._is_section(row):
             row = [f"**{row[0]}**", *[""] * (len(self.headings) - 1)]
         return f"| {' | '.join(row)} |"

@@ -64,7 +64,7 @@ def draw_stream(
     ``truth`` has the keys of a case and two more. ``drift`` is None, or holds the times ``from``
     and ``until`` [s] of the event's first and last row, the ranges ``novel`` that the contexts had
     in its full swing and ``ordinary`` those of all other days; ``contexts`` holds the true
-    courses. ``d_prime`` is that of ``sight.py``.
+    courses. ``d_prime`` is that of ``observability.py``.
 
     Same seed, same bits, for any number of threads.
 
