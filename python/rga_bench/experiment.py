@@ -4,9 +4,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
-from rga_bench.page import Page
+if TYPE_CHECKING:
+    from rga_bench.page import Page
 
 Result = TypeVar("Result")
 
@@ -53,7 +54,7 @@ class Experiment(ABC, Generic[Result]):
         """
 
     @abstractmethod
-    def page(self, result: Result, command: str) -> Page:
+    def page(self, result: Result, command: str) -> "Page":
         """The tables, and what is said about them.
 
         Args:
