@@ -1,0 +1,80 @@
+"""Causes as effects of a model file: estimates, intervals, onsets, dead channels."""
+
+import numpy as np
+import pytest
+
+from known_problem import candidate, change_of, found_with, with_white_noise
+from rga.diagnosis.assemble.effects import (
+    cause_name,
+    content,
+    effects_of,
+    estimated_effects,
+    fault_effect,
+    last_effect,
+)
+from rga.diagnosis.preparation.prepare import PreparedRecord
+from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.search.linearised import Problem
+from rga.model import Model, read_effect
+
+HALF_WIDTH = 1.6448536269514722
+
+
+def off_by(noisy: Problem, kind: str, z: float, **place: str) -> Problem:
+    change = change_of(noisy, candidate(noisy, kind, **place), z)
+    return with_white_noise(noisy, noisy.residual(noisy.simulated) + change)
+
+
+def test_an_estimate_has_the_interval_of_its_spread(
+    noisy: Problem, prepared: PreparedRecord
+) -> None:
+    problem = off_by(noisy, "sensor_bias", 0.1, sensor="D1")
+    found = found_with(problem, [candidate(noisy, "sensor_bias", sensor="D1")])
+    (effect,) = estimated_effects(found.fit, prepared.record)
+    told = content(effect)
+    scale = 5.0
+    half = HALF_WIDTH * scale * found.fit.spreads()[0]
+    value = scale * found.fit.z[0]
+    assert told["kind"] == "sensor_bias"
+    assert told["sensor"] == "D1"
+    assert told["offset"]["value"] == pytest.approx(value)
+    assert told["offset"]["ci90"] == pytest.approx([value - half, value + half])
+    assert "onset" not in told
+
+
+def test_a_late_effect_has_its_onset_and_profile(noisy: Problem, prepared: PreparedRecord) -> None:
+    one = candidate(noisy, "sensor_bias", sensor="D1")
+    moment, end = (float(noisy.data.time[row]) for row in (40, 70))
+    found = found_with(noisy, [one.beginning(moment, "ramp", end)])
+    told = last_effect(found.fit, prepared.record)
+    label = prepared.record.time_label
+    origin = prepared.record.origin
+    assert told["onset"] == label(moment - origin)
+    assert (told["profile"], told["end"]) == ("ramp", label(end - origin))
+
+
+@pytest.mark.parametrize(("factor", "kind"), [(0.0, "sensor_fault"), (0.7, "sensor_gain")])
+def test_a_gain_of_nothing_is_a_dead_channel(
+    noisy: Problem, prepared: PreparedRecord, factor: float, kind: str
+) -> None:
+    gain = candidate(noisy, "sensor_gain", sensor="D1")
+    problem = off_by(noisy, "sensor_gain", gain.priors["factor"].z(factor), sensor="D1")
+    (effect,) = effects_of(found_with(problem, [gain]), prepared.record)
+    assert effect.kind == kind
+    assert effect.place["sensor"] == "D1"
+
+
+def test_a_broken_channel_is_a_fault_from_its_row_on(prepared: PreparedRecord) -> None:
+    always = fault_effect(BrokenChannel("D1", "stuck", "it is still", 9), prepared.record)
+    assert content(always) == {"kind": "sensor_fault", "sensor": "D1", "mode": "stuck"}
+    late = fault_effect(BrokenChannel("D1", "dead", "it reads 0", 9, 25), prepared.record)
+    assert late.onset == prepared.record.time_label(float(prepared.record.time[25]))
+
+
+def test_a_cause_has_a_name_that_is_new(model: Model) -> None:
+    low = {"kind": "support_settlement", "support": "east", "dof": "uz", "displacement": -0.01}
+    effect = read_effect(low, "test")
+    assert cause_name(model, effect) == "support settlement east uz"
+    taken = model.extended({"support settlement east uz": effect})
+    assert cause_name(taken, effect) == "support settlement east uz (found)"
+    assert np.isfinite(content(effect)["displacement"])

@@ -1,0 +1,52 @@
+"""The order of the steps: a record in, findings out, and nothing found where nothing is hidden."""
+
+from collections.abc import Callable
+
+import pytest
+
+from rga.diagnosis.pipeline import diagnose
+from rga.findings import Findings
+from rga.model import Model
+from rga.records import Record
+
+Said = list[tuple[str, float]]
+
+
+@pytest.fixture(scope="module")
+def diagnosed(
+    model: Model, measured_record: Callable[..., Record]
+) -> tuple[Findings, Findings, Said]:
+    """Findings of a record with an offset, of its null twin, and the progress of the first."""
+    said: Said = []
+    off = {"kind": "sensor_bias", "sensor": "D2", "offset": 0.5}
+    return (
+        diagnose(model, measured_record(model, off), progress=lambda *one: said.append(one)),
+        diagnose(model, measured_record(model)),
+        said,
+    )
+
+
+def test_what_is_hidden_is_named(diagnosed: tuple[Findings, Findings, Said]) -> None:
+    found, _, _ = diagnosed
+    (cause,) = found.causes
+    assert found.verdict == "named"
+    assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_bias", "D2")
+    low, high = cause.effect["offset"]["ci90"]
+    assert low < 0.5 < high
+    assert found.gap.after == pytest.approx(1.0, abs=0.1)
+    assert found.gap.held_out.gain_ci90[0] > 0
+    assert list(found.account.extended.effects)[-1] == "sensor bias D2"
+
+
+def test_where_nothing_is_hidden_nothing_is_found(
+    diagnosed: tuple[Findings, Findings, Said],
+) -> None:
+    _, null, _ = diagnosed
+    assert (null.verdict, null.causes, null.warnings) == ("nothing_wrong", [], [])
+    assert null.gap.held_out.gain == 0.0
+
+
+def test_progress_is_said_in_stages(diagnosed: tuple[Findings, Findings, Said]) -> None:
+    *_, said = diagnosed
+    assert {"screening", "comparing explanations"} <= {stage for stage, _ in said}
+    assert all(0 <= done <= 1 for _, done in said)

@@ -1,0 +1,61 @@
+"""Drawn readings: how often the true explanation wins, beside what the separation promises."""
+
+import numpy as np
+import pytest
+
+from rga.experiments.measurement_model import Errors, MeasurementModel
+from rga.experiments.separation import Pair, covariance, success
+from rga.planning.monte_carlo import Judge, checked
+from rga.planning.selection import Chooser
+
+
+@pytest.fixture(scope="module")
+def present(bridge: MeasurementModel, pair: Pair) -> np.ndarray:
+    """The first test, read by all sensors that work."""
+    mask = np.zeros_like(pair.difference)
+    mask[bridge.operating + 1, : bridge.standing] = 1.0
+    return mask
+
+
+def test_the_true_explanation_wins_as_often_as_promised(
+    bridge: MeasurementModel, errors: Errors, pair: Pair, present: np.ndarray
+) -> None:
+    (separation,) = Chooser(bridge, errors, [pair]).separation([], [1])
+    found = checked(bridge, pair.cause, pair.rival, present, 4.6, 0)
+    assert found.draws == 100
+    assert found.won == pytest.approx(success(float(separation), 0.0), abs=0.15)
+    assert found.clearly == pytest.approx(success(float(separation), 4.6), abs=0.2)
+    assert found.clearly <= found.won
+
+
+def test_alike_explanations_win_by_chance(
+    bridge: MeasurementModel, pair: Pair, present: np.ndarray
+) -> None:
+    found = checked(bridge, pair.cause, pair.cause, present, 4.6, 0)
+    assert found.clearly == 0.0
+
+
+def test_the_same_seed_draws_the_same_and_nothing_measured_draws_nothing(
+    bridge: MeasurementModel, pair: Pair, present: np.ndarray
+) -> None:
+    one, again = (checked(bridge, pair.cause, pair.rival, present, 4.6, 3) for _ in range(2))
+    assert one == again
+    none = checked(bridge, pair.cause, pair.rival, np.zeros_like(present), 4.6, 0)
+    assert (none.draws, none.won, none.clearly) == (0, 0.0, 0.0)
+
+
+def test_evidence_of_an_unknown_that_acts_straight_is_that_of_the_textbook(
+    bridge: MeasurementModel, errors: Errors, pair: Pair, present: np.ndarray
+) -> None:
+    """-1/2 (r' (C + s s')^-1 r + log det(I + s' C^-1 s)) with s the derivative by the unknown."""
+    whole = covariance(errors, present)
+    judge = Judge(bridge, pair.rival, present, np.linalg.cholesky(whole))
+    predicted = judge.predicted(np.zeros(1))
+    slope = judge.predicted(np.array([1e-3])) - predicted
+    slope = slope / 1e-3
+    residual = 0.4 * slope + np.sqrt(np.diag(whole)) * np.resize([1.0, -1.0, 0.5], len(slope))
+    square = residual @ np.linalg.solve(whole + np.outer(slope, slope), residual)
+    freedom = np.log1p(slope @ np.linalg.solve(whole, slope))
+    assert judge.log_evidence(predicted + residual) == pytest.approx(
+        -0.5 * (square + freedom), rel=1e-3
+    )

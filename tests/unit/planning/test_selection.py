@@ -1,0 +1,83 @@
+"""The choice of measurements: as good as an exhaustive search, cheap, and within its budget."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from rga.experiments.measurement_model import Errors, MeasurementModel
+from rga.experiments.separation import Pair, covariance
+from rga.planning.selection import Chooser
+
+
+@pytest.fixture(scope="module")
+def chooser(bridge: MeasurementModel, errors: Errors, pair: Pair) -> Chooser:
+    return Chooser(bridge, errors, [pair])
+
+
+def test_separation_is_that_of_the_whole_covariance(
+    bridge: MeasurementModel, errors: Errors, pair: Pair, chooser: Chooser
+) -> None:
+    """sqrt(D' C^-1 D) with the unknowns of both explanations in C."""
+    present = np.zeros_like(pair.difference)
+    sensor, test = bridge.standing + 2, 1
+    present[: bridge.operating, sensor] = 1
+    present[bridge.operating + test, [*range(bridge.standing), sensor]] = 1
+    loose = pair.loose[:, present > 0]
+    whole = covariance(errors, present) + loose.T @ loose
+    difference = pair.difference[present > 0]
+    expected = np.sqrt(difference @ np.linalg.solve(whole, difference))
+    assert chooser.separation([sensor], [test]) == pytest.approx([expected], rel=1e-6)
+    assert chooser.separation([], []) == pytest.approx([0.0])
+
+
+def test_one_sensor_is_the_best_of_all_for_its_cost(
+    bridge: MeasurementModel, chooser: Chooser
+) -> None:
+    choice = chooser.best(1, 0)
+    (sensor,) = choice.sensors
+    assert choice.tests == ()
+    alone = {k: chooser.separation([k], [])[0] for k in range(bridge.standing, len(bridge.sensors))}
+    costs = {k: bridge.added[k - bridge.standing].cost for k in alone}
+    rate = {k: min(one, 5.5) ** 2 / costs[k] for k, one in alone.items()}
+    assert rate[sensor] == pytest.approx(max(rate.values()), rel=0.05)
+
+
+def test_two_sensors_are_nearly_those_of_an_exhaustive_search(
+    bridge: MeasurementModel, chooser: Chooser
+) -> None:
+    choice = chooser.best(2, 0)
+    assert len(choice.sensors) <= 2
+    columns = range(bridge.standing, len(bridge.sensors))
+    best = max(chooser.separation(pair, [])[0] for pair in combinations(columns, 2))
+    assert min(choice.separation[0], 5.5) >= 0.9 * min(best, 5.5)
+
+
+def test_no_budget_buys_nothing(chooser: Chooser) -> None:
+    choice = chooser.best(0, 0)
+    assert (choice.sensors, choice.tests) == ((), ())
+    assert chooser.cost(choice) == 0.0
+
+
+def test_what_is_needless_is_not_bought(
+    bridge: MeasurementModel, errors: Errors, pair: Pair
+) -> None:
+    """Explanations that any test separates cost one measurement, whatever the budget."""
+    apart = Pair(pair.cause, pair.rival, pair.predicted * 50, pair.unknown)
+    chooser = Chooser(bridge, errors, [apart])
+    choice = chooser.best(4, 4)
+    assert len(choice.sensors) + len(choice.tests) == 1
+    cheapest = min(one.cost for one in [*bridge.added, *bridge.tests])
+    assert chooser.cost(choice) == pytest.approx(cheapest, abs=0.5)
+
+
+def test_of_choices_alike_the_advised_one_is_taken(
+    bridge: MeasurementModel, chooser: Chooser
+) -> None:
+    plain = chooser.best(1, 0)
+    again = chooser.best(1, 0, (plain.sensors, ()))
+    assert again.sensors == plain.sensors
+    useless = min(
+        range(bridge.standing, len(bridge.sensors)), key=lambda k: chooser.separation([k], [])[0]
+    )
+    assert chooser.best(1, 0, ((useless,), ())).sensors == plain.sensors
