@@ -22,7 +22,7 @@ dev:  ## once, and after a change of Rust: an environment that uses the sources 
 quick:  ## lint, types and unit tests in the environment of `make dev`, within a minute
 	$(DEV)/ruff check
 	$(DEV)/ruff format --check
-	$(DEV)/mypy --strict python
+	$(DEV)/mypy --strict python tests/typing
 	$(DEV)/lint-imports
 	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
 
@@ -32,7 +32,7 @@ test: wheel  ## build and install rga in a fresh environment, and run every chec
 	$(TEST)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[test]"
 	$(TEST)/ruff check
 	$(TEST)/ruff format --check
-	$(TEST)/mypy --strict python
+	$(TEST)/mypy --strict python tests/typing
 	$(TEST)/lint-imports --no-cache
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings

@@ -40,6 +40,12 @@ def test_where_no_cause_of_the_structure_is_there_is_nothing_to_weigh(
     assert own_response(found_with(posed, [])) is None
 
 
+def test_a_sound_channel_is_none_beside_a_needless_cause(posed: Problem) -> None:
+    """What is free is charged for."""
+    needless = candidate(posed, "support_settlement", support="east", dof="uz")
+    assert own_response(found_with(posed, [needless])) is None
+
+
 def test_a_cause_that_many_channels_show_is_no_channel_of_its_own(
     model: Model, prepared: PreparedRecord
 ) -> None:

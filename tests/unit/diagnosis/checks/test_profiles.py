@@ -1,5 +1,7 @@
 """Profiles: parabolas of a parameter that acts straight, and chances of onsets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,23 @@ def test_what_another_cause_can_do_widens_a_profile(noisy: Problem) -> None:
     assert (alone.parameter, alone.unit) == ("displacement", "m")
     assert np.ptp(beside.values) > 1.3 * np.ptp(alone.values)
     np.testing.assert_allclose(beside.height, -(beside.away**2) / 2, rtol=1e-3, atol=1e-3)
+
+
+def test_other_parameters_adapt_even_where_the_information_does_not_say_so(
+    noisy: Problem,
+) -> None:
+    """Along one coordinate alone the height is that of the marginal posterior all the same."""
+    two = [
+        candidate(noisy, "support_settlement", support="east", dof="uz"),
+        candidate(noisy, "sensor_bias", sensor="D3"),
+    ]
+    found = found_with(noisy, two)
+    whole = found.fit.information
+    apart = replace(found, fit=replace(found.fit, information=np.diag(np.diag(whole))))
+    (one,) = profiles(apart, 0)
+    steps = one.away / np.sqrt(whole[0, 0])
+    expected = -(steps**2) / (2 * np.linalg.inv(whole)[0, 0])
+    np.testing.assert_allclose(one.height, expected, rtol=1e-3, atol=1e-6)
 
 
 def test_onsets_count_from_the_first_row(noisy: Problem) -> None:

@@ -11,6 +11,7 @@ from rga.diagnosis.search.stepwise import (
     Found,
     fitted_beside,
     search,
+    weighed,
     with_moment,
     without_cause,
     without_needless,
@@ -67,6 +68,16 @@ def test_what_another_noise_does_not_speak_for_is_needless(noisy: Problem) -> No
     deaf = with_white_noise(noisy, problem.residual(problem.simulated), sigma)
     (left,) = without_needless(deaf, found).hypotheses
     assert left.name == "support_settlement"
+
+
+def test_a_cause_that_earns_nothing_is_taken_out(noisy: Problem) -> None:
+    problem = with_hidden(noisy, SUNK)
+    sunk, bias = (candidate(problem, kind, **at) for kind, at, _ in (SUNK, OFF))
+    both = fit(problem, problem.simulator, [sunk, bias], [0.2, 0.1])
+    screening = Screening(problem, problem.simulator, [sunk, bias])
+    left = weighed(problem, problem.simulator, both, screening, lambda stage, done: None)
+    assert [one.name for one in left.fit.hypotheses] == ["support_settlement"]
+    assert left.log_odds[0] > 20
 
 
 def test_an_onset_moves_to_its_likeliest_row(noisy: Problem) -> None:

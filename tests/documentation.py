@@ -1,0 +1,47 @@
+"""The pages of the documentation, their blocks of code and the command lines in them."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(
+    r"(?:^<!-- not run: (?P<reason>.+?) -->\n)?^```(?P<language>\w*)\n(?P<code>.*?)^```$",
+    re.MULTILINE | re.DOTALL,
+)
+SHELL = ("", "sh", "console", "bash")
+
+
+@dataclass(frozen=True)
+class CodeBlock:
+    """A block between fences.
+
+    Attributes:
+        language: as it stands behind the fence.
+        code: between the fences.
+        reason: why it is not run, from a comment right before it; empty where it is.
+    """
+
+    language: str
+    code: str
+    reason: str
+
+
+def blocks(page: Path) -> list[CodeBlock]:
+    """The blocks of a page, in their order."""
+    found = BLOCK.finditer(page.read_text(encoding="utf-8"))
+    return [CodeBlock(one["language"], one["code"], one["reason"] or "") for one in found]
+
+
+def command_lines(page: Path) -> list[str]:
+    """Every line in a block, and every span in the text, that begins with `rga `."""
+    lines = [
+        line.removeprefix("$ ")
+        for block in blocks(page)
+        if block.language in SHELL
+        for line in block.code.splitlines()
+    ]
+    prose = BLOCK.sub("", page.read_text(encoding="utf-8"))
+    spans = [" ".join(one.split()) for one in re.findall(r"`(rga [^`]+)`", prose)]
+    return [line for line in [*lines, *spans] if line.startswith("rga ")]
