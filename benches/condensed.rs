@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use rga_core::{Condensed, Directions};
+use rga_core::{Condensation, Directions, UnitResponses};
 
 const ROWS: usize = 4096;
 const PATTERNS: usize = 12;
@@ -16,22 +16,25 @@ fn spread(count: usize) -> Vec<f64> {
         .collect()
 }
 
-fn condensed(terms: usize) -> Condensed {
-    let mut stiffness = spread(terms * terms);
+fn condensation(terms: usize) -> Condensation {
+    let mut unit = spread(terms * terms);
     for row in 0..terms {
         for column in 0..row {
-            stiffness[row * terms + column] = stiffness[column * terms + row];
+            unit[row * terms + column] = unit[column * terms + row];
         }
-        stiffness[row * terms + row] = terms as f64;
+        unit[row * terms + row] = terms as f64;
     }
-    Condensed::new(
-        [PATTERNS, terms, OUTPUTS],
-        &spread(PATTERNS * OUTPUTS),
-        &spread(PATTERNS * terms),
-        &stiffness,
-        &spread(terms * OUTPUTS),
-    )
-    .expect("the sizes fit")
+    Condensation::new(UnitResponses {
+        patterns: PATTERNS,
+        outputs: OUTPUTS,
+        elements: terms,
+        element: (0..terms).collect(),
+        stiffness: vec![0.0; terms],
+        loaded: spread(PATTERNS * OUTPUTS),
+        stretched: spread(PATTERNS * terms),
+        influence: spread(terms * OUTPUTS),
+        unit,
+    })
 }
 
 fn bench(criterion: &mut Criterion) {
@@ -39,8 +42,12 @@ fn bench(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("4096 samples");
     group.throughput(Throughput::Elements(ROWS as u64));
     for (name, terms) in [("C1", 0), ("C2, ten terms", 10)] {
-        let structure = condensed(terms);
-        let changes = spread(ROWS * terms);
+        let structure = condensation(terms);
+        let structure = structure.samples().expect("terms are independent");
+        let changes: Vec<f64> = spread(ROWS * terms)
+            .iter()
+            .map(|change| 0.01 * change)
+            .collect();
         let mut results = vec![0.0; ROWS * OUTPUTS];
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -50,8 +57,12 @@ fn bench(criterion: &mut Criterion) {
             });
         });
     }
-    let structure = condensed(10);
-    let changes = spread(ROWS * 10);
+    let structure = condensation(10);
+    let structure = structure.samples().expect("terms are independent");
+    let changes: Vec<f64> = spread(ROWS * 10)
+        .iter()
+        .map(|change| 0.01 * change)
+        .collect();
     let directions = Directions {
         count: 8,
         loads: (0..6).map(|at| (at, at)).collect(),

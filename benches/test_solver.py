@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rga import _core
-from rga.simulation.paths.condensation import Condensation
+from rga._core import Condensation
 from rga.simulation.paths.factorisation import Factorisation
 from rga_bench.solver.box_bridge import box_bridge
 

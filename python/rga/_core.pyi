@@ -9,14 +9,19 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "ChangeStatistics",
-    "Condensed",
+    "Condensation",
+    "DependentTerms",
     "GaussianWindow",
     "InvalidInput",
+    "Loaded",
     "NotConverged",
     "OutputKind",
+    "Reanalysis",
     "Refactored",
+    "StiffnessDifference",
     "UnstableSample",
     "UnstableStructure",
+    "count_terms",
     "instructions",
     "respond",
     "respond_nonlinear",
@@ -50,6 +55,9 @@ class UnstableStructure(ArithmeticError):
     """Of `Refactored` and `respond_nonlinear`: the row of the sample."""
     share: float | None
     """Of `respond_nonlinear`: the part of the load that is carried."""
+
+class DependentTerms(ArithmeticError):
+    """Elongations of members and springs that vary depend on each other, or are prescribed."""
 
 class UnstableSample(ArithmeticError):
     """The stiffnesses of a sample leave no stable structure."""
@@ -89,20 +97,54 @@ def slide(
     """Coulomb friction forces [rows, bearings] of bearings through time."""
 
 @final
-class Condensed:
-    """Samples of a structure of which few stiffnesses vary; `help(Condensed)` tells the arrays."""
+class Condensation:
+    """A structure of which few stiffnesses vary, or none; `help(Condensation)` tells the algebra.
+
+    What varies is condensed onto r terms of rank one; samples are given by the stiffness of each
+    member and spring that varies, e of them.
+    """
 
     def __new__(
         cls,
-        loaded: NDArray[np.float64],
-        driven: NDArray[np.float64],
-        stiffness: NDArray[np.float64],
-        influence: NDArray[np.float64],
+        structure: dict[str, NDArray[Any]],
+        loads: dict[str, NDArray[Any]],
+        outputs: dict[str, NDArray[Any]],
+        members: NDArray[np.int64],
+        springs: NDArray[np.int64],
+        axial: bool = False,
     ) -> Self: ...
+    @property
+    def terms(self) -> int:
+        """How many terms there are, r."""
+
+    @property
+    def stiffness(self) -> NDArray[np.float64]:
+        """Of the terms in the structure as it is [r]."""
+
+    @property
+    def element(self) -> NDArray[np.int64]:
+        """Place of each term among the members, then springs, that vary [r]."""
+
+    @property
+    def loaded(self) -> NDArray[np.float64]:
+        """Outputs under unit loads [p, o]."""
+
+    @property
+    def stretched(self) -> NDArray[np.float64]:
+        """Elongations of the terms under unit loads [p, r]."""
+
+    @property
+    def influence(self) -> NDArray[np.float64]:
+        """Outputs under unit pseudo-forces [r, o]."""
+
+    @property
+    def unit(self) -> NDArray[np.float64]:
+        """Elongations under unit pseudo-forces [r, r]."""
+
     def respond(
         self,
         coefficients: NDArray[np.float64],
-        changes: NDArray[np.float64],
+        stiffness: NDArray[np.float64],
         threads: int = 1,
         out: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
@@ -111,24 +153,70 @@ class Condensed:
     def differentiate(
         self,
         coefficients: NDArray[np.float64],
-        changes: NDArray[np.float64],
-        count: int,
-        loads: NDArray[np.int64],
+        stiffness: NDArray[np.float64],
         coefficient_rates: NDArray[np.float64],
-        terms: NDArray[np.int64],
-        change_rates: NDArray[np.float64],
+        stiffness_rates: NDArray[np.float64],
         threads: int = 1,
     ) -> NDArray[np.float64]:
-        """Derivatives [n, count, o] along directions."""
+        """Derivatives [n, o, c] along c directions, from rates [n, p, c] and [n, e, c]."""
 
     def pull_back(
         self,
         coefficients: NDArray[np.float64],
-        changes: NDArray[np.float64],
+        stiffness: NDArray[np.float64],
         gradients: NDArray[np.float64],
         threads: int = 1,
     ) -> NDArray[np.float64]:
-        """Gradients [n, p + r] of outputs times gradients [n, o]: the adjoint."""
+        """Gradients [n, p + e] of outputs times gradients [n, o]: the adjoint."""
+
+@final
+class Reanalysis:
+    """A structure solved once, and those near it; `help(Reanalysis)` tells more."""
+
+    def __new__(
+        cls, structure: dict[str, NDArray[Any]], outputs: dict[str, NDArray[Any]]
+    ) -> Self: ...
+    def under(self, loads: dict[str, NDArray[Any]]) -> Loaded:
+        """The structure under loads."""
+
+    def differing(
+        self, structure: dict[str, NDArray[Any]], outputs: dict[str, NDArray[Any]]
+    ) -> StiffnessDifference | None:
+        """Where stiffnesses differ; None where more than few stiffnesses do."""
+
+    def changed(
+        self,
+        loaded: Loaded,
+        structure: dict[str, NDArray[Any]],
+        difference: StiffnessDifference,
+    ) -> NDArray[np.float64]:
+        """Outputs [p, o] of a structure near this one under loads."""
+
+    def onto(
+        self, loaded: Loaded, members: NDArray[np.int64], springs: NDArray[np.int64]
+    ) -> Condensation | None:
+        """The structure under loads condensed along members and onto springs."""
+
+    def rates(self, loaded: Loaded) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Members [k], and derivatives [k, p, o] of the outputs by the logarithm of their EA."""
+
+@final
+class Loaded:
+    """What load patterns do to the structure of a `Reanalysis`."""
+
+    @property
+    def outputs(self) -> NDArray[np.float64]:
+        """Outputs [p, o]."""
+
+    def choose(self, other: Loaded | None, places: Sequence[int]) -> Loaded:
+        """Patterns of this and of another behind it, by their places."""
+
+@final
+class StiffnessDifference:
+    """Where the stiffness of a structure differs from that of a `Reanalysis`."""
+
+    def __bool__(self) -> bool:
+        """Whether anything differs."""
 
 @final
 class Refactored:
@@ -153,14 +241,12 @@ class Refactored:
         self,
         factors: NDArray[np.float64],
         coefficients: NDArray[np.float64],
-        directions: int,
-        loads: NDArray[np.int64],
-        coefficient_rates: NDArray[np.float64],
         elements: NDArray[np.int64],
         factor_rates: NDArray[np.float64],
+        coefficient_rates: NDArray[np.float64],
         threads: int = 1,
     ) -> NDArray[np.float64]:
-        """Derivatives [n, directions, o] along directions."""
+        """Derivatives [n, o, c] along c directions, from rates [n, e, c] and [n, p, c]."""
 
     def pull_back(
         self,
@@ -253,6 +339,14 @@ class GaussianWindow:
         """The window that `to_bytes` stored; InputError for other bytes."""
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
+
+def count_terms(
+    structure: dict[str, NDArray[Any]],
+    outputs: dict[str, NDArray[Any]],
+    members: NDArray[np.int64],
+    springs: NDArray[np.int64],
+) -> int:
+    """How many terms of rank one vary with members and springs."""
 
 def instructions() -> list[str]:
     """Instruction sets that `Refactored` can solve samples with here, the best first."""

@@ -3,15 +3,16 @@
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga import _core
+from rga._core import Condensation, DependentTerms
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.model.structure import Load, Structure
-from rga.simulation.paths.condensation import Condensation, DependentTerms
 from rga.simulation.paths.factorisation import Factorisation
 from rga.simulation.paths.friction import respond_with_friction
 from rga.simulation.paths.large_displacements import respond_deformed
@@ -229,7 +230,8 @@ def _each_state(request: Request) -> FloatArray:
         elif structure.bearings:
             parts.append(respond_with_friction(structure, loads))
         else:
-            parts.append(_combined(respond(structure, loads, structure.outputs), loads))
+            of_structure = _condense(structure, patterns(structure, loads))
+            parts.append(of_structure.respond(coefficients(loads), np.zeros((len(chosen), 0))))
     out = np.empty((len(order), parts[0].shape[1]))
     out[order] = np.concatenate(parts)
     return out
@@ -244,15 +246,6 @@ def with_laws(request: Request, structure: Structure, loads: list[Load]) -> Floa
     members, springs = terms_of(structure)
     linear = condensed(request.prepared, structure, loads, members, springs, axial=True)
     return respond_with_laws(structure, linear, coefficients(loads))
-
-
-def _combined(responses: FloatArray, loads: list[Load]) -> FloatArray:
-    """Responses to unit loads times their coefficients, with the same bits in any batch."""
-    patterns, outputs = responses.shape
-    nothing = np.zeros((0, outputs))
-    matrix = _core.Condensed(responses, np.zeros((patterns, 0)), np.zeros((0, 0)), nothing)
-    q = coefficients(loads)
-    return matrix.respond(q, np.zeros((len(q), 0)))
 
 
 def condensed(
@@ -274,13 +267,23 @@ def condensed(
     for known in prepared:
         if known.content == content:
             return known.found
-    try:
-        found = Condensation(structure.arrays, of_loads, structure.outputs, members, springs, axial)
-    except (_core.UnstableStructure, _core.InvalidInput) as error:
-        raise refused(structure, error) from None
+    found = _condense(structure, of_loads, members, springs, axial)
     prepared.append(CondensedPaths(structure, [load.pattern for load in loads], content, found))
     del prepared[:-KEPT]
     return found
+
+
+def _condense(
+    structure: Structure,
+    of_loads: dict[str, NDArray[Any]],
+    members: IntArray = NOTHING,
+    springs: IntArray = NOTHING,
+    axial: bool = False,
+) -> Condensation:
+    try:
+        return Condensation(structure.arrays, of_loads, structure.outputs, members, springs, axial)
+    except (_core.UnstableStructure, _core.InvalidInput) as error:
+        raise refused(structure, error) from None
 
 
 def coefficients(loads: list[Load]) -> FloatArray:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from rga import _core
+from rga._core import Condensation
 from rga.arrays import FloatArray
-from rga.simulation.paths.condensation import Condensation
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree
 from rga_bench.solver.box_bridge import box_bridge

@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
+from rga._core import Condensation
 from rga.arrays import FloatArray
-from rga.simulation.paths.condensation import Condensation
 from rga.simulation.paths.factorisation import Factorisation
 from rga_bench.measurement import Measurement
 from rga_bench.solver.agreement import agree

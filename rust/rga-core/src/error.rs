@@ -42,6 +42,12 @@ pub enum Error {
     #[error("the stiffnesses of row {row} leave no stable structure; keep them above zero")]
     UnstableSample { row: usize },
 
+    #[error(
+        "the elongations of the members and springs that vary depend on each other, or are \
+         prescribed; solve the structure anew"
+    )]
+    DependentTerms,
+
     #[error("row {row}: {error}")]
     Row { row: usize, error: Box<Error> },
 

@@ -1,17 +1,22 @@
 //! Paths from a structure and its loads to outputs: which one is quickest depends on what varies.
 //!
 //! - `linear`: one structure, many load patterns.
-//! - `condensed`: many samples of which few stiffnesses vary, or none.
+//! - `condensation`: a structure condensed onto few stiffnesses that vary, or none; `condensed` are
+//!   its samples.
+//! - `reanalysis`: structures near one that is solved.
 //! - `batch`: many samples of which every stiffness may vary.
 //! - `nonlinear`: many samples, each in the equilibrium of the deformed structure.
 //! - `friction`: bearings that stick and slide, through time.
 //!
-//! Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
+//! Stiffnesses that vary are terms of rank one (`rank_one`). Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
 
 pub(crate) mod batch;
+pub(crate) mod condensation;
 pub(crate) mod condensed;
 pub(crate) mod directions;
 pub(crate) mod friction;
 pub(crate) mod linear;
 pub(crate) mod nonlinear;
 mod parallel;
+pub(crate) mod rank_one;
+pub(crate) mod reanalysis;

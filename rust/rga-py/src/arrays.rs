@@ -1,9 +1,13 @@
 //! NumPy arrays as arrays of the core, without a copy where they are in C order.
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::ndarray::{Array2, Zip};
+use numpy::{
+    Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray3, PyReadonlyArrayDyn,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rga_core::Array;
+use rga_core::{Array, Directions};
 
 use crate::exceptions::InvalidInput;
 
@@ -76,20 +80,71 @@ fn describe(value: &Bound<'_, PyAny>) -> String {
     }
 }
 
-/// Pairs of indices, i64[n, 2].
-pub(crate) fn pairs(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<(usize, usize)>> {
+/// Indices, i64[n].
+pub(crate) fn numbers(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<usize>> {
     let held = Held::<i64>::new(value, name)?;
-    let entries = held.view();
-    let index = |value: i64| {
-        usize::try_from(value)
+    let index = |value: &i64| {
+        usize::try_from(*value)
             .map_err(|_| InvalidInput::new_err(format!("{name} holds the index {value}")))
     };
-    if entries.shape.len() != 2 || entries.shape[1] != 2 {
-        return Err(InvalidInput::new_err(format!("{name} must be [n, 2]")));
+    held.view().values.iter().map(index).collect()
+}
+
+/// Rates f64[n, e, c] with their name, n and e.
+type Rates<'a, 'py> = (&'a Bound<'py, PyAny>, &'a str, [usize; 2]);
+
+/// Directions along which loads and stiffnesses change, and the rates f64[n, ...] of those entries
+/// alone that change in some row.
+pub(crate) fn directions(
+    loads: Rates<'_, '_>,
+    stiffnesses: Rates<'_, '_>,
+) -> PyResult<(Directions, Vec<f64>, Vec<f64>)> {
+    let (count, loads, of_loads) = changes(loads)?;
+    let (also, changes, of_changes) = changes(stiffnesses)?;
+    if count != also {
+        return Err(InvalidInput::new_err(format!(
+            "the rates are along {count} directions and along {also}; they must be as many"
+        )));
     }
-    entries
-        .values
-        .chunks_exact(2)
-        .map(|pair| Ok((index(pair[0])?, index(pair[1])?)))
-        .collect()
+    let along = Directions {
+        count,
+        loads,
+        changes,
+    };
+    Ok((along, of_loads, of_changes))
+}
+
+/// How many directions there are, pairs of a direction and an entry, and their rates row by row.
+#[allow(clippy::type_complexity)]
+fn changes(
+    (value, name, expected): Rates<'_, '_>,
+) -> PyResult<(usize, Vec<(usize, usize)>, Vec<f64>)> {
+    let rates: PyReadonlyArray3<'_, f64> = value
+        .extract()
+        .map_err(|_| InvalidInput::new_err(format!("{name} must be float64 with three axes")))?;
+    let rates = rates.as_array();
+    let (rows, entries, count) = rates.dim();
+    if [rows, entries] != expected {
+        return Err(InvalidInput::new_err(format!(
+            "{name} is [{rows}, {entries}, {count}]; it must be [{}, {}, directions]",
+            expected[0], expected[1]
+        )));
+    }
+    let mut change = Array2::from_elem((entries, count), false);
+    for row in rates.outer_iter() {
+        Zip::from(&mut change)
+            .and(&row)
+            .for_each(|change, rate| *change |= *rate != 0.0);
+    }
+    let pairs = (0..count).flat_map(|direction| (0..entries).map(move |entry| (direction, entry)));
+    let pairs: Vec<_> = pairs
+        .filter(|&(direction, entry)| change[[entry, direction]])
+        .collect();
+    let own = |row: usize| {
+        pairs
+            .iter()
+            .map(move |&(direction, entry)| [row, entry, direction])
+    };
+    let found = (0..rows).flat_map(own).map(|at| rates[at]).collect();
+    Ok((count, pairs, found))
 }

@@ -3,11 +3,11 @@
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rga_core::{Directions, Samples};
+use rga_core::{Array, Samples};
 
-use crate::arrays::{Held, pairs};
+use crate::arrays::{Held, directions, numbers};
 use crate::exceptions::to_python;
-use crate::read::{read, read_problem};
+use crate::read::read_problem;
 
 /// Samples of a structure of which every stiffness may vary.
 ///
@@ -87,56 +87,58 @@ impl BatchSolver {
     /// Parameters
     /// ----------
     /// factors, coefficients : as for `respond`
-    /// directions : number of directions c
-    /// loads : i64[k, 2], pairs of a direction and a load whose coefficient it changes
-    /// coefficient_rates : f64[n, k], how fast
-    /// elements : i64[l, 2], pairs of a direction and a member or spring whose factor it changes
-    /// factor_rates : f64[n, l], how fast
+    /// elements : i64[e], numbers of members, and of springs behind all members, whose factors
+    ///     change
+    /// factor_rates : f64[n, e, c], derivatives of these factors along c directions
+    /// coefficient_rates : f64[n, p, c], derivatives of the coefficients
     /// threads : how many share the rows; the results do not depend on it
     ///
     /// Returns
     /// -------
-    /// f64[n, c, o]
+    /// f64[n, o, c]
     ///
     /// Raises
     /// ------
     /// InvalidInput; UnstableStructure, with the first row that fails as `row`
-    #[pyo3(signature = (
-        factors, coefficients, directions, loads, coefficient_rates, elements, factor_rates,
-        threads=1
-    ))]
+    #[pyo3(signature = (factors, coefficients, elements, factor_rates, coefficient_rates, threads=1))]
     #[allow(clippy::too_many_arguments)]
     fn differentiate<'py>(
         &self,
         py: Python<'py>,
         factors: &Bound<'py, PyAny>,
         coefficients: &Bound<'py, PyAny>,
-        directions: usize,
-        loads: &Bound<'py, PyAny>,
-        coefficient_rates: &Bound<'py, PyAny>,
         elements: &Bound<'py, PyAny>,
         factor_rates: &Bound<'py, PyAny>,
+        coefficient_rates: &Bound<'py, PyAny>,
         threads: i64,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let factors = Held::new(factors, "factors")?;
         let coefficients = Held::new(coefficients, "coefficients")?;
-        let coefficient_rates = Held::new(coefficient_rates, "coefficient_rates")?;
-        let factor_rates = Held::new(factor_rates, "factor_rates")?;
         let samples = Samples {
             factors: factors.view(),
             coefficients: coefficients.view(),
         };
-        let along = Directions {
-            count: directions,
-            loads: pairs(loads, "loads")?,
-            changes: pairs(elements, "elements")?,
-        };
-        let rates = (coefficient_rates.view(), factor_rates.view());
+        let elements = numbers(elements, "elements")?;
+        let rows = samples.factors.len();
+        let patterns = samples.coefficients.shape.get(1).copied().unwrap_or(0);
+        let (mut along, of_loads, of_factors) = directions(
+            (coefficient_rates, "coefficient_rates", [rows, patterns]),
+            (factor_rates, "factor_rates", [rows, elements.len()]),
+        )?;
+        for (_, element) in &mut along.changes {
+            *element = elements[*element];
+        }
+        let shapes = [[rows, along.loads.len()], [rows, along.changes.len()]];
+        let rates = (
+            Array::new(&of_loads, &shapes[0]),
+            Array::new(&of_factors, &shapes[1]),
+        );
         let results = py
             .detach(|| self.0.differentiate(samples, &along, rates, count(threads)))
             .map_err(|error| to_python(py, error))?;
-        let shape = [samples.factors.len(), directions, self.0.width()];
-        PyArray1::from_vec(py, results).reshape(shape)
+        let shape = [rows, along.count, self.0.width()];
+        let found = PyArray1::from_vec(py, results).reshape(shape)?;
+        found.permute(Some([0, 2, 1]))
     }
 
     /// Derivatives of the sum of the outputs times given gradients: the adjoint, one solve a row.

@@ -24,6 +24,12 @@ create_exception!(
 );
 create_exception!(
     rga._core,
+    DependentTerms,
+    PyArithmeticError,
+    "The elongations of the members and springs that vary depend on each other, or are prescribed."
+);
+create_exception!(
+    rga._core,
     UnstableSample,
     PyArithmeticError,
     "The stiffnesses of a sample leave no stable structure.\n\nrow: of the sample."
@@ -54,6 +60,7 @@ fn raised(py: Python<'_>, error: Error, message: String) -> PyErr {
             dof,
             direction,
         } => unstable(py, message, (node, dof, direction), Some(share)),
+        Error::DependentTerms => DependentTerms::new_err(message),
         Error::UnstableSample { row } => {
             let raised = UnstableSample::new_err(message);
             let set = raised.value(py).setattr("row", row);

@@ -3,11 +3,11 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rga_core::Bearings;
+use rga_core::{Bearings, Varied};
 
-use crate::arrays::Held;
+use crate::arrays::{Held, numbers};
 use crate::exceptions::to_python;
-use crate::read::{read, read_problem};
+use crate::read::{read_outputs, read_problem, read_structure};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
@@ -162,6 +162,33 @@ pub(crate) fn slide<'py>(
         .map_err(|error| to_python(py, error))?;
     let shape = [bearings.free_displacement.len(), bearings.mu.len()];
     PyArray1::from_vec(py, friction).reshape(shape)
+}
+
+/// How many terms of rank one vary with members and springs: what a `Condensation` would have.
+///
+/// Parameters
+/// ----------
+/// structure, outputs : as for `respond`
+/// members, springs : i64, numbers of those that vary, as a whole
+///
+/// Raises
+/// ------
+/// InvalidInput
+#[pyfunction]
+pub(crate) fn count_terms(
+    structure: &Bound<'_, PyDict>,
+    outputs: &Bound<'_, PyDict>,
+    members: &Bound<'_, PyAny>,
+    springs: &Bound<'_, PyAny>,
+) -> PyResult<usize> {
+    read_structure!(model from structure);
+    read_outputs!(wanted from outputs);
+    let varied = Varied {
+        members: &numbers(members, "members")?,
+        springs: &numbers(springs, "springs")?,
+        axial: false,
+    };
+    rga_core::count_terms(&model, &wanted, varied).map_err(|error| to_python(structure.py(), error))
 }
 
 /// Instruction sets of this processor that `Refactored` can solve samples with, the best first.

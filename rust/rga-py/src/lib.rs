@@ -5,11 +5,12 @@
 mod arrays;
 mod batch_solver;
 mod change_statistics;
-mod condensed;
+mod condensation;
 mod exceptions;
 mod functions;
 mod gaussian_window;
 mod read;
+mod reanalysis;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -24,6 +25,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
         "UnstableStructure",
         py.get_type::<exceptions::UnstableStructure>(),
     )?;
+    module.add(
+        "DependentTerms",
+        py.get_type::<exceptions::DependentTerms>(),
+    )?;
     module.add("NotConverged", py.get_type::<exceptions::NotConverged>())?;
     module.add(
         "UnstableSample",
@@ -31,9 +36,13 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     )?;
     module.add("OutputKind", output_kinds(py)?)?;
     module.add_class::<change_statistics::ChangeStatistics>()?;
-    module.add_class::<condensed::Condensed>()?;
+    module.add_class::<condensation::Condensation>()?;
     module.add_class::<gaussian_window::GaussianWindow>()?;
     module.add_class::<batch_solver::BatchSolver>()?;
+    module.add_class::<reanalysis::Loaded>()?;
+    module.add_class::<reanalysis::Reanalysis>()?;
+    module.add_class::<reanalysis::StiffnessDifference>()?;
+    module.add_function(wrap_pyfunction!(functions::count_terms, module)?)?;
     module.add_function(wrap_pyfunction!(functions::instructions, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond_nonlinear, module)?)?;

@@ -8,10 +8,9 @@ macro_rules! read {
     };
 }
 
-/// The three views of a problem, from the dicts of `respond`.
-macro_rules! read_problem {
-    ($model:ident, $patterns:ident, $wanted:ident from $structure:ident, $loads:ident, $outputs:ident) => {
-        read!($model = Structure from $structure {
+macro_rules! read_structure {
+    ($model:ident from $structure:ident) => {
+        crate::read::read!($model = Structure from $structure {
             coordinates: "coordinates",
             ends: "ends",
             frame: "frame",
@@ -35,7 +34,12 @@ macro_rules! read_problem {
             tie_node: "tie_node",
             tie_dof: "tie_dof",
         });
-        read!($patterns = Loads from $loads {
+    };
+}
+
+macro_rules! read_loads {
+    ($patterns:ident from $loads:ident) => {
+        crate::read::read!($patterns = Loads from $loads {
             forces: "forces",
             strain: "strain",
             prescribed: "prescribed",
@@ -48,7 +52,12 @@ macro_rules! read_problem {
             member_start: "member_start",
             member_end: "member_end",
         });
-        read!($wanted = Outputs from $outputs {
+    };
+}
+
+macro_rules! read_outputs {
+    ($wanted:ident from $outputs:ident) => {
+        crate::read::read!($wanted = Outputs from $outputs {
             kind: "kind",
             index: "index",
             other: "other",
@@ -58,4 +67,13 @@ macro_rules! read_problem {
     };
 }
 
-pub(crate) use {read, read_problem};
+/// The three views of a problem, from the dicts of `respond`.
+macro_rules! read_problem {
+    ($model:ident, $patterns:ident, $wanted:ident from $structure:ident, $loads:ident, $outputs:ident) => {
+        crate::read::read_structure!($model from $structure);
+        crate::read::read_loads!($patterns from $loads);
+        crate::read::read_outputs!($wanted from $outputs);
+    };
+}
+
+pub(crate) use {read, read_loads, read_outputs, read_problem, read_structure};

@@ -8,11 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rga import _core
-from rga.simulation.paths.condensation import Condensation, DependentTerms
+from rga._core import Condensation, DependentTerms, OutputKind
 from rga_bench.solver.box_bridge import BoxBridge, box_bridge
 from rga_bench.solver.space_truss import Arrays
 
-DISPLACEMENT, STRAIN, FORCE, REACTION = 0, 2, 3, 4
+DISPLACEMENT, STRAIN = OutputKind.DISPLACEMENT, OutputKind.STRAIN
+FORCE, REACTION = OutputKind.AXIAL_FORCE, OutputKind.REACTION_FORCE
 
 
 def small_bridge(seed: int) -> BoxBridge:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from random_structures import Case, cases, laws
 from rga import _core
-from rga.simulation.paths.condensation import Condensation
+from rga._core import Condensation
 from rga_bench.solver.box_bridge import box_bridge
 
 #: differences of fourth order: places and weights
@@ -69,13 +69,11 @@ def test_of_a_refactored_structure(case: Case, seed: int) -> None:
     elements = case.members + len(structure["spring_dof"])
     q, factors = draw.uniform(-1, 1, (3, 2)), draw.uniform(0.5, 2.0, (3, elements))
     # Along the first direction one load and all stiffnesses change, along the second one of each.
-    loads = np.array([[0, 0], [1, 1]])
-    terms = np.array([*((0, element) for element in range(elements)), (1, elements - 1)])
-    of_loads, of_terms = draw.normal(size=(3, 2)), draw.normal(size=(3, elements + 1))
-    found = every.differentiate(factors, q, 2, loads, of_loads, terms, of_terms)
     rates = np.zeros((2, 3, 2)), np.zeros((2, 3, elements))
-    rates[0][loads[:, 0], :, loads[:, 1]] = of_loads.T
-    rates[1][terms[:, 0], :, terms[:, 1]] = of_terms.T
+    rates[0][[0, 1], :, [0, 1]] = draw.normal(size=(2, 3))
+    rates[1][0], rates[1][1, :, -1] = draw.normal(size=(3, elements)), draw.normal(size=3)
+    of_loads, of_factors = (np.moveaxis(one, 0, 2) for one in rates)
+    found = every.differentiate(factors, q, np.arange(elements), of_factors, of_loads)
     for direction in range(2):
         along = sum(
             weight
@@ -85,12 +83,12 @@ def test_of_a_refactored_structure(case: Case, seed: int) -> None:
             )
             for place, weight in STENCIL
         )
-        assert_close(found[:, direction], along, every.respond(factors, q), outputs["kind"])
+        assert_close(found[:, :, direction], along, every.respond(factors, q), outputs["kind"])
     gradients = draw.normal(size=(3, len(outputs["kind"])))
     pulled = every.pull_back(factors, q, gradients)
     for direction in range(2):
         terms_of = np.concatenate([rates[0][direction], rates[1][direction]], axis=1) * pulled
-        forward = gradients * found[:, direction]
+        forward = gradients * found[:, :, direction]
         size = np.abs(forward).sum(axis=1)
         assert (np.abs(terms_of.sum(axis=1) - forward.sum(axis=1)) <= 1e-9 * size).all()
 

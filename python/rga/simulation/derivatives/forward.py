@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rga import _core
+from rga._core import Condensation, DependentTerms
 from rga.arrays import FloatArray
 from rga.model.effect import Values
 from rga.simulation.dispatch import coefficients, linear_paths, variation_under
-from rga.simulation.paths.condensation import Condensation, DependentTerms
 from rga.simulation.paths.factorisation import Factorisation
 from rga.simulation.paths.variation import unvaried
 

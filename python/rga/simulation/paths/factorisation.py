@@ -1,11 +1,12 @@
 """A structure of which many stiffnesses vary: one symbolic analysis, one factorisation a sample."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from rga import _core
 from rga.arrays import FloatArray, IntArray
-from rga.simulation.derivatives.directions import along
-from rga.simulation.paths.rank_one_terms import Arrays
 
 
 class Factorisation:
@@ -25,9 +26,9 @@ class Factorisation:
 
     def __init__(
         self,
-        structure: Arrays,
-        loads: Arrays,
-        outputs: Arrays,
+        structure: dict[str, NDArray[Any]],
+        loads: dict[str, NDArray[Any]],
+        outputs: dict[str, NDArray[Any]],
         members: IntArray,
         springs: IntArray,
         stiffness: FloatArray,
@@ -64,15 +65,13 @@ class Factorisation:
             coefficient_rates: derivatives of the coefficients, float[rows, patterns, directions].
             stiffness_rates: derivatives of the stiffnesses, float[rows, elements, directions].
         """
-        loads, of_loads = along(coefficient_rates)
-        elements, of_elements = along(stiffness_rates / self._stiffness[:, None])
-        elements[:, 1] = self._varied[elements[:, 1]]
-        directions = coefficient_rates.shape[2]
-        factors = self._factors(stiffness)
-        found = self._core.differentiate(
-            factors, coefficients, directions, loads, of_loads, elements, of_elements
+        return self._core.differentiate(
+            self._factors(stiffness),
+            coefficients,
+            self._varied,
+            stiffness_rates / self._stiffness[:, None],
+            coefficient_rates,
         )
-        return found.transpose(0, 2, 1)
 
     def pull_back(
         self, coefficients: FloatArray, stiffness: FloatArray, gradients: FloatArray

@@ -9,12 +9,10 @@ A trace of stiffness in idle terms keeps in the middle of the play what only the
 no load pushes. It finds the side on which each term is; its force is then taken off again.
 """
 
-from typing import Protocol
-
 import numpy as np
 from numpy.typing import NDArray
 
-from rga._core import OutputKind
+from rga._core import Condensation, OutputKind
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.model.structure import Law, Structure
@@ -35,23 +33,8 @@ REFINED = 2
 NONE = 1e-12
 
 
-class CondensedStructure(Protocol):
-    """A structure condensed onto terms, as the attributes of `Condensation` tell."""
-
-    @property
-    def stiffness(self) -> FloatArray: ...
-    @property
-    def loaded(self) -> FloatArray: ...
-    @property
-    def stretched(self) -> FloatArray: ...
-    @property
-    def influence(self) -> FloatArray: ...
-    @property
-    def unit(self) -> FloatArray: ...
-
-
 def respond_with_laws(
-    structure: Structure, linear: CondensedStructure, coefficients: FloatArray
+    structure: Structure, linear: Condensation, coefficients: FloatArray
 ) -> FloatArray:
     """Sensors of rows, float[rows, sensors] in SI units.
 
@@ -140,7 +123,7 @@ def respond_with_laws(
     for _ in range(REFINED):
         elongation = move(elongation, side, np.arange(len(apart)), 0.0)
     pseudo = -stiffness * np.where(side == 0, elongation, side * size)
-    influence, arrays, outputs = linear.influence.copy(), structure.arrays, structure.outputs
+    influence, arrays, outputs = linear.influence, structure.arrays, structure.outputs
     # A gauge on a slack member reads its force, not the way that its ends have moved.
     gauges = np.where(
         outputs["total"] | (outputs["kind"] != OutputKind.STRAIN), -1, outputs["index"]

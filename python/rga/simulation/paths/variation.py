@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rga import _core
 from rga.arrays import FloatArray, IntArray
 from rga.model.structure import Structure
-from rga.simulation.paths.rank_one_terms import Arrays, stiffness_terms
 
 #: rows at which straightness is checked, beside the ends of each parameter
 CHECKED = 6
@@ -54,10 +55,7 @@ class Variation:
     @property
     def terms(self) -> int:
         """How many terms of rank one vary."""
-        terms, _ = stiffness_terms(
-            self.start.arrays, self.start.outputs, self.members, self.springs
-        )
-        return len(terms)
+        return _core.count_terms(self.start.arrays, self.start.outputs, self.members, self.springs)
 
 
 def unvaried(structure: Structure, parameters: int) -> Variation:
@@ -137,7 +135,7 @@ def _only_stiffness_differs(one: Structure, other: Structure) -> bool:
     return all(read) and all(same) and _frames_differ_as_a_whole(one.arrays, other.arrays)
 
 
-def _frames_differ_as_a_whole(one: Arrays, other: Arrays) -> bool:
+def _frames_differ_as_a_whole(one: dict[str, NDArray[Any]], other: dict[str, NDArray[Any]]) -> bool:
     """Where E of a frame member differs, G does in proportion, and no end of the member yields."""
     frame = one["frame"]
     yields = (np.isfinite(one["connection"]) & (one["connection"] > 0)).any(axis=1)

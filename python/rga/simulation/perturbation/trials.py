@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rga._core import Loaded, StiffnessDifference
 from rga.arrays import FloatArray, IntArray
 from rga.model.effect import Effect, Values
 from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import APART, Request, coefficients, with_laws
-from rga.simulation.paths.response import patterns, respond
+from rga.simulation.paths.response import respond
 from rga.simulation.paths.unilateral import respond_with_laws, terms_of
 from rga.simulation.perturbation.chebyshev import along_line
-from rga.simulation.perturbation.reanalysis import Loaded, Reanalysis, StiffnessDifference
+from rga.simulation.perturbation.reanalysis import Reanalysis
 
 if TYPE_CHECKING:
     from rga.simulation.simulator import Response, Simulator
@@ -285,7 +286,7 @@ def _with_laws(
     centre: Centre, structure: Structure, loads: list[Load], where: StiffnessDifference
 ) -> FloatArray | None:
     """A structure that differs from a centre by play or slack alone; None for any other."""
-    if len(where.terms) or len(where.frames):
+    if where:
         return None
     q, loaded = _under(centre, loads)
     linear = centre.near.onto(loaded, *terms_of(structure))
@@ -315,14 +316,8 @@ def _under(centre: Centre, loads: list[Load]) -> tuple[FloatArray, Loaded]:
     if not new and len(loads) == len(place):
         return centre.coefficients, centre.loaded
     place |= {id(load): len(centre.loads) + number for number, load in enumerate(new)}
-    parts = [centre.loaded, *([centre.near.under(new)] if new else [])]
-    order = [place[id(load)] for load in loads]
-    outputs, elongations, displacements = (
-        np.concatenate([getattr(part, name) for part in parts])[order]
-        for name in ("outputs", "elongations", "displacements")
-    )
-    pattern = patterns(centre.near.structure, loads)
-    return coefficients(loads), Loaded(outputs, elongations, displacements, pattern)
+    more = centre.near.under(new) if new else None
+    return coefficients(loads), centre.loaded.choose(more, [place[id(load)] for load in loads])
 
 
 def _changed(

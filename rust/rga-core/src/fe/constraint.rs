@@ -29,7 +29,7 @@ pub(crate) struct Row {
     values: Vec<(usize, f64)>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Constraints {
     list: Vec<Constraint>,
     /// Of each dof: how it follows, if a constraint removed it.

@@ -10,7 +10,7 @@ pub(crate) type Vector12 = SVector<f64, 12>;
 pub(crate) struct Bending {
     pub ei: f64,
     /// 12 EI / (G As L^2): 0 without shear deformation.
-    phi: f64,
+    pub phi: f64,
     /// Where the four dofs stand among the twelve, and their sign there: in
     /// the x-z plane the slope dw/dx is -ry.
     pub dofs: [(usize, f64); 4],

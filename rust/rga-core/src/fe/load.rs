@@ -85,6 +85,16 @@ impl PatternLoads {
             .collect()
     }
 
+    /// The loads on some members, in the order of these.
+    pub(crate) fn of_some(&self, members: &[usize]) -> Self {
+        let (mut first, mut sorted) = (vec![0], Vec::new());
+        for &member in members {
+            sorted.extend_from_slice(self.of(member));
+            first.push(sorted.len());
+        }
+        Self { first, sorted }
+    }
+
     pub(crate) fn none(members: usize) -> Self {
         Self {
             first: vec![0; members + 1],

@@ -1,8 +1,8 @@
-//! Samples of a structure of which few stiffnesses vary (C2), or none (C1).
+//! Samples of a condensed structure (`condensation`).
 //!
-//! A term that varies, a truss member or a spring of stiffness k + d and elongation v, adds the
-//! pseudo-force w = d v to the structure as it is. With G the elongations under unit pseudo-forces
-//! and H = 1 / G, the elongations follow from the condensed stiffness,
+//! A term of stiffness k + d and elongation v adds the pseudo-force w = d v to the structure as it
+//! is. With G the elongations under unit pseudo-forces and H = 1 / G, the elongations follow from
+//! the condensed stiffness,
 //!
 //!   (H + diag(d)) v = H V q,    y = Y q - C w,
 //!
@@ -17,9 +17,11 @@ mod sensitivity;
 
 use std::ops::Range;
 
+use nalgebra::DMatrix;
 use pulp::Arch;
 
 use crate::error::{Error, Result};
+use crate::paths::condensation::UnitResponses;
 use crate::paths::directions::Directions;
 use crate::paths::parallel::in_chunks;
 use adjoint::AdjointKernel;
@@ -29,12 +31,16 @@ use sensitivity::SensitivityKernel;
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 2048;
 
-/// p load patterns, r terms that vary, o outputs.
+/// p load patterns, e members and springs that vary, r terms that these are, o outputs.
 #[derive(Debug, Clone)]
 pub struct Condensed {
     pub patterns: usize,
+    pub elements: usize,
     pub terms: usize,
     pub outputs: usize,
+    /// `[r]` which element a term belongs to, and k
+    element: Vec<usize>,
+    first: Vec<f64>,
     /// `[p, o]` outputs under unit loads, Y transposed.
     loaded: Vec<f64>,
     /// `[p, r]` H V transposed.
@@ -46,55 +52,57 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Arrays as the fields tell them.
-    pub fn new(
-        shape: [usize; 3],
-        loaded: &[f64],
-        driven: &[f64],
-        stiffness: &[f64],
-        influence: &[f64],
-    ) -> Result<Self> {
-        let [patterns, terms, outputs] = shape;
-        for (name, values, length) in [
-            ("loaded", loaded, patterns * outputs),
-            ("driven", driven, patterns * terms),
-            ("stiffness", stiffness, terms * terms),
-            ("influence", influence, terms * outputs),
-        ] {
-            check(name, values, length)?;
-            finite(name, values, 1, 0..length)?;
-        }
-        Ok(Self {
+    /// `DependentTerms` where elongations depend on each other.
+    pub(super) fn new(responses: &UnitResponses) -> Result<Self> {
+        let UnitResponses {
+            patterns, outputs, ..
+        } = *responses;
+        let terms = responses.element.len();
+        let inverse = responses.inverse()?;
+        let stretched = DMatrix::from_row_slice(patterns, terms, &responses.stretched);
+        let by_rows = |matrix: DMatrix<f64>| matrix.transpose().as_slice().to_vec();
+        let found = Self {
             patterns,
+            elements: responses.elements,
             terms,
             outputs,
-            loaded: loaded.to_vec(),
-            driven: driven.to_vec(),
-            stiffness: stiffness.to_vec(),
-            influence: influence.to_vec(),
-        })
+            element: responses.element.clone(),
+            first: responses.stiffness.clone(),
+            loaded: responses.loaded.clone(),
+            driven: by_rows(stretched * &inverse),
+            stiffness: by_rows(inverse),
+            influence: responses.influence.clone(),
+        };
+        for (name, values) in [
+            ("outputs", &found.loaded),
+            ("elongations", &found.driven),
+            ("outputs of the terms", &found.influence),
+        ] {
+            finite(name, values, 1, 0..values.len())?;
+        }
+        Ok(found)
     }
 
     /// Outputs of n samples, written to `results` `[n, o]`.
     ///
-    /// `coefficients` is q `[n, p]`, `changes` is d `[n, r]` in the units of the stiffness.
+    /// `coefficients` is q `[n, p]`, `stiffness` that of the elements `[n, e]`, k + d.
     pub fn respond(
         &self,
         coefficients: &[f64],
-        changes: &[f64],
+        stiffness: &[f64],
         results: &mut [f64],
         threads: usize,
     ) -> Result<()> {
         let given = [
             ("coefficients", coefficients, self.patterns),
-            ("changes", changes, self.terms),
+            ("stiffness", stiffness, self.elements),
         ];
         let arch = Arch::new();
-        in_parts(given, results, self.outputs, threads, |[q, d], results| {
+        in_parts(given, results, self.outputs, threads, |[q, k], results| {
             arch.dispatch(Kernel {
                 condensed: self,
                 coefficients: q,
-                changes: d,
+                stiffness: k,
                 results,
             })
         })
@@ -103,23 +111,23 @@ impl Condensed {
     /// Derivatives of the outputs of n samples along c directions, written to `results`
     /// `[n, c, o]`.
     ///
-    /// `coefficient_rates` and `change_rates` hold, row by row, the derivatives of the entries of
-    /// q and d that the directions name.
+    /// `rates` hold, row by row, the derivatives of the coefficients and of the stiffnesses that
+    /// the directions name.
     pub fn differentiate(
         &self,
         coefficients: &[f64],
-        changes: &[f64],
+        stiffness: &[f64],
         directions: &Directions,
         rates: (&[f64], &[f64]),
         results: &mut [f64],
         threads: usize,
     ) -> Result<()> {
-        directions.check(self.patterns, self.terms)?;
+        directions.check(self.patterns, self.elements)?;
         let given = [
             ("coefficients", coefficients, self.patterns),
-            ("changes", changes, self.terms),
+            ("stiffness", stiffness, self.elements),
             ("coefficient_rates", rates.0, directions.loads.len()),
-            ("change_rates", rates.1, directions.changes.len()),
+            ("stiffness_rates", rates.1, directions.changes.len()),
         ];
         let width = self.outputs * directions.count;
         let arch = Arch::new();
@@ -128,14 +136,14 @@ impl Condensed {
             results,
             width,
             threads,
-            |[q, d, of_q, of_d], results| {
+            |[q, k, of_q, of_k], results| {
                 arch.dispatch(SensitivityKernel {
                     condensed: self,
                     directions,
                     coefficients: q,
-                    changes: d,
+                    stiffness: k,
                     coefficient_rates: of_q,
-                    change_rates: of_d,
+                    stiffness_rates: of_k,
                     results,
                 })
             },
@@ -143,27 +151,27 @@ impl Condensed {
     }
 
     /// Derivatives of the sum of the outputs times `gradients` `[n, o]`, by the coefficients and
-    /// then by the changes, written to `results` `[n, p + r]`: the adjoint of `respond`.
+    /// then by the stiffnesses, written to `results` `[n, p + e]`: the adjoint of `respond`.
     pub fn pull_back(
         &self,
         coefficients: &[f64],
-        changes: &[f64],
+        stiffness: &[f64],
         gradients: &[f64],
         results: &mut [f64],
         threads: usize,
     ) -> Result<()> {
         let given = [
             ("coefficients", coefficients, self.patterns),
-            ("changes", changes, self.terms),
+            ("stiffness", stiffness, self.elements),
             ("gradients", gradients, self.outputs),
         ];
-        let width = self.patterns + self.terms;
+        let width = self.patterns + self.elements;
         let arch = Arch::new();
-        in_parts(given, results, width, threads, |[q, d, g], results| {
+        in_parts(given, results, width, threads, |[q, k, g], results| {
             arch.dispatch(AdjointKernel {
                 condensed: self,
                 coefficients: q,
-                changes: d,
+                stiffness: k,
                 gradients: g,
                 results,
             })

@@ -2,7 +2,7 @@
 //!
 //! Of g' y, with a = C' g and (H + diag(d)) l = diag(d) a:
 //!
-//!   by q: Y' g - (H V)' l,    by d: (l - a) v, term by term.
+//!   by q: Y' g - (H V)' l,    by d: (l - a) v, term by term; an element's is the sum of its terms.
 
 use pulp::{Simd, WithSimd};
 use rga_simd::f64::{Lanes, Packs};
@@ -10,11 +10,11 @@ use rga_simd::f64::{Lanes, Packs};
 use super::Condensed;
 use super::samples::{Samples, Together, add_product};
 
-/// Gradients `[n, p + r]` of rows; gives the first row whose structure is not stable.
+/// Gradients `[n, p + e]` of rows; gives the first row whose structure is not stable.
 pub(super) struct AdjointKernel<'a> {
     pub condensed: &'a Condensed,
     pub coefficients: &'a [f64],
-    pub changes: &'a [f64],
+    pub stiffness: &'a [f64],
     /// `[n, o]`
     pub gradients: &'a [f64],
     pub results: &'a mut [f64],
@@ -27,11 +27,12 @@ impl WithSimd for AdjointKernel<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> Option<usize> {
         let Condensed {
             patterns,
+            elements,
             terms,
             outputs,
             ..
         } = *self.condensed;
-        let width = patterns + terms;
+        let width = patterns + elements;
         let both = [&self.condensed.loaded[..], &self.condensed.influence[..]].concat();
         let both = transposed(&both, outputs);
         let driven = transposed(&self.condensed.driven, terms);
@@ -39,13 +40,14 @@ impl WithSimd for AdjointKernel<'_> {
         let zero = lanes.splat(0.0);
         let mut samples = Samples::new(lanes, self.condensed);
         let mut gradients = vec![zero; outputs];
-        let mut found = vec![zero; width];
+        let mut found = vec![zero; patterns + terms];
+        let mut of_elements = vec![zero; width];
         let mut adjoint = vec![zero; terms];
         let many = Together::<S>::COUNT;
         let rows = self.results.len() / width;
         for from in (0..rows).step_by(many) {
             let present = many.min(rows - from);
-            samples.load(self.coefficients, self.changes, from, present);
+            samples.load(self.coefficients, self.stiffness, from, present);
             if let Some(lane) = samples.solve(present) {
                 return Some(from + lane);
             }
@@ -60,10 +62,19 @@ impl WithSimd for AdjointKernel<'_> {
             }
             samples.substitute(&mut adjoint);
             add_product(lanes, &adjoint, &driven, by_loads);
-            for ((a, own), v) in a.iter_mut().zip(&adjoint).zip(&samples.elongations) {
-                *a = lanes.neg(lanes.mul(lanes.add(*own, *a), *v));
+            of_elements.fill(zero);
+            let parts = a.iter().zip(&adjoint).zip(&samples.elongations);
+            for (((a, own), v), element) in parts.zip(&self.condensed.element) {
+                let sum = &mut of_elements[patterns + element];
+                *sum = lanes.take_product(lanes.add(*own, *a), *v, *sum);
             }
-            lanes.scatter(&found, &mut self.results[from * width..], width, present);
+            of_elements[..patterns].copy_from_slice(by_loads);
+            lanes.scatter(
+                &of_elements,
+                &mut self.results[from * width..],
+                width,
+                present,
+            );
         }
         None
     }

@@ -13,7 +13,7 @@ use super::samples::{Samples, Together, add_product};
 pub(super) struct Kernel<'a> {
     pub condensed: &'a Condensed,
     pub coefficients: &'a [f64],
-    pub changes: &'a [f64],
+    pub stiffness: &'a [f64],
     pub results: &'a mut [f64],
 }
 
@@ -48,7 +48,7 @@ impl WithSimd for Kernel<'_> {
         let mut shown = vec![lanes.splat(0.0); outputs];
         for from in (0..rows).step_by(many) {
             let count = many.min(rows - from);
-            samples.load(self.coefficients, self.changes, from, count);
+            samples.load(self.coefficients, self.stiffness, from, count);
             if let Some(lane) = samples.solve(count) {
                 return Some(from + lane);
             }

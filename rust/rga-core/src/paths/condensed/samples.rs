@@ -15,6 +15,8 @@ pub(super) struct Samples<'a, L: Lanes> {
     condensed: &'a Condensed,
     /// `[p]` q
     pub coefficients: Vec<L::Numbers>,
+    /// `[e]` k + d
+    stiffness: Vec<L::Numbers>,
     /// `[r]` d
     pub changes: Vec<L::Numbers>,
     /// Lower triangle of H + diag(d) column by column; then L of L D L', with 1 / D on its
@@ -31,12 +33,16 @@ impl<'a, L: Lanes> Samples<'a, L> {
     pub(super) fn new(lanes: L, condensed: &'a Condensed) -> Self {
         let zero = lanes.splat(0.0);
         let Condensed {
-            patterns, terms, ..
+            patterns,
+            elements,
+            terms,
+            ..
         } = *condensed;
         Self {
             lanes,
             condensed,
             coefficients: vec![zero; patterns],
+            stiffness: vec![zero; elements],
             changes: vec![zero; terms],
             factor: vec![zero; terms * (terms + 1) / 2],
             elongations: vec![zero; terms],
@@ -49,13 +55,19 @@ impl<'a, L: Lanes> Samples<'a, L> {
     pub(super) fn load(
         &mut self,
         coefficients: &[f64],
-        changes: &[f64],
+        stiffness: &[f64],
         from: usize,
         count: usize,
     ) {
         self.lanes
             .gather(&mut self.coefficients, coefficients, from, count);
-        self.lanes.gather(&mut self.changes, changes, from, count);
+        self.lanes
+            .gather(&mut self.stiffness, stiffness, from, count);
+        let Condensed { element, first, .. } = self.condensed;
+        for ((change, element), first) in self.changes.iter_mut().zip(element).zip(first) {
+            let before = self.lanes.splat(*first);
+            *change = self.lanes.sub(self.stiffness[*element], before);
+        }
     }
 
     /// Factorises H + diag(d) and finds v and w; gives the first lane that is not stable.

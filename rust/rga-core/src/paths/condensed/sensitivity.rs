@@ -14,9 +14,9 @@ pub(super) struct SensitivityKernel<'a> {
     pub condensed: &'a Condensed,
     pub directions: &'a Directions,
     pub coefficients: &'a [f64],
-    pub changes: &'a [f64],
+    pub stiffness: &'a [f64],
     pub coefficient_rates: &'a [f64],
-    pub change_rates: &'a [f64],
+    pub stiffness_rates: &'a [f64],
     pub results: &'a mut [f64],
 }
 
@@ -53,7 +53,14 @@ impl Direction {
             driven: rows(&condensed.driven, terms),
             shown,
             loads: loads.iter().map(|(place, _)| *place).collect(),
-            changes: own(&directions.changes),
+            changes: own(&directions.changes)
+                .into_iter()
+                .flat_map(|(place, element)| {
+                    let terms = condensed.element.iter().enumerate();
+                    let own = terms.filter(move |(_, of)| **of == element);
+                    own.map(move |(term, _)| (place, term))
+                })
+                .collect(),
         }
     }
 }
@@ -79,12 +86,12 @@ impl WithSimd for SensitivityKernel<'_> {
         let mut shown = vec![zero; outputs];
         for from in (0..rows).step_by(many) {
             let present = many.min(rows - from);
-            samples.load(self.coefficients, self.changes, from, present);
+            samples.load(self.coefficients, self.stiffness, from, present);
             if let Some(lane) = samples.solve(present) {
                 return Some(from + lane);
             }
             lanes.gather(&mut load_rates, self.coefficient_rates, from, present);
-            lanes.gather(&mut change_rates, self.change_rates, from, present);
+            lanes.gather(&mut change_rates, self.stiffness_rates, from, present);
             for (number, direction) in directions.iter().enumerate() {
                 factors.clear();
                 factors.extend(direction.loads.iter().map(|place| load_rates[*place]));
