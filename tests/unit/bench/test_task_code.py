@@ -4,6 +4,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -66,6 +67,9 @@ for name in set(sys.modules) - own | {"rga"}:
         print(sys.modules[name].__file__)
 """
 
+#: of rga and its benchmarks as they are
+files_of = cache(imported_files)
+
 
 @dataclass(frozen=True)
 class Kept:
@@ -106,7 +110,7 @@ def test_an_outcome_is_of_the_code_that_its_task_imports(name: str, root: Path) 
 
 @pytest.mark.parametrize("task", [diagnosis.judge, faults.judge])
 def test_a_diagnosis_depends_on_no_page(task: Callable[..., object]) -> None:
-    files = imported_files(task.__module__)
+    files = files_of(task.__module__)
     folders = {path.relative_to(ROOT).as_posix().rpartition("/")[0] for path in files}
     assert {"rga/diagnosis", "rga/simulation/paths", "rga_bench/synthetic", "rga"} <= folders
     assert not [one for one in folders if one.startswith(("rga/report", "rga/cli", "rga/twin"))]
@@ -120,4 +124,4 @@ def test_what_a_task_opens_is_among_its_files() -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     opened = {Path(line) for line in done.stdout.splitlines()}
     assert Path(rga.__file__) in opened
-    assert opened <= imported_files(diagnosis.__name__)
+    assert opened <= files_of(diagnosis.__name__)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array
 
 from rga import _core
 from rga._core import Condensation, DependentTerms, OutputKind
@@ -50,12 +51,13 @@ def dense(bridge: BoxBridge, q: Any, factors: Any) -> Any:
     axial = structure["E"] * structure["A"] * factors[: len(ends)]
     springs = structure["spring_stiffness"] * factors[len(ends) :]
     size = 3 * len(nodes)
-    geometry = np.zeros((len(ends), size))
-    for number, (i, j) in enumerate(ends):
-        direction = between[number] / lengths[number]
-        geometry[number, 3 * i : 3 * i + 3] -= direction
-        geometry[number, 3 * j : 3 * j + 3] += direction
-    stiffness = geometry.T @ (geometry * (axial / lengths)[:, None])
+    direction, every = between / lengths[:, None], np.arange(len(ends))
+    geometry = np.zeros((len(ends), len(nodes), 3))
+    geometry[every, ends[:, 0]] = -direction
+    geometry[every, ends[:, 1]] = direction
+    geometry = geometry.reshape(len(ends), size)
+    sparse = csr_array(geometry)
+    stiffness = (sparse.T @ (sparse * (axial / lengths)[:, None])).toarray()
     for spring, (node, dof) in enumerate(
         zip(structure["spring_node"][:, 0], structure["spring_dof"], strict=True)
     ):
