@@ -7,6 +7,8 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rga.arrays import LoadArrays, OutputArrays, StructureArrays
+
 __all__ = [
     "ChangeStatistics",
     "Condensation",
@@ -72,16 +74,16 @@ class NotConverged(ArithmeticError):
     """The row of the time series."""
 
 def respond(
-    structure: dict[str, NDArray[Any]],
-    loads: dict[str, NDArray[Any]],
-    outputs: dict[str, NDArray[Any]],
+    structure: StructureArrays,
+    loads: LoadArrays,
+    outputs: OutputArrays,
 ) -> NDArray[np.float64]:
     """Linear static response [patterns, outputs]; `help(respond)` lists the arrays."""
 
 def respond_nonlinear(
-    structure: dict[str, NDArray[Any]],
-    loads: dict[str, NDArray[Any]],
-    outputs: dict[str, NDArray[Any]],
+    structure: StructureArrays,
+    loads: LoadArrays,
+    outputs: OutputArrays,
     coefficients: NDArray[np.float64],
     threads: int = 1,
 ) -> NDArray[np.float64]:
@@ -106,9 +108,9 @@ class Condensation:
 
     def __new__(
         cls,
-        structure: dict[str, NDArray[Any]],
-        loads: dict[str, NDArray[Any]],
-        outputs: dict[str, NDArray[Any]],
+        structure: StructureArrays,
+        loads: LoadArrays,
+        outputs: OutputArrays,
         members: NDArray[np.int64],
         springs: NDArray[np.int64],
         axial: bool = False,
@@ -173,21 +175,19 @@ class Condensation:
 class Reanalysis:
     """A structure solved once, and those near it; `help(Reanalysis)` tells more."""
 
-    def __new__(
-        cls, structure: dict[str, NDArray[Any]], outputs: dict[str, NDArray[Any]]
-    ) -> Self: ...
-    def under(self, loads: dict[str, NDArray[Any]]) -> Loaded:
+    def __new__(cls, structure: StructureArrays, outputs: OutputArrays) -> Self: ...
+    def under(self, loads: LoadArrays) -> Loaded:
         """The structure under loads."""
 
     def differing(
-        self, structure: dict[str, NDArray[Any]], outputs: dict[str, NDArray[Any]]
+        self, structure: StructureArrays, outputs: OutputArrays
     ) -> StiffnessDifference | None:
         """Where stiffnesses differ; None where more than few stiffnesses do."""
 
     def changed(
         self,
         loaded: Loaded,
-        structure: dict[str, NDArray[Any]],
+        structure: StructureArrays,
         difference: StiffnessDifference,
     ) -> NDArray[np.float64]:
         """Outputs [p, o] of a structure near this one under loads."""
@@ -224,9 +224,9 @@ class Refactored:
 
     def __new__(
         cls,
-        structure: dict[str, NDArray[Any]],
-        loads: dict[str, NDArray[Any]],
-        outputs: dict[str, NDArray[Any]],
+        structure: StructureArrays,
+        loads: LoadArrays,
+        outputs: OutputArrays,
         instructions: str | None = None,
     ) -> Self: ...
     def respond(
@@ -341,8 +341,8 @@ class GaussianWindow:
     def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
 
 def count_terms(
-    structure: dict[str, NDArray[Any]],
-    outputs: dict[str, NDArray[Any]],
+    structure: StructureArrays,
+    outputs: OutputArrays,
     members: NDArray[np.int64],
     springs: NDArray[np.int64],
 ) -> int:

@@ -1,17 +1,22 @@
 """Local axes of members."""
 
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
 
 
-def local_axes(
-    structure: dict[str, NDArray[Any]], members: NDArray[np.int64]
-) -> tuple[FloatArray, FloatArray]:
+class Placed(TypedDict):
+    """Where members stand, as in `StructureArrays`."""
+
+    coordinates: FloatArray
+    ends: IntArray
+    local_y: FloatArray
+
+
+def local_axes(structure: Placed, members: IntArray) -> tuple[FloatArray, FloatArray]:
     """Lengths, float[members] [m], and axes x, y, z in global components, float[members, 3, 3]."""
     ends = structure["coordinates"][structure["ends"][members]]
     along = ends[:, 1] - ends[:, 0]
@@ -28,7 +33,7 @@ def local_axes(
 def member_axes(model: Model, member: str) -> tuple[float, FloatArray]:
     """Length [m] of one member of a model, and its axes x, y, z as rows, float[3, 3]."""
     own = model.members[member]
-    structure = {
+    structure: Placed = {
         "coordinates": np.array([model.nodes[node] for node in own.nodes], dtype=float),
         "ends": np.array([[0, 1]]),
         "local_y": np.array([own.local_y or (np.nan, np.nan, np.nan)], dtype=float),

@@ -2,13 +2,21 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rga._core import OutputKind
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import (
+    FloatArray,
+    IntArray,
+    MemberArrays,
+    OutputArrays,
+    RestraintArrays,
+    StructureArrays,
+    by_name,
+)
 from rga.model.parameter import listed
 from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
@@ -18,6 +26,10 @@ T = TypeVar("T")
 Spread = tuple[int, int, float, float, float, float]
 #: what a structure remembers of effects
 REMEMBERED = 512
+#: properties that a member has and a node has not
+OF_MEMBERS: tuple[
+    Literal["E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end"], ...
+] = ("E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end")
 #: what a sensor of each kind reads
 OUTPUT_KIND = {
     "displacement": OutputKind.DISPLACEMENT,
@@ -111,8 +123,8 @@ class Structure:
     sensors: dict[str, int]
     groups: dict[str, IntArray]
     materials: tuple[str, ...]
-    arrays: dict[str, NDArray[Any]]
-    outputs: dict[str, NDArray[Any]]
+    arrays: StructureArrays
+    outputs: OutputArrays
     per_si: FloatArray
     alpha: FloatArray
     host: IntArray
@@ -151,8 +163,8 @@ class Structure:
             self.sensors,
             self.groups,
             self.materials,
-            {name: array.copy() for name, array in self.arrays.items()},
-            {name: array.copy() for name, array in self.outputs.items()},
+            cast(StructureArrays, _copied(self.arrays)),
+            cast(OutputArrays, _copied(self.outputs)),
             self.per_si,
             self.alpha.copy(),
             self.host.copy(),
@@ -192,19 +204,7 @@ class Structure:
     def add_bars(self, ends: IntArray, area: float, hosts: IntArray) -> None:
         """Add bars int[k, 2] of an area [m2] with modulus and temperature of their hosts."""
         arrays = self.arrays
-        for name in (
-            "E",
-            "G",
-            "A",
-            "Iy",
-            "Iz",
-            "J",
-            "Asy",
-            "Asz",
-            "local_y",
-            "connection",
-            "rigid_end",
-        ):
+        for name in OF_MEMBERS:
             arrays[name] = np.concatenate([arrays[name], arrays[name][hosts]])
         arrays["A"][-len(hosts) :] = area
         arrays["ends"] = np.vstack([arrays["ends"], ends])
@@ -222,6 +222,10 @@ class Structure:
         arrays["spring_node"] = np.concatenate([arrays["spring_node"], nodes])
         arrays["spring_dof"] = np.append(arrays["spring_dof"], np.full(more, dof))
         arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], np.full(more, stiffness))
+
+
+def _copied(arrays: StructureArrays | OutputArrays) -> dict[str, NDArray[Any]]:
+    return {name: array.copy() for name, array in by_name(arrays).items()}
 
 
 def check_direction(direction: Vector) -> None:
@@ -243,7 +247,10 @@ def build_structure(model: Model) -> Structure:
     """
     nodes = {name: number for number, name in enumerate(model.nodes)}
     members = {name: number for number, name in enumerate(model.members)}
-    arrays = {**_member_arrays(model, nodes), **_restraint_arrays(model, nodes)}
+    arrays: StructureArrays = {
+        **_member_arrays(model, nodes),
+        **_restraint_arrays(model, nodes),
+    }
     sensors = list(model.sensors.items())
     outputs = [_output(sensor, nodes, members) for _, sensor in sensors]
     return Structure(
@@ -273,7 +280,7 @@ def build_structure(model: Model) -> Structure:
     )
 
 
-def _member_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any]]:
+def _member_arrays(model: Model, nodes: dict[str, int]) -> MemberArrays:
     chosen = list(model.members.values())
     materials = [model.materials[member.material] for member in chosen]
     sections = [model.sections[member.section] for member in chosen]
@@ -310,7 +317,7 @@ def _member_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any
     }
 
 
-def _restraint_arrays(model: Model, nodes: dict[str, int]) -> dict[str, NDArray[Any]]:
+def _restraint_arrays(model: Model, nodes: dict[str, int]) -> RestraintArrays:
     fixed = np.zeros((len(nodes), 6), dtype=bool)
     if model.plane is not None:
         fixed[:, HELD_BY_PLANE[model.plane]] = True

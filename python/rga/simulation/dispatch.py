@@ -3,14 +3,13 @@
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rga import _core
 from rga._core import Condensation, DependentTerms
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray, IntArray, LoadArrays, by_name
 from rga.errors import InputError
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.factorisation import Factorisation
@@ -101,8 +100,10 @@ class Request:
         """
         if self.fixed_patterns:
             return True
-        here, there = (patterns(each, self.loads(each, NOTHING)) for each in (one, other))
-        return all(np.array_equal(here[name], there[name]) for name in here)
+        here, there = (
+            by_name(patterns(each, self.loads(each, NOTHING))).values() for each in (one, other)
+        )
+        return all(np.array_equal(*pair) for pair in zip(here, there, strict=True))
 
 
 @dataclass(frozen=True)
@@ -262,7 +263,7 @@ def condensed(
         if known.is_of(structure, loads, apart):
             return known.found
     of_loads = patterns(structure, loads)
-    parts = structure.arrays, structure.outputs, of_loads
+    parts = by_name(structure.arrays), by_name(of_loads), by_name(structure.outputs)
     content = [array.tobytes() for part in parts for array in part.values()] + apart
     for known in prepared:
         if known.content == content:
@@ -275,7 +276,7 @@ def condensed(
 
 def _condense(
     structure: Structure,
-    of_loads: dict[str, NDArray[Any]],
+    of_loads: LoadArrays,
     members: IntArray = NOTHING,
     springs: IntArray = NOTHING,
     axial: bool = False,

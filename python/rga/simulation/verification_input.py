@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga._core import OutputKind
+from rga.arrays import LoadArrays, OutputArrays, StructureArrays
 
 Floats = NDArray[np.float64]
-Arrays = dict[str, NDArray[Any]]
 Json = Mapping[str, Any]
 
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
@@ -28,7 +28,7 @@ BY_AXIS = {
 class FrameCase:
     """The structure of a case, with the names that its loads and outputs use."""
 
-    arrays: Arrays
+    arrays: StructureArrays
     nodes: dict[str, int]
     members: dict[str, int]
 
@@ -39,7 +39,9 @@ class FrameCase:
         nodes = {str(name): index for index, name in enumerate(case["nodes"])}
         members = {str(element["id"]): index for index, element in enumerate(elements)}
         supports = case.get("inclined_supports") or []
-        arrays: Arrays = {
+        springs = case.get("springs") or []
+        ties = _ties(case.get("ties") or [], nodes)
+        arrays: StructureArrays = {
             "coordinates": np.array([point(p) for p in case["nodes"].values()]),
             "ends": np.array(
                 [[nodes[str(n)] for n in e["nodes"]] for e in elements], dtype=np.int64
@@ -53,9 +55,21 @@ class FrameCase:
             "inclined_direction": np.array(
                 [point(s["direction"]) for s in supports], dtype=np.float64
             ).reshape(-1, 3),
-            **_sections(elements, plane),
-            **_springs(case.get("springs") or [], nodes),
-            **_ties(case.get("ties") or [], nodes),
+            "E": _section(elements, "E", plane),
+            "G": _section(elements, "G", plane),
+            "A": _section(elements, "A", plane),
+            "Iy": _section(elements, "Iy", plane),
+            "Iz": _section(elements, "Iz", plane),
+            "J": _section(elements, "J", plane),
+            "Asy": _section(elements, "Asy", plane),
+            "Asz": _section(elements, "Asz", plane),
+            "spring_node": np.array(
+                [_spring_ends(spring, nodes) for spring in springs], dtype=np.int64
+            ).reshape(-1, 2),
+            "spring_dof": np.array([DOFS.index(s["dof"]) for s in springs], dtype=np.int64),
+            "spring_stiffness": np.array([float(s["k"]) for s in springs]),
+            "tie_node": ties[:, :2].copy(),
+            "tie_dof": ties[:, 2].copy(),
         }
         return cls(arrays, nodes, members)
 
@@ -166,7 +180,7 @@ class Loads:
             "rotation": motion / size,
         }
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> LoadArrays:
         columns = np.array(self.member_loads, dtype=np.float64).reshape(-1, 6).T.copy()
         return {
             "forces": self.forces,
@@ -215,8 +229,8 @@ def _fixed(case: Json, nodes: Mapping[str, int], plane: bool) -> NDArray[np.bool
     return fixed
 
 
-def _sections(elements: Sequence[Json], plane: bool) -> Arrays:
-    def value(element: Json, key: str) -> float:
+def _section(elements: Sequence[Json], key: str, plane: bool) -> Floats:
+    def value(element: Json) -> float:
         if key in element:
             return float(element[key])
         if element["type"] == "truss" and key not in ("E", "A"):
@@ -228,35 +242,27 @@ def _sections(elements: Sequence[Json], plane: bool) -> Arrays:
             return 1.0  # only stiffens what a plane model holds
         raise KeyError(f"element {element['id']} lacks {key}")
 
-    keys = ("E", "A", "Iz", "Iy", "J", "G", "Asy", "Asz")
-    return {key: np.array([value(element, key) for element in elements]) for key in keys}
+    return np.array([value(element) for element in elements])
 
 
-def _springs(springs: Sequence[Json], nodes: Mapping[str, int]) -> Arrays:
-    def ends(spring: Json) -> list[int]:
-        if "nodes" in spring:
-            return [nodes[str(node)] for node in spring["nodes"]]
-        return [nodes[str(spring["node"])], -1]
-
-    return {
-        "spring_node": np.array([ends(s) for s in springs], dtype=np.int64).reshape(-1, 2),
-        "spring_dof": np.array([DOFS.index(s["dof"]) for s in springs], dtype=np.int64),
-        "spring_stiffness": np.array([float(s["k"]) for s in springs]),
-    }
+def _spring_ends(spring: Json, nodes: Mapping[str, int]) -> list[int]:
+    if "nodes" in spring:
+        return [nodes[str(node)] for node in spring["nodes"]]
+    return [nodes[str(spring["node"])], -1]
 
 
-def _ties(ties: Sequence[Json], nodes: Mapping[str, int]) -> Arrays:
+def _ties(ties: Sequence[Json], nodes: Mapping[str, int]) -> NDArray[np.int64]:
+    """Two nodes and a dof of each, int[ties, 3]."""
     pairs = [
         (nodes[str(tie["nodes"][0])], nodes[str(other)], DOFS.index(dof))
         for tie in ties
         for other in tie["nodes"][1:]
         for dof in (tie["dofs"] if "dofs" in tie else [tie["dof"]])
     ]
-    columns = np.array(pairs, dtype=np.int64).reshape(-1, 3)
-    return {"tie_node": columns[:, :2].copy(), "tie_dof": columns[:, 2].copy()}
+    return np.array(pairs, dtype=np.int64).reshape(-1, 3)
 
 
-def output_arrays(frame: FrameCase, entries: Sequence[Json]) -> Arrays:
+def output_arrays(frame: FrameCase, entries: Sequence[Json]) -> OutputArrays:
     rows = [_output(frame, entry) for entry in entries]
     return {
         "kind": np.array([row[0] for row in rows], dtype=np.int64),

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from rga import _core
 from rga.arrays import FloatArray
 from rga_bench.solver.box_bridge import BoxBridge
-from rga_bench.solver.space_truss import Arrays, SpaceTruss
+from rga_bench.solver.space_truss import SpaceTruss
 
 
 class FromScratch:
@@ -23,13 +23,22 @@ class FromScratch:
         return np.array([self._solve(*sample) for sample in samples])
 
     def _solve(self, factors: FloatArray, coefficients: FloatArray) -> FloatArray:
-        structure: Arrays = dict(self._truss.structure)
+        structure, loads = self._truss.structure, self._truss.loads
         count = len(structure["ends"])
-        structure["A"] = structure["A"] * factors[:count]
-        structure["spring_stiffness"] = structure["spring_stiffness"] * factors[count:]
-        loads = dict(self._truss.loads)
-        for name in ("forces", "strain", "prescribed", "prescribed_inclined"):
-            loads[name] = np.tensordot(coefficients, loads[name], 1)[None]
+        stiffness = structure["spring_stiffness"] * factors[count:]
+        area = structure["A"] * factors[:count]
+
+        def combined(patterns: FloatArray) -> FloatArray:
+            return np.asarray(np.tensordot(coefficients, patterns, 1)[None])
+
+        structure = {**structure, "A": area, "spring_stiffness": stiffness}
+        loads = {
+            **loads,
+            "forces": combined(loads["forces"]),
+            "strain": combined(loads["strain"]),
+            "prescribed": combined(loads["prescribed"]),
+            "prescribed_inclined": combined(loads["prescribed_inclined"]),
+        }
         return np.asarray(_core.respond(structure, loads, self._truss.outputs)[0])
 
 

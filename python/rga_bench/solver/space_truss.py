@@ -1,14 +1,11 @@
 """Trusses with pinned joints as arrays: what the generated structures of the benchmarks share."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rga.arrays import FloatArray
-
-Arrays = dict[str, NDArray[Any]]
+from rga.arrays import FloatArray, LoadArrays, OutputArrays, StructureArrays
 
 
 @dataclass(frozen=True)
@@ -20,9 +17,9 @@ class SpaceTruss:
             temperature fields.
     """
 
-    structure: Arrays
-    loads: Arrays
-    outputs: Arrays
+    structure: StructureArrays
+    loads: LoadArrays
+    outputs: OutputArrays
 
 
 def pinned(
@@ -33,7 +30,7 @@ def pinned(
     fixed: NDArray[np.bool_],
     springs: NDArray[np.int64],
     spring_stiffness: FloatArray,
-) -> Arrays:
+) -> StructureArrays:
     """A structure of truss members, with springs to the ground along x.
 
     Args:
@@ -53,8 +50,11 @@ def pinned(
         "E": np.full(count, modulus),
         "G": np.full(count, modulus / 2.6),
         "A": area,
-        **{name: np.full(count, 1e-6) for name in ("Iy", "Iz", "J")},
-        **{name: np.full(count, np.inf) for name in ("Asy", "Asz")},
+        "Iy": np.full(count, 1e-6),
+        "Iz": np.full(count, 1e-6),
+        "J": np.full(count, 1e-6),
+        "Asy": np.full(count, np.inf),
+        "Asz": np.full(count, np.inf),
         "local_y": np.full((count, 3), np.nan),
         "connection": np.full((count, 12), np.inf),
         "rigid_end": np.zeros((count, 2)),
@@ -69,7 +69,7 @@ def pinned(
     }
 
 
-def load_patterns(forces: FloatArray, strain: FloatArray) -> Arrays:
+def load_patterns(forces: FloatArray, strain: FloatArray) -> LoadArrays:
     """Patterns of nodal forces, then fields of free strain.
 
     Args:
@@ -86,12 +86,17 @@ def load_patterns(forces: FloatArray, strain: FloatArray) -> Arrays:
         "strain": strains,
         "prescribed": np.zeros_like(whole),
         "prescribed_inclined": np.zeros((patterns, 0)),
-        **{f"member_{name}": np.zeros(0, np.int64) for name in ("pattern", "index", "axis")},
-        **{f"member_{name}": np.zeros(0) for name in ("from", "to", "start", "end")},
+        "member_pattern": np.zeros(0, np.int64),
+        "member_index": np.zeros(0, np.int64),
+        "member_axis": np.zeros(0, np.int64),
+        "member_from": np.zeros(0),
+        "member_to": np.zeros(0),
+        "member_start": np.zeros(0),
+        "member_end": np.zeros(0),
     }
 
 
-def displacements(nodes: NDArray[np.int64], directions: NDArray[np.int64]) -> Arrays:
+def displacements(nodes: NDArray[np.int64], directions: NDArray[np.int64]) -> OutputArrays:
     """Sensors of displacement: nodes int[o], and directions int[o], 0..2 for x y z."""
     count = len(nodes)
     return {

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rga import _core
+from rga.arrays import LoadArrays, OutputArrays, StructureArrays
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 LENGTH, STIFFNESS, FORCE = 3.0, 2.1e11 * 8e-3, 1e4
@@ -88,6 +89,18 @@ def test_bad_array_is_named(key: str, value: Any, words: str) -> None:
         _core.respond(structure, loads, outputs)
     assert key in str(refusal.value)
     assert isinstance(refusal.value, ValueError)
+
+
+@pytest.mark.parametrize("place", range(3))
+def test_typed_names_are_those_that_the_core_reads(place: int) -> None:
+    given = bar()
+    names = (StructureArrays, LoadArrays, OutputArrays)[place].__annotations__
+    assert names.keys() == given[place].keys()
+    for name in names:
+        lacking = list(given)
+        lacking[place] = {key: array for key, array in given[place].items() if key != name}
+        with pytest.raises(_core.InvalidInput, match=f'lacks the key "{name}"'):
+            _core.respond(*lacking)
 
 
 def test_mechanism_is_named() -> None:

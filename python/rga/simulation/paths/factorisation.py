@@ -1,12 +1,9 @@
 """A structure of which many stiffnesses vary: one symbolic analysis, one factorisation a sample."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray, IntArray, LoadArrays, OutputArrays, StructureArrays
 
 
 class Factorisation:
@@ -26,9 +23,9 @@ class Factorisation:
 
     def __init__(
         self,
-        structure: dict[str, NDArray[Any]],
-        loads: dict[str, NDArray[Any]],
-        outputs: dict[str, NDArray[Any]],
+        structure: StructureArrays,
+        loads: LoadArrays,
+        outputs: OutputArrays,
         members: IntArray,
         springs: IntArray,
         stiffness: FloatArray,

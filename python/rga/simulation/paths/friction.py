@@ -1,13 +1,10 @@
 """Bearings with Coulomb friction: the response row after row, on condensed quantities."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from rga import _core
 from rga._core import OutputKind
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, OutputArrays
 from rga.errors import InputError
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.response import respond
@@ -63,16 +60,18 @@ def _own_reactions(structure: Structure) -> FloatArray:
     )
 
 
-def _with_bearings(structure: Structure) -> dict[str, NDArray[Any]]:
+def _with_bearings(structure: Structure) -> OutputArrays:
     bearings = structure.bearings
     nodes = np.array([bearing.node for bearing in bearings], dtype=np.int64)
     along = np.eye(6)[[bearing.dof for bearing in bearings], :3]
     none = np.full(len(bearings), -1, dtype=np.int64)
-    extra = {
-        "kind": np.repeat([OutputKind.DISPLACEMENT, OutputKind.REACTION_FORCE], len(bearings)),
-        "index": np.concatenate([nodes, nodes]),
-        "other": np.concatenate([none, none]),
-        "vector": np.vstack([along, np.tile(UP, (len(bearings), 1))]),
-        "total": np.zeros(2 * len(bearings), dtype=bool),
+    kinds = np.repeat([OutputKind.DISPLACEMENT, OutputKind.REACTION_FORCE], len(bearings))
+    upwards = np.tile(UP, (len(bearings), 1))
+    outputs = structure.outputs
+    return {
+        "kind": np.concatenate([outputs["kind"], kinds]),
+        "index": np.concatenate([outputs["index"], nodes, nodes]),
+        "other": np.concatenate([outputs["other"], none, none]),
+        "vector": np.concatenate([outputs["vector"], along, upwards]),
+        "total": np.append(outputs["total"], np.zeros(2 * len(bearings), dtype=bool)),
     }
-    return {name: np.concatenate([structure.outputs[name], extra[name]]) for name in extra}

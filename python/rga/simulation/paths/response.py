@@ -1,20 +1,15 @@
 """Response of a structure to loads: the way into the core."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from rga import _core
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, LoadArrays, OutputArrays
 from rga.errors import InputError, UnstableStructureError
 from rga.model.schema import DOFS
 from rga.model.structure import Load, Structure
 
 
-def respond(
-    structure: Structure, loads: list[Load], outputs: dict[str, NDArray[Any]]
-) -> FloatArray:
+def respond(structure: Structure, loads: list[Load], outputs: OutputArrays) -> FloatArray:
     """Outputs under each load pattern with coefficient one, float[loads, outputs] in SI units.
 
     Raises:
@@ -47,7 +42,7 @@ def node_name(structure: Structure, node: int) -> str:
     return names[node] if node < len(names) else f"of the floor beside {names[0]}"
 
 
-def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]:
+def patterns(structure: Structure, loads: list[Load]) -> LoadArrays:
     """Load patterns in the form that the core takes."""
     count, nodes, members = len(loads), len(structure.arrays["coordinates"]), len(structure.host)
     forces = np.zeros((count, nodes, 6))
@@ -64,13 +59,18 @@ def patterns(structure: Structure, loads: list[Load]) -> dict[str, NDArray[Any]]
             prescribed[number, node, dof] = displacement
         spread += [(number, *one) for one in load.spread]
     table = np.array(spread, dtype=float).reshape(-1, 7)
-    names = ("member_pattern", "member_index", "member_axis")
-    reals = ("member_from", "member_to", "member_start", "member_end")
+    pattern, member, axis = table[:, :3].T.astype(np.int64)
+    start, end, first, last = table[:, 3:].T.copy()
     return {
         "forces": forces,
         "strain": strain,
         "prescribed": prescribed,
         "prescribed_inclined": inclined,
-        **{name: table[:, k].astype(np.int64) for k, name in enumerate(names)},
-        **{name: table[:, 3 + k].copy() for k, name in enumerate(reals)},
+        "member_pattern": pattern,
+        "member_index": member,
+        "member_axis": axis,
+        "member_from": start,
+        "member_to": end,
+        "member_start": first,
+        "member_end": last,
     }

@@ -2,13 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray, IntArray, StructureArrays, by_name
 from rga.model.structure import Structure
 
 #: rows at which straightness is checked, beside the ends of each parameter
@@ -118,10 +117,10 @@ def _stiffness(structure: Structure) -> FloatArray:
 
 
 def _only_stiffness_differs(one: Structure, other: Structure) -> bool:
-    if other.bearings or other.laws or one.arrays.keys() != other.arrays.keys():
+    if other.bearings or other.laws:
         return False
-    for name, array in one.arrays.items():
-        changed = other.arrays[name]
+    for name, array in by_name(one.arrays).items():
+        changed = by_name(other.arrays)[name]
         if array.shape != changed.shape:
             return False
         if name in ("E", "G", "spring_stiffness"):
@@ -130,12 +129,13 @@ def _only_stiffness_differs(one: Structure, other: Structure) -> bool:
             array, changed = array[one.arrays["frame"]], changed[one.arrays["frame"]]
         if not np.array_equal(array, changed, equal_nan=array.dtype == float):
             return False
-    read = (np.array_equal(array, other.outputs[name]) for name, array in one.outputs.items())
+    outputs = by_name(other.outputs)
+    read = (np.array_equal(array, outputs[name]) for name, array in by_name(one.outputs).items())
     same = (np.array_equal(getattr(one, name), getattr(other, name)) for name in ("alpha", "host"))
     return all(read) and all(same) and _frames_differ_as_a_whole(one.arrays, other.arrays)
 
 
-def _frames_differ_as_a_whole(one: dict[str, NDArray[Any]], other: dict[str, NDArray[Any]]) -> bool:
+def _frames_differ_as_a_whole(one: StructureArrays, other: StructureArrays) -> bool:
     """Where E of a frame member differs, G does in proportion, and no end of the member yields."""
     frame = one["frame"]
     yields = (np.isfinite(one["connection"]) & (one["connection"] > 0)).any(axis=1)

@@ -1,7 +1,7 @@
 """A structure solved once: further loads, and a few stiffnesses that differ, cost little more."""
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray, IntArray, by_name
 from rga.errors import UnstableStructureError
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.response import patterns, refused
@@ -32,7 +32,7 @@ class Reanalysis:
     def under(self, loads: list[Load]) -> _core.Loaded:
         """The structure under loads; InputError for a property that the core refuses."""
         pattern = patterns(self.structure, loads)
-        content = b"".join(array.tobytes() for array in pattern.values())
+        content = b"".join(array.tobytes() for array in by_name(pattern).values())
         if content not in self._known:
             try:
                 self._known[content] = self._core.under(pattern)
