@@ -1,5 +1,7 @@
 """The one measurement that would separate a cause from its rival, in words."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,7 @@ def soft(model: Model) -> CandidateModel:
 
 
 def advice(model: Model, posed: Problem, together: CandidateModel) -> Advice:
-    return Advice(model, posed.data, together, np.array([0.025, 0.01, 0.003]))
+    return Advice(model, replace(posed, levels=np.array([0.025, 0.01, 0.003])), together)
 
 
 def test_a_measurement_that_separates_is_named(

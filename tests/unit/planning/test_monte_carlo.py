@@ -20,7 +20,7 @@ def present(bridge: MeasurementModel, pair: Pair) -> np.ndarray:
 def test_the_true_explanation_wins_as_often_as_promised(
     bridge: MeasurementModel, errors: Errors, pair: Pair, present: np.ndarray
 ) -> None:
-    (separation,) = Chooser(bridge, errors, [pair]).separation([], [1])
+    (separation,) = Chooser(bridge, errors, [pair], 5.5).separation([], [1])
     found = checked(bridge, pair.cause, pair.rival, present, 4.6, 0)
     assert found.draws == 100
     assert found.won == pytest.approx(success(float(separation), 0.0), abs=0.15)

@@ -9,10 +9,12 @@ from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Pair, covariance
 from rga.planning.selection import Chooser
 
+ENOUGH = 5.5
+
 
 @pytest.fixture(scope="module")
 def chooser(bridge: MeasurementModel, errors: Errors, pair: Pair) -> Chooser:
-    return Chooser(bridge, errors, [pair])
+    return Chooser(bridge, errors, [pair], ENOUGH)
 
 
 def test_separation_is_that_of_the_whole_covariance(
@@ -39,7 +41,7 @@ def test_one_sensor_is_the_best_of_all_for_its_cost(
     assert choice.tests == ()
     alone = {k: chooser.separation([k], [])[0] for k in range(bridge.standing, len(bridge.sensors))}
     costs = {k: bridge.added[k - bridge.standing].cost for k in alone}
-    rate = {k: min(one, 5.5) ** 2 / costs[k] for k, one in alone.items()}
+    rate = {k: min(one, ENOUGH) ** 2 / costs[k] for k, one in alone.items()}
     assert rate[sensor] == pytest.approx(max(rate.values()), rel=0.05)
 
 
@@ -50,7 +52,7 @@ def test_two_sensors_are_nearly_those_of_an_exhaustive_search(
     assert len(choice.sensors) <= 2
     columns = range(bridge.standing, len(bridge.sensors))
     best = max(chooser.separation(pair, [])[0] for pair in combinations(columns, 2))
-    assert min(choice.separation[0], 5.5) >= 0.9 * min(best, 5.5)
+    assert min(choice.separation[0], ENOUGH) >= 0.9 * min(best, ENOUGH)
 
 
 def test_no_budget_buys_nothing(chooser: Chooser) -> None:
@@ -64,7 +66,7 @@ def test_what_is_needless_is_not_bought(
 ) -> None:
     """Explanations that any test separates cost one measurement, whatever the budget."""
     apart = Pair(pair.cause, pair.rival, pair.predicted * 50, pair.unknown)
-    chooser = Chooser(bridge, errors, [apart])
+    chooser = Chooser(bridge, errors, [apart], ENOUGH)
     choice = chooser.best(4, 4)
     assert len(choice.sensors) + len(choice.tests) == 1
     cheapest = min(one.cost for one in [*bridge.added, *bridge.tests])
