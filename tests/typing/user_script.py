@@ -25,7 +25,7 @@ def diagnoses(folder: Path) -> str:
     found = rga.diagnose(model, record, seed=3)
     assert_type(found, rga.Findings)
     rga.diagnose(record, model)  # type: ignore[arg-type]
-    rga.diagnose(model, record, 3)  # type: ignore[call-arg]
+    rga.diagnose(model)  # type: ignore[call-arg]
     found.write(folder / "out")
     plan = rga.plan(model, found, sensors=1, positions=2)
     assert_type(plan.sentence, str)

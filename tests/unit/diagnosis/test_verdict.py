@@ -54,11 +54,9 @@ def test_with_a_cause(cause: Found) -> None:
 
 
 def doubts(found: Found, **changes: Any) -> list[str]:
-    given: dict[str, Any] = {"faults": [], "dropped": [], "off": [], "gained": SOUND, **changes}
-    channels = found.problem.data.sensors
-    return reasons_for_doubt(
-        channels, given["faults"], found, given["dropped"], given["off"], given["gained"]
-    )
+    given: dict[str, Any] = {"faults": [], "dropped": [], "off": []}
+    given |= {"gained": SOUND, "unseen": None, **changes}
+    return reasons_for_doubt(found.problem.data.sensors, found=found, **given)
 
 
 def test_a_record_that_is_explained_has_no_warning(nothing: Found, cause: Found) -> None:
@@ -92,6 +90,19 @@ def test_a_gap_that_the_causes_do_not_close_is_a_warning(cause: Found, nothing: 
     assert doubts(nothing, gained=worse) == []
     (words,) = doubts(nothing, gained=Gain(9.0, 9.0, (0.0, 0.0)))
     assert "9 times the noise" in words
+
+
+def test_channels_left_out_that_get_worse_are_a_warning(cause: Found) -> None:
+    (words,) = doubts(cause, unseen=(1.0, 3.0))
+    assert "channels left out of the fit are predicted worse" in words
+    assert doubts(cause, unseen=(3.0, 1.0)) == []
+
+
+def test_a_gain_that_may_be_none_is_a_warning_for_causes_of_the_structure(cause: Found) -> None:
+    unsure = Gain(1.0, 0.9, (-0.05, 0.25))
+    (words,) = doubts(cause, gained=unsure, unseen=(1.0, 1.0))
+    assert words.endswith("is not sure")
+    assert doubts(cause, gained=unsure) == []
 
 
 def test_scatter_beyond_what_is_plausible_is_a_warning(nothing: Found) -> None:
