@@ -98,13 +98,6 @@ def test_channels_left_out_that_get_worse_are_a_warning(cause: Found) -> None:
     assert doubts(cause, unseen=(3.0, 1.0)) == []
 
 
-def test_a_gain_that_may_be_none_is_a_warning_for_causes_of_the_structure(cause: Found) -> None:
-    unsure = Gain(1.0, 0.9, (-0.05, 0.25))
-    (words,) = doubts(cause, gained=unsure, unseen=(1.0, 1.0))
-    assert words.endswith("is not sure")
-    assert doubts(cause, gained=unsure) == []
-
-
 def test_scatter_beyond_what_is_plausible_is_a_warning(nothing: Found) -> None:
     for number, of in enumerate(("the stiffness of members", "gains of channels")):
         levels = nothing.problem.levels.copy()

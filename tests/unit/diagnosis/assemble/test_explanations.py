@@ -60,7 +60,7 @@ def test_why_another_is_rejected(found: Found, prepared: PreparedRecord) -> None
     assert one.remark.startswith("rejected (-")
     near = replace(far, log_evidence=found.fit.log_evidence - 0.5)
     (one,) = (o for o in told(found, prepared, Tried(near, 5.0, 4.0)) if "bias" in o.words)
-    assert one.remark.startswith("cannot be told from what is named (-0.5")
+    assert one.remark.startswith("cannot be separated from what is named (-0.5")
     rival = replace(found.alternatives[0][0], behind=1.0)
     hanging = replace(found, alternatives=((rival,),))
     (one,) = (o for o in told(hanging, prepared, Tried(far, 5.0, 4.0)) if "bias" in o.words)

@@ -54,7 +54,7 @@ def test_a_cause_that_held_out_rows_confirm_stays(
     change = change_of(noisy, sunk, 0.2)
     problem, whole = split(change, change)
     found = found_with(problem, [sunk])
-    kept, dropped = supported(found, whole, 0, as_it_is)
+    kept, dropped = supported(found, problem, whole, 0, as_it_is)
     assert kept is found
     assert dropped == []
 
@@ -64,7 +64,7 @@ def test_a_cause_that_held_out_rows_deny_goes(
 ) -> None:
     change = change_of(noisy, sunk, 0.2)
     problem, whole = split(change, -change)
-    kept, dropped = supported(found_with(problem, [sunk]), whole, 0, as_it_is)
+    kept, dropped = supported(found_with(problem, [sunk]), problem, whole, 0, as_it_is)
     assert kept.fit.hypotheses == ()
     assert [one.name for one in dropped] == ["support_settlement"]
 
