@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rga.diagnosis import diagnose
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
-    from rga.findings.io import load_findings
+    from rga.findings.load import load_findings
     from rga.jobs.batch import diagnose_many
     from rga.jobs.run import run
     from rga.model import Effect, Model, load_model

@@ -55,7 +55,7 @@ def plan(
     from rga.model import load_model
 
     structure = load_model(model)
-    from rga.findings.io import load_findings
+    from rga.findings.load import load_findings
     from rga.planning.planner import plan as choose
 
     read = load_findings(findings)

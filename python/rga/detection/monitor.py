@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rga import _core
 from rga.arrays import FloatArray
-from rga.detection.alarm import Alarm, explain
+from rga.detection.alarm_explanation import Alarm, explain
 from rga.detection.assumption_checks import assumption_warnings
 from rga.detection.baseline.baseline_model import Reference, unwatched
 from rga.detection.rows import row as row_of

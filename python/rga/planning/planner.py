@@ -18,7 +18,7 @@ from rga.experiments.separation import Pair, paired, success
 from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
 from rga.findings import Findings
 from rga.findings.criteria import Criteria
-from rga.findings.io import findings_sha256
+from rga.findings.load import findings_sha256
 from rga.model import Model
 from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked

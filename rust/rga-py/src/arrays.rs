@@ -115,10 +115,9 @@ pub(crate) fn directions(
 }
 
 /// How many directions there are, pairs of a direction and an entry, and their rates row by row.
-#[allow(clippy::type_complexity)]
-fn changes(
-    (value, name, expected): Rates<'_, '_>,
-) -> PyResult<(usize, Vec<(usize, usize)>, Vec<f64>)> {
+type Changes = (usize, Vec<(usize, usize)>, Vec<f64>);
+
+fn changes((value, name, expected): Rates<'_, '_>) -> PyResult<Changes> {
     let rates: PyReadonlyArray3<'_, f64> = value
         .extract()
         .map_err(|_| InvalidInput::new_err(format!("{name} must be float64 with three axes")))?;

@@ -10,6 +10,8 @@ use crate::exceptions::{InvalidInput, to_python};
 use crate::read::{read_loads, read_outputs, read_structure};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
+/// Numbers of members, and what belongs to each of them.
+type Rates<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray3<f64>>);
 
 /// A structure solved once: further loads, and a few stiffnesses that differ, cost little more.
 ///
@@ -150,11 +152,7 @@ impl Reanalysis {
     /// Returns
     /// -------
     /// numbers of these members i64[k], and f64[k, p, o]
-    fn rates<'py>(
-        &self,
-        py: Python<'py>,
-        loaded: &Loaded,
-    ) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyArray3<f64>>)> {
+    fn rates<'py>(&self, py: Python<'py>, loaded: &Loaded) -> PyResult<Rates<'py>> {
         let (members, rates) = self.core.rates(&loaded.core);
         let shape = [members.len(), loaded.core.len(), self.core.outputs()];
         let members = members.iter().map(|&member| member as i64);

@@ -4,7 +4,7 @@
 pub mod grid;
 pub mod samples;
 
-use rga_core::{Array, Loads, Outputs, Result, Structure, respond};
+use rga_core::{Array, Loads, OutputKind, Outputs, Result, Structure, respond};
 
 pub const E: f64 = 2.1e11;
 pub const G: f64 = 8.1e10;
@@ -13,13 +13,13 @@ pub const IZ: f64 = 1.2e-4;
 pub const IY: f64 = 4e-5;
 pub const TORSION: f64 = 1e-6;
 
-pub const DISPLACEMENT: i64 = 0;
-pub const ROTATION: i64 = 1;
-pub const STRAIN: i64 = 2;
-pub const AXIAL: i64 = 3;
-pub const REACTION: i64 = 4;
-pub const MOMENT: i64 = 5;
-pub const END_FORCE: i64 = 6;
+pub const DISPLACEMENT: i64 = OutputKind::Displacement as i64;
+pub const ROTATION: i64 = OutputKind::Rotation as i64;
+pub const STRAIN: i64 = OutputKind::Strain as i64;
+pub const AXIAL: i64 = OutputKind::AxialForce as i64;
+pub const REACTION: i64 = OutputKind::ReactionForce as i64;
+pub const MOMENT: i64 = OutputKind::ReactionMoment as i64;
+pub const END_FORCE: i64 = OutputKind::EndForce as i64;
 
 /// One load pattern on members of one section.
 #[derive(Clone, Default)]
