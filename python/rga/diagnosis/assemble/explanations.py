@@ -17,6 +17,9 @@ from rga.findings.schema import (
 )
 from rga.records import Record
 
+#: decimals of log-odds and d': beyond them they differ from one processor to another
+DECIMALS = 6
+
 
 def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[Explanation]:
     """The explanations that were tried, the likeliest first."""
@@ -38,13 +41,14 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             Explanation(
                 words=words,
                 effects=effects,
-                log_odds=max(odds, -1e9),
+                log_odds=max(round(odds, DECIMALS), -1e9),
                 gap=one.gap,
                 gap_unseen_channels=one.gap_unseen if np.isfinite(one.gap_unseen) else None,
                 remark=remark,
             )
         )
-    return sorted(explanations, key=lambda one: -one.log_odds)
+    # What differs by rounding alone keeps the order in which it was tried.
+    return sorted(explanations, key=lambda one: -round(one.log_odds, DECIMALS))
 
 
 def unidentifiable(prospects: Sequence[Prospect], smallest: float) -> list[Unidentifiable]:
@@ -53,7 +57,7 @@ def unidentifiable(prospects: Sequence[Prospect], smallest: float) -> list[Unide
         Unidentifiable(
             kind=p.hypothesis.name,
             place=place_words(p.hypothesis.place.values()),
-            d_prime_at_largest=p.largest,
+            d_prime_at_largest=round(p.largest, DECIMALS),
         )
         for p in prospects
         if p.largest < smallest
