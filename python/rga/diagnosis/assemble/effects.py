@@ -6,6 +6,8 @@ from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.laplace import Fit
 from rga.diagnosis.search.stepwise import Found
 from rga.model.effect import Effect
+from rga.model.effects.sensors.sensor_bias import SensorBias
+from rga.model.effects.sensors.sensor_drift import SensorDrift
 from rga.model.effects.sensors.sensor_fault import SensorFault
 from rga.model.effects.sensors.sensor_gain import SensorGain
 from rga.model.parameter import NORMAL_90, Estimated
@@ -16,7 +18,10 @@ from rga.records import Record
 def effects_of(found: Found, record: Record) -> list[Effect]:
     """The causes as effects with estimated parameters, onsets as in the record."""
     least = found.problem.criteria.channels.dead_gain
-    return [_dead(effect, least) for effect in estimated_effects(found.fit, record)]
+    effects = estimated_effects(found.fit, record)
+    onsets = [one.onset for one in found.fit.hypotheses]
+    lasting = [_drifting(*one, record) for one in zip(effects, onsets, strict=True)]
+    return [_dead(effect, least) for effect in lasting]
 
 
 def cause_name(model: Model, effect: Effect) -> str:
@@ -63,6 +68,20 @@ def _effect(one: Fit, number: int, record: Record) -> Effect:
     if hypothesis.end is not None:
         late["end"] = record.time_label(hypothesis.end - record.origin)
     return effect.model_copy(update=late)
+
+
+def _drifting(effect: Effect, onset: float | None, record: Record) -> Effect:
+    """An offset that grows up to the last row reported as what it is: a drift."""
+    if not isinstance(effect, SensorBias) or effect.profile != "ramp" or effect.end is not None:
+        return effect
+    offset = effect.offset
+    if onset is None or not isinstance(offset, Estimated):
+        return effect
+    days = (record.origin + float(record.time[-1]) - onset) / 86400
+    low, high = offset.ci90
+    rate = Estimated(value=offset.value / days, ci90=(low / days, high / days))
+    drift = SensorDrift(sensor=effect.sensor, rate=rate.value).with_values({"rate": rate})
+    return drift.model_copy(update={"onset": effect.onset})
 
 
 def _dead(effect: Effect, least: float) -> Effect:
