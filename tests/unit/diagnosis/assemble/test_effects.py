@@ -78,3 +78,21 @@ def test_a_cause_has_a_name_that_is_new(model: Model) -> None:
     taken = model.extended({"support settlement east uz": effect})
     assert cause_name(taken, effect) == "support settlement east uz (found)"
     assert np.isfinite(content(effect)["displacement"])
+
+
+@pytest.mark.parametrize(("until", "kind"), [(None, "sensor_drift"), (70, "sensor_bias")])
+def test_an_offset_that_grows_to_the_last_row_is_a_drift(
+    noisy: Problem, prepared: PreparedRecord, until: int | None, kind: str
+) -> None:
+    one = candidate(noisy, "sensor_bias", sensor="D1")
+    time = noisy.data.time
+    end = None if until is None else float(time[until])
+    found = found_with(noisy, [one.beginning(float(time[40]), "ramp", end)])
+    (bias,) = estimated_effects(found.fit, prepared.record)
+    (effect,) = effects_of(found, prepared.record)
+    assert (effect.kind, effect.onset) == (kind, bias.onset)
+    if until is None:
+        last = prepared.record.origin + prepared.record.time[-1]
+        days = (last - time[40]) / 86400
+        reached = content(effect)["rate"]["value"] * days
+        assert reached == pytest.approx(content(bias)["offset"]["value"])
