@@ -48,12 +48,11 @@ def reasons_for_doubt(
         gained: gap of the held-out rows.
         unseen: gap of channels left out, without the causes of the structure and with them.
     """
-    named = {(one.name, *one.place.items()) for one in found.fit.hypotheses}
     fallen = [
-        f"{place_words([one.kind.title, *one.place.values()])} would explain the "
+        f"{place_words([one.kind.title, *one.place.values()])}"
+        f"{', from another row on as well,' if _named(one, found) else ''} would explain the "
         "readings fitted, and rows and channels left out do not confirm it"
         for one in dropped
-        if (one.name, *one.place.items()) not in named
     ]
     # A kind with two parameters, or from another row on, is reported once.
     reasons = list(dict.fromkeys(fallen))
@@ -90,3 +89,8 @@ def reasons_for_doubt(
             f"{plausible[worst]:.0%} is plausible"
         )
     return reasons
+
+
+def _named(one: Hypothesis, found: Found) -> bool:
+    """Whether the same kind at the same place is among the causes."""
+    return any(one.same_place(cause) for cause in found.fit.hypotheses)
