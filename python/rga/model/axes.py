@@ -8,7 +8,7 @@ from rga.arrays import FloatArray, IntArray
 from rga.model.schema import Model
 
 
-class Placed(TypedDict):
+class PlacedMembers(TypedDict):
     """Where members stand, as in `StructureArrays`."""
 
     coordinates: FloatArray
@@ -16,7 +16,7 @@ class Placed(TypedDict):
     local_y: FloatArray
 
 
-def local_axes(structure: Placed, members: IntArray) -> tuple[FloatArray, FloatArray]:
+def local_axes(structure: PlacedMembers, members: IntArray) -> tuple[FloatArray, FloatArray]:
     """Lengths, float[members] [m], and axes x, y, z in global components, float[members, 3, 3]."""
     ends = structure["coordinates"][structure["ends"][members]]
     along = ends[:, 1] - ends[:, 0]
@@ -33,7 +33,7 @@ def local_axes(structure: Placed, members: IntArray) -> tuple[FloatArray, FloatA
 def member_axes(model: Model, member: str) -> tuple[float, FloatArray]:
     """Length [m] of one member of a model, and its axes x, y, z as rows, float[3, 3]."""
     own = model.members[member]
-    structure: Placed = {
+    structure: PlacedMembers = {
         "coordinates": np.array([model.nodes[node] for node in own.nodes], dtype=float),
         "ends": np.array([[0, 1]]),
         "local_y": np.array([own.local_y or (np.nan, np.nan, np.nan)], dtype=float),
