@@ -70,6 +70,8 @@ def minimise(
     normal, descent = np.empty((len(z), size, size)), np.empty((len(z), size))
 
     def linearise(of: IntArray) -> None:
+        if not len(of):
+            return
         columns = slope(z[of], of)
         turned = columns.transpose(0, 2, 1)
         normal[of] = turned @ columns + np.eye(size)

@@ -98,6 +98,24 @@ def test_no_step_gives_the_start_and_its_information() -> None:
     np.testing.assert_allclose(start.normal, columns.transpose(0, 2, 1) @ columns + np.eye(2))
 
 
+def test_where_no_step_helps_the_start_stays() -> None:
+    """The slope has the wrong sign; no function is called for no problem."""
+    calls = []
+
+    def away(z: FloatArray, of: IntArray) -> FloatArray:
+        calls.append(len(of))
+        return 10.0 * (z - 1.0)
+
+    def wrong(z: FloatArray, of: IntArray) -> FloatArray:
+        calls.append(len(of))
+        return np.full((len(z), 1, 1), -10.0)
+
+    start = np.array([[0.5], [0.2]])
+    end = minimise(away, wrong, start, bound=3.0, steps=10, gain=1e-9)
+    assert min(calls) > 0
+    assert (np.abs(end.z - start) < 1e-3).all()
+
+
 def test_a_bounded_step_is_best_inside_the_box() -> None:
     """No point of the box has less of the quadratic than where the step ends."""
     root = GENERATOR.standard_normal((20, 3, 3))
