@@ -57,8 +57,8 @@ class FitCriteria(CriteriaGroup):
         "-",
         "gap on channels left out with causes of the structure over that without them, from which "
         "on the record is not called explained",
-        "measured: true causes bring it down or leave it; members that soften under load, named as "
-        "a loss and a gauge's gain, raised it 1.8 to 2.6 times",
+        "judgement: a true cause brings it down or leaves it; causes that undo each other on the "
+        "channels fitted raise it",
     )
     stated_noise: Multiple = criterion(
         4.0,
