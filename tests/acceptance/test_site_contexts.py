@@ -43,12 +43,12 @@ def found(structure: Model, log: Logged) -> Findings:
 @seeds
 def test_a_late_bias_is_found_beside_errors_that_many_channels_share(seed: int) -> None:
     log = coarse(seed)
-    shift = 0.8 * BEGUN
-    biased = replace(log, readings={**log.readings, "D3": log.readings["D3"] + shift})
+    shift = 0.4 * BEGUN
+    biased = replace(log, readings={**log.readings, "D4": log.readings["D4"] + shift})
     findings = found(coarse_model(), biased)
     (effect,) = [cause.effect for cause in findings.causes]
-    assert (effect["kind"], effect["sensor"]) == ("sensor_bias", "D3")
-    assert effect["offset"]["value"] == pytest.approx(0.8, abs=0.05)
+    assert (effect["kind"], effect["sensor"]) == ("sensor_bias", "D4")
+    assert effect["offset"]["value"] == pytest.approx(0.4, abs=0.05)
     assert found(coarse_model(), log).verdict == "nothing_wrong"
 
 

@@ -1,9 +1,6 @@
 """How noisy the sensors are, with what memory, and how far off the measured contexts.
 
-The noise is estimated on what no linear structure can explain: the part of each channel that is
-not a combination of the load coefficients, nor a step at one moment, nor a drift from one on. So an
-effect that is hidden in the record does not pass for noise, as long as it leaves the structure
-linear; one that changes with time may pass for a little of it. Tails that are heavier than Gaussian
+The noise is estimated on what no linear structure can explain. Tails that are heavier than Gaussian
 ones are drawn in, so that least squares treat the readings as their noise deserves.
 """
 
@@ -11,180 +8,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.linalg import lstsq
 from scipy.optimize import minimize_scalar
 from scipy.special import gammaln
 
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
-from rga.numerics.decompositions import thin_svd
 
 #: rounds of expectation and maximisation, which end a few percent off and in places a sixth; the
 #: next estimate of the same record begins where they end
 ITERATIONS = 12
 #: correlation from row to row beyond which noise is as good as a random walk
 LARGEST_MEMORY = 0.995
-#: a step: a jump from one row to the next of so many robust deviations of such jumps, by which the
-#: median of so many rows before and after differs too
-JUMP, BESIDE = 6.0, 12
-#: log likelihood by which a channel must grow from a row on rather than wander by a long memory:
-#: 1 in 100 random walks of 120 readings reach it (E. Zivot and D. W. K. Andrews, J. Business &
-#: Economic Statistics 10, 1992, table 4: t = -5.57)
-GROWS = 14.0
-#: moments from which on it may grow
-MOMENTS = 30
-#: share of its squares that a line must keep beside the loads, to be no sum of them
-SEEN = 1e-10
-#: in the place of nothing, to divide by
-TINY = 1e-300
 #: excess of the innovations' kurtosis, in standard deviations, beyond which tails are heavy
 HEAVY = 3.7
 #: degrees of freedom of heavy tails to begin with, and bounds of one over them
 FREEDOM, INVERSE_FREEDOM = 5.0, (0.01, 0.5)
 #: readings before and after each whose median may be its level
 ABOUT = 12
-
-
-def unexplainable(
-    residual: FloatArray,
-    observed: BoolArray,
-    basis: FloatArray,
-    context_error: FloatArray | float = 0.0,
-) -> FloatArray:
-    """The part of a residual that no linear structure under these loads has.
-
-    Args:
-        residual: float[rows, sensors].
-        observed: bool[rows, sensors].
-        basis: float[rows, patterns], the load coefficients.
-        context_error: part of the residual that errors of contexts account for, float[rows,
-            sensors]. Steps and drifts are looked for beside it: it is the same error in many
-            channels, and may be larger from row to row than a step of one of them.
-
-    Returns:
-        float[rows, sensors], scaled for the degrees of freedom that the fit takes.
-    """
-    span = _orthonormal(basis, max(1, len(residual) // 12))
-    own = residual - context_error
-    left = _left(own, observed, span)
-    moment = _step(left, observed, span)
-    if moment is not None:
-        # A step would else pass for noise with a long memory, the better the larger it is.
-        step = (np.arange(len(residual)) >= moment).astype(float)
-        span = np.column_stack([span, step])
-        left = _left(own, observed, span)
-    begun = _growth(left, observed, span)
-    if begun is not None:
-        clock = np.arange(len(residual)) / len(residual)
-        later = np.maximum(clock - clock[begun], 0.0)
-        span = np.column_stack([span, clock, later])
-    return _left(residual, observed, span)
-
-
-def _left(residual: FloatArray, observed: BoolArray, span: FloatArray) -> FloatArray:
-    left = np.zeros_like(residual)
-    for sensor in range(residual.shape[1]):
-        seen = observed[:, sensor]
-        if seen.sum() > 2 * span.shape[1]:
-            weights = lstsq(span[seen], residual[seen, sensor])[0]
-            rest = residual[seen, sensor] - span[seen] @ weights
-            left[seen, sensor] = rest * np.sqrt(seen.sum() / (seen.sum() - span.shape[1]))
-        else:
-            left[seen, sensor] = residual[seen, sensor]
-    return left
-
-
-def _step(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
-    """The row at which the channels jump most and stay, if any does.
-
-    Args:
-        left: what a fit by the span leaves, float[rows, sensors].
-        observed: bool[rows, sensors].
-        span: of the fit, float[rows, k].
-    """
-    best: tuple[float, int] | None = None
-    for sensor in range(left.shape[1]):
-        rows = np.flatnonzero(observed[:, sensor])
-        column, rest = _with_whole_step(left[rows, sensor], span[rows])
-        jumps = np.abs(np.diff(column))
-        scale = 1.4826 * float(np.median(np.abs(np.diff(rest)))) if len(jumps) else 0.0
-        for place in np.flatnonzero(jumps > JUMP * scale) + 1 if scale > 0 else ():
-            if not BESIDE <= place <= len(column) - BESIDE:
-                continue
-            before, after = column[place - BESIDE : place], column[place : place + BESIDE]
-            shift = abs(float(np.median(after) - np.median(before))) / scale
-            if shift > JUMP and (best is None or shift > best[0]):
-                best = (shift, int(rows[place]))
-    return None if best is None else best[1]
-
-
-def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
-    """The row from which on a channel drifts in another way than before, if any does.
-
-    A reading is predicted by the one before, with a line that bends at a row or without: what only
-    wanders needs no such line. The loads fit a large drift in part, so that they are fitted anew
-    beside it.
-
-    Args:
-        left: what a fit by the span leaves, float[rows, sensors].
-        observed: bool[rows, sensors].
-        span: of the fit, float[rows, k].
-    """
-    best: tuple[float, int] | None = None
-    for sensor in range(left.shape[1]):
-        rows = np.flatnonzero(observed[:, sensor])
-        column, clock = left[rows, sensor], np.arange(len(rows) - 1) / len(rows)
-        loads = span[rows]
-        before = np.column_stack([np.ones(len(clock)), column[:-1], loads[1:], loads[:-1]])
-        freedom = len(clock) - before.shape[1]
-        if freedom <= 4 * BESIDE:
-            continue
-        places = np.linspace(BESIDE, len(rows) - BESIDE, MOMENTS).astype(int)
-        bends = np.maximum(clock[:, None] - clock[places - 1], 0.0)
-        # All moments at once: what neither the loads nor the reading before predicts of each line.
-        known, strength, _ = thin_svd(before)
-        known = known[:, strength > 1e-12 * strength[0]]
-        together = np.column_stack([column[1:], clock, bends])
-        rest = together - known @ (known.T @ together)
-        unexplained, lines = rest[:, 0], rest[:, 1:]
-        lines = np.where((lines**2).sum(0) > SEEN * (together[:, 1:] ** 2).sum(0), lines, 0.0)
-        line, bends = lines[:, 0], lines[:, 1:]
-        whole = np.maximum((bends**2).sum(0), TINY)
-        bends = bends - np.outer(line, line @ bends) / max(float(line @ line), TINY)
-        bends = np.where((bends**2).sum(0) > SEEN * whole, bends, 0.0)
-        fitted = (line @ unexplained) ** 2 / max(float(line @ line), TINY)
-        fitted = fitted + (bends.T @ unexplained) ** 2 / np.maximum((bends**2).sum(0), TINY)
-        wandering = max(float(unexplained @ unexplained), TINY)
-        gained = -freedom / 2 * np.log(np.maximum(1 - fitted / wandering, SEEN))
-        place = int(np.argmax(gained))
-        if gained[place] > GROWS and (best is None or gained[place] > best[0]):
-            best = (float(gained[place]), int(rows[places[place]]))
-    return None if best is None else best[1]
-
-
-def _with_whole_step(left: FloatArray, span: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What a fit leaves, given back what it took of the likeliest step; and less that step.
-
-    The loads fit a large step in part, and what they put there hides it among jumps of their own.
-
-    Args:
-        left: float[readings].
-        span: of the fit, float[readings, k].
-    """
-    readings = len(left)
-    if readings <= max(2 * BESIDE, 2 * span.shape[1]):
-        return left, left
-    basis, _ = np.linalg.qr(span)
-    later = np.cumsum(basis[::-1], axis=0)[::-1]
-    along = np.cumsum(left[::-1])[::-1]
-    own = np.arange(readings, 0, -1) - (later**2).sum(1)
-    # A step that the loads fit whole says nothing.
-    gained = np.where(own > 1.0, along**2 / np.maximum(own, 1.0), 0.0)
-    place = BESIDE + int(np.argmax(gained[BESIDE : readings - BESIDE]))
-    size = along[place] / max(own[place], 1.0)
-    taken = basis @ later[place]
-    step = (np.arange(readings) >= place).astype(float)
-    return left + size * taken, left - size * (step - taken)
 
 
 def estimate_noise(
@@ -370,10 +210,3 @@ def _likeliest_freedom(squares: FloatArray) -> float:
 
     found = minimize_scalar(loss, bounds=INVERSE_FREEDOM, method="bounded", options={"xatol": 2e-3})
     return float(1 / found.x)
-
-
-def _orthonormal(basis: FloatArray, most: int) -> FloatArray:
-    with_constant = np.column_stack([np.ones(len(basis)), basis])
-    scale = np.linalg.norm(with_constant, axis=0)
-    u, s, _ = thin_svd(with_constant / np.where(scale > 0, scale, 1.0))
-    return np.asarray(u[:, s > 1e-6 * s[0]][:, :most])

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.noise.sensor_noise import unexplainable
+from rga.diagnosis.noise.unexplainable import unexplainable
 from rga.diagnosis.residuals.curvature import curves
 from rga.diagnosis.residuals.slopes import bends
 from rga.diagnosis.search.linearised import Problem, load_basis, pose

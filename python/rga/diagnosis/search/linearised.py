@@ -16,7 +16,8 @@ from rga.diagnosis.noise.random_effects import (
     scatter_levels,
 )
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
-from rga.diagnosis.noise.sensor_noise import estimate_noise, unexplainable
+from rga.diagnosis.noise.sensor_noise import estimate_noise
+from rga.diagnosis.noise.unexplainable import unexplainable
 from rga.diagnosis.noise.zero_errors import slopes_at_zero, zero_errors
 from rga.findings.criteria import Criteria
 from rga.model.effect import Values
