@@ -5,7 +5,7 @@ to zero in the same way, with nothing hidden in it.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -276,10 +276,34 @@ def jammed() -> Site:
     return Site(roller=1e8 * (((ROW >= 20) & (ROW < 45)) | ((ROW >= 80) & (ROW < 100))))
 
 
+@dataclass(frozen=True)
+class Softening(Site):
+    """A truss of which a gauged member yields the more, the more it carries.
+
+    Attributes:
+        most: share by which it lengthens more than it should at 200 microstrain.
+    """
+
+    most: float = 0.0
+
+    def readings(self, contexts: dict[str, Array], built: Array) -> dict[str, Array]:
+        number, more = MEMBERS.index(GAUGE[2:]), np.zeros(ROWS)
+        for _ in range(20):
+            stretched = self.stretched.copy()
+            stretched[:, number] += more
+            shown = Site.readings(replace(self, stretched=stretched, most=0.0), contexts, built)
+            elastic = 1e-6 * shown[GAUGE] - more
+            more = self.most * elastic * np.abs(elastic) / 200e-6
+        return shown
+
+
 @pytest.mark.parametrize(
     ("site", "seed"),
-    [(tide(20e-6), 1), (tide(20e-6), 2), (jammed(), 2), (Lagging(), 2)],
-    ids=["tide 1", "tide 2", "jamming", "hysteresis"],
+    [
+        *((tide(20e-6), 1), (tide(20e-6), 2), (jammed(), 2), (Lagging(), 2)),
+        *((Softening(most=0.4), 1), (Softening(most=0.4), 2)),
+    ],
+    ids=["tide 1", "tide 2", "jamming", "hysteresis", "softening 1", "softening 2"],
 )
 def test_what_no_kind_says_is_unknown(site: Site, seed: int) -> None:
     findings = found(logged(site, seed))

@@ -6,13 +6,16 @@ there is one, the linear part of the response is not what it was either, and a c
 live by that.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.search.linearised import Calibration, Problem, pose
 
+Key = TypeVar("Key")
 #: how far off the linear part may be, in sizes of the bend, as a prior spread
 STRAIGHT = 3.0
 #: share of its variance that a square must have beside the context itself
@@ -100,15 +103,19 @@ def with_free_slopes(problem: Problem, found: list[Bend], further: list[Calibrat
 
 def linear_histories(problem: Problem) -> dict[str, FloatArray]:
     """Contexts that vary, about their means and in their standard deviations."""
-    centre = problem.data.belief.centre
+    return standardised(problem.data.belief.centre)
+
+
+def standardised(columns: Mapping[Key, FloatArray]) -> dict[Key, FloatArray]:
+    """Columns that vary, about their means and in their standard deviations."""
     return {
         name: (column - column.mean()) / column.std()
-        for name, column in centre.items()
+        for name, column in columns.items()
         if column.std() > 0
     }
 
 
-def squares(linear_part: dict[str, FloatArray]) -> dict[str, FloatArray]:
+def squares(linear_part: Mapping[Key, FloatArray]) -> dict[Key, FloatArray]:
     """The part of the squares that no straight line has; none of a context of two values."""
     found = {}
     for name, scaled in linear_part.items():

@@ -110,7 +110,7 @@ class StructureCriteria(CriteriaGroup):
     curve_chance: Share = criterion(
         1e-3,
         "-",
-        "chance below which the channels go with the square of a context",
+        "chance below which the channels go with the square of a context, or of their own reading",
         "one in a thousand, as that at which a cause is named; test of Ramsey (1969)",
     )
     follows: Share = criterion(

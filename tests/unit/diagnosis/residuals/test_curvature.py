@@ -8,7 +8,7 @@ import pytest
 
 import rga
 from rga.diagnosis.preparation.prepare import prepare
-from rga.diagnosis.residuals.curvature import curves
+from rga.diagnosis.residuals.curvature import OWN_READING, curves
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import settled
 from rga.simulation import Simulator
@@ -45,10 +45,25 @@ def with_response(healthy: Problem, power: int) -> Problem:
 
 def test_a_square_is_told_whatever_its_pattern(healthy: Problem) -> None:
     (found,) = curves(with_response(healthy, 2))
-    assert found.context == "air"
+    assert found.driver == "air"
     assert np.corrcoef(found.sizes, pattern(healthy))[0, 1] > 0.8
 
 
 @pytest.mark.parametrize("power", [0, 1])
 def test_what_is_in_proportion_is_no_curve(healthy: Problem, power: int) -> None:
     assert curves(with_response(healthy, power)) == []
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_one_channel_that_bends_with_its_own_reading(healthy: Problem, power: int) -> None:
+    shown = healthy.simulated[:, 3]
+    course = ((shown - shown.mean()) / shown.std()) ** power
+    readings = healthy.data.readings.copy()
+    readings[:, 3] += 1.5 * healthy.noise.sigma[3] * course
+    problem = settled(healthy.simulator, replace(healthy.data, readings=readings))
+    found = [curve for curve in curves(problem) if curve.driver == OWN_READING]
+    if power == 1:
+        assert found == []
+    else:
+        (own,) = found
+        assert np.abs(own.sizes).argmax() == 3
