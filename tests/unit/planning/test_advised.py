@@ -1,5 +1,7 @@
 """What findings advise to measure, found again among what could be measured."""
 
+from dataclasses import replace
+
 from made_findings import cause, findings
 from planned_bridge import EAST
 from rga.experiments.measurement_model import MeasurementModel
@@ -27,3 +29,13 @@ def test_of_names_that_begin_alike_the_longer_is_meant(bridge: MeasurementModel)
     for number, one in enumerate(bridge.added):
         longest[numbers(bridge, one.advice)[0][0]] = number
     assert longest == {number: number for number in range(len(bridge.added))}
+
+
+def test_of_words_that_are_the_beginning_of_others_the_longer_are_meant(
+    bridge: MeasurementModel,
+) -> None:
+    short = bridge.added[3]
+    long = replace(short, words=f"{short.words} at midspan")
+    said = findings(cause(EAST, separated_by=f"{long.advice} tells them apart"))
+    assert advised(said, [short, long], [], None) == ([1], [])
+    assert advised(said, [long, short], [], None) == ([0], [])

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from planned_bridge import explained
 from rga.experiments.measurement_model import Errors, MeasurementModel
 from rga.experiments.separation import Pair, covariance, success
+from rga.model import Model
 from rga.planning.monte_carlo import Judge, checked
 from rga.planning.selection import Chooser
 
@@ -56,6 +58,26 @@ def test_evidence_of_an_unknown_that_acts_straight_is_that_of_the_textbook(
     residual = 0.4 * slope + np.sqrt(np.diag(whole)) * np.resize([1.0, -1.0, 0.5], len(slope))
     square = residual @ np.linalg.solve(whole + np.outer(slope, slope), residual)
     freedom = np.log1p(slope @ np.linalg.solve(whole, slope))
+    assert judge.log_evidence(predicted + residual) == pytest.approx(
+        -0.5 * (square + freedom), rel=1e-3
+    )
+
+
+def test_unknowns_that_trade_against_each_other_cost_as_much_as_their_width(
+    model: Model, bridge: MeasurementModel, errors: Errors, present: np.ndarray
+) -> None:
+    """Several unknowns of one effect may go twice as far as their intervals: with S their
+    derivatives, -1/2 (r' (C + 4 S S')^-1 r + log det(I + 4 S' C^-1 S)).
+    """
+    colder = {"kind": "stiffness_temperature", "group": "bottom chord"}
+    two = explained(model, colder, rate=(-0.01, 0.002), kink=(-5.0, 2.0))
+    whole = covariance(errors, present)
+    judge = Judge(bridge, two, present, np.linalg.cholesky(whole))
+    predicted = judge.predicted(np.zeros(2))
+    slopes = np.stack([(judge.predicted(1e-3 * one) - predicted) / 1e-3 for one in np.eye(2)])
+    residual = 0.5 * slopes.sum(0) + 0.1 * np.sqrt(np.diag(whole))
+    square = residual @ np.linalg.solve(whole + 4 * slopes.T @ slopes, residual)
+    _, freedom = np.linalg.slogdet(np.eye(2) + 4 * slopes @ np.linalg.solve(whole, slopes.T))
     assert judge.log_evidence(predicted + residual) == pytest.approx(
         -0.5 * (square + freedom), rel=1e-3
     )

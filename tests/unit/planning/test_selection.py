@@ -1,5 +1,8 @@
 """The choice of measurements: as good as an exhaustive search, cheap, and within its budget."""
 
+from collections.abc import Callable
+from copy import copy
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -83,3 +86,56 @@ def test_of_choices_alike_the_advised_one_is_taken(
         range(bridge.standing, len(bridge.sensors)), key=lambda k: chooser.separation([k], [])[0]
     )
     assert chooser.best(1, 0, ((useless,), ())).sensors == plain.sensors
+
+
+@pytest.fixture(scope="module")
+def twin_gauges(
+    bridge: MeasurementModel, errors: Errors, pair: Pair, chooser: Chooser
+) -> Callable[..., tuple[Chooser, list[int]]]:
+    """Sensors at one place, each of them enough by itself, by their costs; and their columns."""
+    (column,) = chooser.best(1, 0).sensors
+
+    def at_costs(*costs: float) -> tuple[Chooser, list[int]]:
+        columns = [*range(bridge.standing), *(column for _ in costs)]
+        site = copy(bridge)
+        site.tests = []
+        site.sensors = [bridge.sensors[k] for k in columns]
+        gauge = bridge.added[column - bridge.standing]
+        site.added = [replace(gauge, cost=cost) for cost in costs]
+        apart = replace(
+            pair,
+            predicted=50 * pair.predicted[:, :, columns],
+            unknown=pair.unknown[:, :, columns],
+        )
+        of_site = Errors(
+            errors.noise[:, columns], errors.gain[:, columns], errors.shared[:, :, columns]
+        )
+        chooser = Chooser(site, of_site, [apart], ENOUGH)
+        return chooser, [*range(bridge.standing, len(columns))]
+
+    return at_costs
+
+
+def test_of_measurements_that_are_enough_the_cheapest_is_bought(
+    twin_gauges: Callable[..., tuple[Chooser, list[int]]],
+) -> None:
+    chooser, (_, cheap, _) = twin_gauges(2.0, 1.0, 3.0)
+    assert chooser.best(2, 0).sensors == (cheap,)
+
+
+def test_of_choices_alike_the_advised_one_is_taken_unless_it_costs_more(
+    twin_gauges: Callable[..., tuple[Chooser, list[int]]],
+) -> None:
+    chooser, (first, advised) = twin_gauges(1.0, 1.0)
+    assert chooser.best(1, 0).sensors == (first,)
+    assert chooser.best(1, 0, ((advised,), ())).sensors == (advised,)
+    chooser, (first, advised) = twin_gauges(1.0, 1.1)
+    assert chooser.best(1, 0, ((advised,), ())).sensors == (first,)
+
+
+def test_of_what_is_needless_the_dearest_is_dropped(
+    twin_gauges: Callable[..., tuple[Chooser, list[int]]],
+) -> None:
+    chooser, (_, cheap, dear) = twin_gauges(1.0, 1.0, 3.0)
+    assert chooser.best(2, 0, ((cheap, dear), ())).sensors == (cheap,)
+    assert chooser.best(2, 0, ((dear, cheap), ())).sensors == (cheap,)

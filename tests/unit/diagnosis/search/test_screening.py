@@ -53,3 +53,12 @@ def test_what_is_taken_is_no_prospect_again(noisy: Problem) -> None:
     again = screening.again(noisy, noisy.simulator, few[:2])
     assert len(again) == len(screening.first) - 2
     assert not any(p.hypothesis.same_place(one) for p in again for one in few[:2])
+
+
+def test_of_prospects_alike_the_first_candidate_is_first(noisy: Problem) -> None:
+    few = candidates(noisy, "sensor_bias")
+    twins = [*few, *reversed(few)]
+    found = [one.number for one in Screening(noisy, noisy.simulator, twins).first]
+    last = len(twins) - 1
+    assert found[::2] == [min(one, last - one) for one in found[::2]]
+    assert found[1::2] == [last - one for one in found[::2]]

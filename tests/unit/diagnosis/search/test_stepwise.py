@@ -1,12 +1,14 @@
 """The search: it names what is hidden and nothing else, and takes out what is needless."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from known_problem import candidate, candidates, change_of, found_with, with_white_noise
 from rga.diagnosis.search.laplace import fit
 from rga.diagnosis.search.linearised import Problem
-from rga.diagnosis.search.screening import Screening
+from rga.diagnosis.search.screening import Prospect, Screening
 from rga.diagnosis.search.stepwise import (
     Found,
     fitted_beside,
@@ -15,6 +17,7 @@ from rga.diagnosis.search.stepwise import (
     with_moment,
     without_cause,
     without_needless,
+    worth_fitting,
 )
 
 
@@ -106,3 +109,29 @@ def test_prospects_are_fitted_beside_what_is_there(noisy: Problem) -> None:
     assert [one.name for one in best.hypotheses] == ["support_settlement", "sensor_bias"]
     assert best.hypotheses[1].place["sensor"] == "S L2-L3"
     np.testing.assert_allclose(best.z, [0.2, 0.3], rtol=0.05)
+
+
+def test_of_another_kind_the_best_alone_is_fitted_unless_it_is_hopeless(noisy: Problem) -> None:
+    kinds = {"sensor_bias": 1000.0, "support_settlement": 800.0, "sensor_gain": 600.0}
+    places = {kind: candidates(noisy, kind) for kind in kinds}
+    ranked = [
+        Prospect(0, one, (0.1,), kinds[kind] - number, 5.0, 5.0, (0.1,))
+        for kind, several in places.items()
+        for number, one in enumerate(several)
+    ]
+    count = len(places["sensor_bias"])
+    assert count > 10
+    assert worth_fitting(ranked) == [*ranked[:10], ranked[count]]
+
+
+def test_an_onset_that_is_no_likelier_elsewhere_stays(
+    noisy: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = candidate(noisy, "sensor_bias", sensor="D1")
+    time = noisy.data.time
+    # Between two rows it acts on the same readings.
+    begun, alike = one.beginning(time[50]), one.beginning((time[49] + time[50]) / 2)
+    current = fit(noisy, noisy.simulator, [begun], [0.1])
+    likeliest = SimpleNamespace(likeliest=alike)
+    monkeypatch.setattr("rga.diagnosis.search.stepwise.beginnings", lambda *of: likeliest)
+    assert with_moment(noisy, noisy.simulator, current, 0) is current
