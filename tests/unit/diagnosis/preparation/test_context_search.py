@@ -78,3 +78,32 @@ def test_a_line_is_found_whatever_the_gains_are(
     start, end = found[0] / found.mean(), found[-1] / found.mean()
     assert start == pytest.approx(line[0] / line.mean(), abs=0.1)
     assert end == pytest.approx(line[-1] / line.mean(), abs=0.1)
+
+
+def test_a_truck_far_from_midspan_is_found_in_each_row(
+    small_bridge: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Steps from the middle of its path end there: what moves to either side reads less."""
+    truck = {
+        "kind": "axle_load",
+        "path": [f"L{number}" for number in range(5)],
+        "forces": [30e3],
+        "offsets": [0.0],
+        "position": {"context": "truck"},
+    }
+    content = {
+        **small_bridge,
+        "context": {
+            "temperature": small_bridge["context"]["temperature"],
+            "truck": {"unit": "m", "range": [0, 12]},
+        },
+        "effects": {"warmth": small_bridge["effects"]["warmth"], "truck": truck},
+    }
+    model = read_model(content, "small bridge")
+    place = np.tile([2.0, 4.5, 7.0, 10.5, 11.0, 1.0], 5)
+    truth = {"temperature": np.full(ROWS, 12.0), "truck": place}
+    data = prepare(model, record(model, truth, ["temperature"]), nothing).data
+    blind = replace(data, belief=data.belief.with_values({"truck": np.full(ROWS, 6.0)}))
+    monkeypatch.setattr("rga.diagnosis.preparation.context_search.TRIALS", 32)
+    found = guess_rows(Simulator(model), blind).belief.table["truck"]
+    np.testing.assert_allclose(found, place, atol=0.5)

@@ -1,4 +1,4 @@
-"""Loggers that start from zeros of their own, or are zeroed again: told, and put right."""
+"""Loggers that start from zeros of their own, or are zeroed again: reported, and put right."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,16 +22,15 @@ def zeroed(
     prepared: PreparedRecord,
     measured_record: Callable[..., Record],
     monkeypatch: pytest.MonkeyPatch,
-) -> Callable[[np.ndarray], tuple[Record, list[str]]]:
-    """The record off by so much; of causes settlements alone, as few channels tell all apart."""
+) -> Callable[..., tuple[Record, list[str]]]:
+    """The record off by so much; of causes those of one kind, as few channels tell all apart."""
     record = measured_record(model)
 
-    def settlements(*arguments: Any) -> list[Hypothesis]:
-        return [one for one in hypotheses(*arguments) if one.name == "support_settlement"]
+    def of(off: np.ndarray, kind: str = "support_settlement") -> tuple[Record, list[str]]:
+        def of_kind(*arguments: Any) -> list[Hypothesis]:
+            return [one for one in hypotheses(*arguments) if one.name == kind]
 
-    monkeypatch.setattr("rga.diagnosis.preparation.undeclared_zeros.hypotheses", settlements)
-
-    def of(off: np.ndarray) -> tuple[Record, list[str]]:
+        monkeypatch.setattr("rga.diagnosis.preparation.undeclared_zeros.hypotheses", of_kind)
         readings = record.readings + off
         data: Data = replace(prepared.data, readings=readings)
         return with_own_zeros(model, Simulator(model), replace(record, readings=readings), data)
@@ -40,52 +39,94 @@ def zeroed(
 
 
 def test_a_sound_record_is_left_alone(
-    zeroed: Callable[[np.ndarray], tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
 ) -> None:
-    record, told = zeroed(np.zeros(len(model.sensors)))
-    assert told == []
+    record, warnings = zeroed(np.zeros(len(model.sensors)))
+    assert warnings == []
     assert record.zero is None
 
 
 def test_offsets_of_all_channels_are_zeros_of_their_own(
-    zeroed: Callable[[np.ndarray], tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
 ) -> None:
     noise = np.array([sensor.noise for sensor in model.sensors.values()])
     off = 60 * noise * np.random.default_rng(3).standard_normal(len(noise))
-    record, told = zeroed(off)
-    assert "zeros of their own" in told[0]
+    record, warnings = zeroed(off)
+    assert "zeros of their own" in warnings[0]
     np.testing.assert_allclose(record.readings.mean(0), 0.0, atol=1e-9)
     assert record.zero == (record.time[0], record.time[-1])
 
 
 def test_an_offset_of_one_channel_is_left_to_the_search(
-    zeroed: Callable[[np.ndarray], tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
 ) -> None:
     off = np.zeros(len(model.sensors))
     off[0] = 5.0
     assert zeroed(off)[1] == []
 
 
+def made_by(model: Model, *causes: dict[str, Any]) -> np.ndarray:
+    """What causes do to all channels under loads that rest, float[sensors]."""
+    contexts = {"time": np.zeros(1), **{name: np.full(1, 20.0) for name in model.context}}
+    effects = {f"cause {k}": read_effect(one, "test") for k, one in enumerate(causes)}
+    off = Simulator(model.extended(effects)).predict(contexts) - Simulator(model).predict(contexts)
+    return np.asarray(off[0])
+
+
 def test_what_a_settlement_does_to_all_channels_is_no_zero(
-    zeroed: Callable[[np.ndarray], tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
 ) -> None:
     low = {"kind": "support_settlement", "support": "east", "dof": "uz", "displacement": -0.01}
-    contexts = {"time": np.zeros(1), **{name: np.full(1, 20.0) for name in model.context}}
-    sunk = model.extended({"low": read_effect(low, "test")})
-    off = Simulator(sunk).predict(contexts) - Simulator(model).predict(contexts)
+    off = made_by(model, low)
     assert np.abs(off).max() > 1
-    assert zeroed(off[0])[1] == []
+    assert zeroed(off)[1] == []
+
+
+@pytest.mark.parametrize(("kind", "warnings"), [("dead_load", 0), ("support_settlement", 1)])
+def test_what_two_loads_that_are_much_alike_do_together_is_no_zero(
+    zeroed: Callable[..., tuple[Record, list[str]]], model: Model, kind: str, warnings: int
+) -> None:
+    """They take most of each other off, and what is left resembles neither of them."""
+    loads = {"bottom chord": 100e3, "top chord": -140e3}
+    off = made_by(
+        model,
+        *(
+            {"kind": "dead_load", "group": group, "force_per_length": size}
+            for group, size in loads.items()
+        ),
+    )
+    assert len(zeroed(off, kind)[1]) == warnings
+
+
+@pytest.mark.parametrize(("zero", "warnings"), [(0.0, 0), (100.0, 1)])
+def test_a_load_that_is_greater_than_was_measured_is_no_zero(
+    model: Model,
+    prepared: PreparedRecord,
+    measured_record: Callable[..., Record],
+    monkeypatch: pytest.MonkeyPatch,
+    zero: float,
+    warnings: int,
+) -> None:
+    """Its responses have a mean, and follow the load: here one that grows without any noise."""
+    monkeypatch.setattr("rga.diagnosis.preparation.undeclared_zeros.hypotheses", lambda *of: [])
+    simulator, belief = Simulator(model), prepared.data.belief
+    load = np.sort(belief.table["west load"])
+    data = replace(prepared.data, belief=belief.with_values({"west load": load}))
+    readings = data.predict(simulator, {"west load": 3 * load}) + zero
+    record = replace(measured_record(model), readings=readings)
+    found = with_own_zeros(model, simulator, record, replace(data, readings=readings))[1]
+    assert len(found) == warnings
 
 
 def test_a_logger_that_is_zeroed_again_keeps_its_longer_part(
-    zeroed: Callable[[np.ndarray], tuple[Record, list[str]]], model: Model, prepared: PreparedRecord
+    zeroed: Callable[..., tuple[Record, list[str]]], model: Model, prepared: PreparedRecord
 ) -> None:
     row = 30
     shown = prepared.data.readings[row]
     off = np.where(np.arange(len(prepared.data.readings))[:, None] >= row, -shown, 0.0)
-    record, told = zeroed(off)
-    assert "zeroed anew" in told[0]
-    assert "after" in told[0]
+    record, warnings = zeroed(off)
+    assert "zeroed anew" in warnings[0]
+    assert "after" in warnings[0]
     missing = np.isnan(record.readings).all(1)
     assert missing[:25].all()
     assert not missing[35:].any()
