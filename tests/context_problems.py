@@ -64,6 +64,8 @@ def error(problem: LearningProblem, learned: Calibrated, judged: Rows) -> float:
 
 def coverage(learned: Calibrated, judged: Rows) -> float:
     """Share of the contexts that lie within central intervals of 90 %."""
-    told = inferred(learned, judged)
-    assert told.spread is not None
-    return float((np.abs(told.value - judged.contexts) < norm.ppf(0.95) * told.spread).mean())
+    estimate = inferred(learned, judged)
+    assert estimate.spread is not None
+    return float(
+        (np.abs(estimate.value - judged.contexts) < norm.ppf(0.95) * estimate.spread).mean()
+    )

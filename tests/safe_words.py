@@ -34,11 +34,13 @@ def check(findings: Findings) -> None:
         assert findings.verdict in ("partial", "unknown")
     if findings.misfits:
         assert findings.verdict in ("partial", "unknown")
-        told = " ".join([findings.unexplained.looks_like, *findings.warnings])
-        groups = [one.sensors for one in findings.groups if one.group in told]
+        reported = " ".join([findings.unexplained.looks_like, *findings.warnings])
+        groups = [one.sensors for one in findings.groups if one.group in reported]
         within = {name for sensors in groups for name in sensors}
-        untold = [name for name in findings.misfits if name not in told and name not in within]
-        assert not untold or "more channels or groups" in told
+        unreported = [
+            name for name in findings.misfits if name not in reported and name not in within
+        ]
+        assert not unreported or "more channels or groups" in reported
 
 
 def _check_channels_left_out(findings: Findings) -> None:

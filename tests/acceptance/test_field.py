@@ -144,7 +144,7 @@ def test_a_seed_draws_the_same_bits_and_every_file_is_read(name: str, tmp_path: 
     assert case.truth["broken"]["sensor"] in record.sensors
 
 
-def test_what_is_hidden_alone_tells_cases_apart() -> None:
+def test_cases_differ_by_what_is_hidden_alone() -> None:
     null = draw_field(4, structure="K truss", rows=80)
     case = draw_field(4, structure="K truss", kind="member_stiffness", rows=80)
     assert null.beyond is not None

@@ -40,7 +40,7 @@ def test_the_readme_shows_what_it_says() -> None:
     assert f"Verdict: {findings.verdict}. {findings.sentence()}" in readme
 
 
-def test_what_is_hidden_in_it_is_told(tmp_path: Path) -> None:
+def test_what_is_hidden_in_it_is_reported(tmp_path: Path) -> None:
     case = drawn("support_settlement")
     case.write(tmp_path)
     model = rga.load_model(SAMPLE / "model.json")

@@ -44,7 +44,7 @@ def on_structure(findings: Findings) -> list[dict[str, Any]]:
     return [one.effect for one in findings.causes if "sensor" not in one.effect["kind"]]
 
 
-def told(findings: Findings) -> set[Any]:
+def explained_by(findings: Findings) -> set[Any]:
     """Kinds of the causes and of their rivals."""
     every = [effect for one in findings.causes for effect in (one.effect, *one.rivals)]
     return {effect["kind"] for effect in every}
@@ -121,7 +121,7 @@ def test_heavier_loads_are_a_load_scale(zero: Zero) -> None:
     heavier = Site(loads={"west load": np.full(ROWS, 1.25)})
     (cause,) = found(logged(heavier), zero=zero).causes
     assert cause.effect["kind"] in ("load_scale", "context_gain")
-    assert "dead_load" not in told(found(logged(heavier), zero=zero))
+    assert "dead_load" not in explained_by(found(logged(heavier), zero=zero))
 
 
 # --- Broken channels ------------------------------------------------------------------------------
@@ -175,7 +175,7 @@ def test_a_broken_channel_moves_no_cause(ways: tuple[str, ...]) -> None:
 
 @seeds
 @pytest.mark.parametrize("gauge", [GAUGE, "S L3-U3"])
-def test_a_lone_gauge_that_reads_nonsense_is_told(gauge: str, seed: int) -> None:
+def test_a_lone_gauge_that_reads_nonsense_is_reported(gauge: str, seed: int) -> None:
     """Under load, and where the loads strain it in nothing."""
     nonsense = 300 * np.random.default_rng(seed).standard_normal(ROWS)
     gauges = (*LONE[:-1], gauge)
@@ -212,7 +212,7 @@ def test_exchanged_channels_are_no_two_that_spike(pair: tuple[str, str]) -> None
 
 
 @seeds
-def test_a_gauge_a_fifth_off_is_told(seed: int) -> None:
+def test_a_gauge_a_fifth_off_is_reported(seed: int) -> None:
     (cause,) = found(with_channel(logged(Site(), seed), BROKEN, lambda c: 0.8 * c)).causes
     assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_gain", BROKEN)
 
@@ -243,7 +243,7 @@ def test_a_late_drift_is_not_nothing(name: str, most: float, zero: Zero) -> None
     assert findings.verdict != "nothing_wrong"
     assert on_structure(findings) == []
     if findings.causes:
-        assert told(findings) & {"sensor_drift", "sensor_bias", "sensor_fault"}
+        assert explained_by(findings) & {"sensor_drift", "sensor_bias", "sensor_fault"}
         assert of_channels(findings) == {name}
 
 
@@ -312,7 +312,7 @@ def test_what_no_kind_says_is_unknown(site: Site, seed: int) -> None:
     assert on_structure(findings) == at_the_roller
 
 
-WRONG = pytest.mark.xfail(reason="still told as faults, settlements and slips", strict=True)
+WRONG = pytest.mark.xfail(reason="still reported as faults, settlements and slips", strict=True)
 
 
 @pytest.mark.parametrize(
@@ -341,7 +341,7 @@ def test_welded_joints_are_no_other_cause(seed: int) -> None:
     """What gauges at a fibre read of bending is neither a gauge's fault nor a loss of a member."""
     findings = found(logged(Site(welded=True), seed))
     assert findings.verdict != "nothing_wrong"
-    assert told(findings) <= {"joint_rigidity", "gauge_position"}
+    assert explained_by(findings) <= {"joint_rigidity", "gauge_position"}
 
 
 @pytest.mark.parametrize("other", ["S U2-U3", "S U2-L3", "D3"])
@@ -352,5 +352,5 @@ def test_cross_talk_names_no_member(other: str) -> None:
     findings = found(with_channel(log, GAUGE, lambda own: own + share * log.readings[other]))
     assert on_structure(findings) == []
     assert findings.verdict != "nothing_wrong"
-    told_of = [one.effect.get("sensor") for one in findings.causes]
-    assert GAUGE in [*told_of, *findings.misfits]
+    sensors = [one.effect.get("sensor") for one in findings.causes]
+    assert GAUGE in [*sensors, *findings.misfits]

@@ -97,7 +97,7 @@ def test_a_grid_that_is_wrong_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
         large.grid(6, LITTLE, ROOFS)
 
 
-def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("sksparse", "sksparse.cholmod", "Pynite"):
         monkeypatch.setitem(sys.modules, name, None)
     figures = refactored.one_span(LITTLE, ROOFS) + large.grid(6, LITTLE, ROOFS)
@@ -168,7 +168,7 @@ def result(figures: list[Measurement]) -> SolverResult:
     return SolverResult(machine, {"rga": "1", "CHOLMOD": None}, "1982-04-23", 7, ROOFS, figures)
 
 
-def test_a_page_tells_ratios_and_whether_they_are_as_asked() -> None:
+def test_a_page_reports_ratios_and_whether_they_reach_their_targets() -> None:
     text = page(
         result(
             [
@@ -208,7 +208,7 @@ def test_the_command(rga: Any, tmp_path: Path) -> None:
     assert all(f"| **{case}** |" in page for case in cases)
 
 
-def test_a_place_that_cannot_be_written_is_told_before_anything_is_measured(
+def test_a_place_that_cannot_be_written_is_reported_before_anything_is_measured(
     rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(SolverExperiment, "measure", None)

@@ -43,7 +43,7 @@ def lines(folder: Path) -> int:
     return len(path.read_bytes().splitlines()) if path.exists() else 0
 
 
-def test_a_run_killed_at_random_tells_the_same(tmp_path: Path) -> None:
+def test_a_run_killed_at_random_has_the_same_results(tmp_path: Path) -> None:
     generator = np.random.default_rng(7)
     folder = tmp_path / "killed"
     kept = []

@@ -105,7 +105,7 @@ def test_a_recalibration_that_forgets_is_taken_back() -> None:
     assert not harms(stream=left * np.where(np.arange(16) == 0, 4.0, 0.8))
 
 
-def test_states_of_the_same_gap_are_told_apart_by_their_sensors() -> None:
+def test_states_of_the_same_gap_are_distinguished_by_their_sensors() -> None:
     generator = np.random.default_rng(2)
     nobody: Any = None
     shape = np.where(np.arange(16) < 4, 2.0, 0.5)

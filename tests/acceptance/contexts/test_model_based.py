@@ -75,11 +75,11 @@ def test_no_row_one_row_and_missing_readings(learned, name):
     gappy = judged.readings[:4].copy()
     gappy[:, ::9] = np.nan
     gappy[1] = np.nan
-    told = one.infer(gappy)
-    assert np.isfinite(told.value).all()
-    assert (told.spread > 0).all()
+    estimate = one.infer(gappy)
+    assert np.isfinite(estimate.value).all()
+    assert (estimate.spread > 0).all()
     low, high = problem.ranges.T
-    assert ((told.value >= low - 1e-9) & (told.value <= high + 1e-9)).all()
+    assert ((estimate.value >= low - 1e-9) & (estimate.value <= high + 1e-9)).all()
 
 
 def test_a_missing_sensor_widens_the_intervals():
@@ -155,7 +155,7 @@ def test_updating_without_load_tests_is_map():
     assert np.array_equal(plain.value, updated.value)
 
 
-def test_modes_of_a_straight_model_are_generalised_least_squares():
+def test_modes_of_a_linear_model_are_generalised_least_squares():
     rng = np.random.default_rng(0)
     slopes, root = rng.standard_normal((9, 3)), rng.standard_normal((9, 9))
     covariance, ranges = root @ root.T + np.eye(9), np.array([[-8.0, 4.0]] * 3)

@@ -77,7 +77,7 @@ def late(mean: float) -> Delay:
         (5_000.0, ["too many false alarms"] * 3 + ["missed"]),
     ],
 )
-def test_what_is_asked(rows: float, verdicts: list[str]) -> None:
+def test_targets(rows: float, verdicts: list[str]) -> None:
     """A delay that is bought with false alarms meets nothing."""
     found = [
         Seen(name, "step", Step(1.0, count).name, 1.0, count, True, late(mean))
@@ -122,7 +122,7 @@ def test_the_command(
     assert "- seed 3; 6 sensors" in page
 
 
-def test_a_place_that_cannot_be_written_is_told_before_anything_is_measured(
+def test_a_place_that_cannot_be_written_is_reported_before_anything_is_measured(
     rga: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(DetectionExperiment, "measure", None)

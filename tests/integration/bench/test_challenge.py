@@ -218,8 +218,8 @@ def test_the_reference_fit_knows_size_and_place_of_the_truth(tmp_path: Path) -> 
     assert abs(off) < 4
     (truth,) = Truth.of(case)
     value = truth.values["factor"]
-    told = {"value": value, "ci90": (value / 1.1, value * 1.1)}
-    assert reference.deviations_reported(truth, {"factor": told})["factor"] == pytest.approx(
+    stated = {"value": value, "ci90": (value / 1.1, value * 1.1)}
+    assert reference.deviations_reported(truth, {"factor": stated})["factor"] == pytest.approx(
         0, abs=1e-9
     )
 

@@ -61,7 +61,7 @@ def _timeless(result: Any) -> list[Any]:
     return [replace(one, learning=None, inference=None) for one in result.outcomes]
 
 
-def test_a_method_beside_others_is_told_of(few_methods: dict[str, Row]) -> None:
+def test_a_method_beside_others_is_reported(few_methods: dict[str, Row]) -> None:
     setting = replace(LITTLE, splits=1, gaps=("all",), manners=("same",))
     found = ContextsExperiment(setting).measure(Execution())
     text = page(found, "rga benchmark loi").text()
@@ -86,16 +86,16 @@ def made(errors: dict[str, tuple[float, float, float]]) -> ContextsResult:
                 for level, one in zip(learned, found, strict=True)
             )
             for manner in ("same", DRIFTING):
-                lived_through = played if manner == DRIFTING else ()
+                stream_results = played if manner == DRIFTING else ()
                 name = f"{split}{row}{manner}"
                 outcomes.append(
-                    TaskOutcome(name, split, "all", manner, row, found[0], lived_through)
+                    TaskOutcome(name, split, "all", manner, row, found[0], stream_results)
                 )
     some = ContextsSetting(gaps=("all",), drifts=("none", "sensor", "recurring"))
     return ContextsResult(machine(), versions(), some, tuple(errors), {}, outcomes)
 
 
-def test_the_papers_order_is_told_where_it_is_and_where_it_is_not() -> None:
+def test_the_papers_order_is_reported_where_it_is_and_where_it_is_not() -> None:
     ordered = (PAPERS["with physics"], PAPERS["residual loss"], PAPERS["without physics"])
     falling = {row: (0.3 + k, 0.2 + k, 0.1 + k) for k, row in enumerate(ordered)}
     assert "appears here in Error and RG at every level" in order(made(falling))
@@ -106,7 +106,7 @@ def test_the_papers_order_is_told_where_it_is_and_where_it_is_not() -> None:
     assert "only in Error at A, RG at A" in order(made(mixed))
 
 
-def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_targets_are_reported_of_the_best_method(monkeypatch: pytest.MonkeyPatch) -> None:
     methods = {
         "poor": Row(nearest),
         "good": Row(nearest),
@@ -120,23 +120,23 @@ def test_what_is_asked_is_told_of_the_best_method(monkeypatch: pytest.MonkeyPatc
         "labelled": (0.3, 0.3, 0.3),
         ORACLE: (0.2, 0.2, 0.2),
     }
-    told = {figure: found for figure, found, _ in targets(made(errors)).rows}
-    assert told["(1 - Error) / (1 - floor): good, no load tests"].startswith("0.62")
-    assert told["(1 - Error) / (1 - floor): labelled, 20 load tests"].startswith("0.87")
-    assert told["Error on drifted rows (sensor), B against A: good"].startswith("-19.8%")
-    assert told["Error on ordinary rows (sensor), B against A: good"].startswith("+0.0%")
-    assert told["Error on recurrence, C against B: good"].startswith("-22.0%")
-    assert told["recalibrations on recurrence, C against B: good"].startswith("-75.0%")
-    assert not any("physics" in figure for figure in told)
+    shown = {figure: found for figure, found, _ in targets(made(errors)).rows}
+    assert shown["(1 - Error) / (1 - floor): good, no load tests"].startswith("0.62")
+    assert shown["(1 - Error) / (1 - floor): labelled, 20 load tests"].startswith("0.87")
+    assert shown["Error on drifted rows (sensor), B against A: good"].startswith("-19.8%")
+    assert shown["Error on ordinary rows (sensor), B against A: good"].startswith("+0.0%")
+    assert shown["Error on recurrence, C against B: good"].startswith("-22.0%")
+    assert shown["recalibrations on recurrence, C against B: good"].startswith("-75.0%")
+    assert not any("physics" in figure for figure in shown)
 
 
 def test_wrong_rows_and_drifts_are_refused(few_methods: dict[str, Row], tmp_path: Path) -> None:
-    for wrong, told in (
+    for wrong, message in (
         ({"rows": ("wizard",)}, "no row 'wizard'"),
         ({"rows": ("prior mean",), "drifts": ("sabotage",)}, "no drift 'sabotage'"),
     ):
         experiment = ContextsExperiment(replace(LITTLE, **wrong))
-        with pytest.raises(InputError, match=told):
+        with pytest.raises(InputError, match=message):
             experiment.measure(Execution())
     (tmp_path / NAME).write_text("nonsense\n", encoding="utf-8")
     with pytest.raises(InputError, match="line 1"):

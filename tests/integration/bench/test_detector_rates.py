@@ -16,43 +16,43 @@ from watched_coin import Rows, coin, courses
 @pytest.mark.parametrize("probability", [0.3, 0.01])
 def test_a_coin_has_the_false_alarms_it_is_made_for(probability: float) -> None:
     found = courses(coin(probability), 300, 400)
-    told = arl0(found, 0.5)
-    assert told.rows is not None
-    assert told.high is not None
-    assert told.low is not None
-    assert told.low < 1.0 / probability < told.high
-    assert told.low < told.rows < told.high
-    assert told.high / told.low < 1.4
-    assert told.alarms == sum(one.length(0.5)[1] for one in found)
+    rate = arl0(found, 0.5)
+    assert rate.rows is not None
+    assert rate.high is not None
+    assert rate.low is not None
+    assert rate.low < 1.0 / probability < rate.high
+    assert rate.low < rate.rows < rate.high
+    assert rate.high / rate.low < 1.4
+    assert rate.alarms == sum(one.length(0.5)[1] for one in found)
     quiet = share(found, 0.5, 50)
     assert quiet.low <= (1.0 - probability) ** 50 <= quiet.high
 
 
-def test_run_lengths_that_are_not_exponential_are_told() -> None:
+def test_run_lengths_that_are_not_exponential_are_reported() -> None:
     coins = courses(coin(0.01), 200, 400)
     clockwork = [Course(-math.inf, np.array([100.0]), np.ones(1), 100)] * 200
     for found, low, high in ((coins, 0.01, 1.0), (clockwork, 0.0, 1e-6)):
-        told = arl0(found, 0.5).exponential
-        assert told is not None
-        assert low <= told < high
+        exponential = arl0(found, 0.5).exponential
+        assert exponential is not None
+        assert low <= exponential < high
     assert arl0(courses(coin(0.5), 50, 400), 0.5).exponential is None
 
 
 @pytest.mark.parametrize("fault", [Step(0.5), Step(50.0, 4), Drift(1.0, 2), Spread(9.0, 3)])
 def test_a_coin_is_as_late_whatever_happens(fault: StreamChange) -> None:
-    told = delay(courses(coin(0.02), 300, 2000, onset=20, fault=fault), 0.5)
-    assert told.low is not None
-    assert told.high is not None
-    assert told.low < 50.0 < told.high
-    assert told.runs + told.left_out == 300
-    assert 0.2 < told.left_out / 300 < 0.45  # 1 - 0.98^20 is 0.33
+    late = delay(courses(coin(0.02), 300, 2000, onset=20, fault=fault), 0.5)
+    assert late.low is not None
+    assert late.high is not None
+    assert late.low < 50.0 < late.high
+    assert late.runs + late.left_out == 300
+    assert 0.2 < late.left_out / 300 < 0.45  # 1 - 0.98^20 is 0.33
 
 
 def test_nothing_alarms() -> None:
     found = courses(coin(0.0), 5, 100, onset=10, fault=Step(9.0))
-    told, late = arl0(found, 0.5), delay(found, 0.5)
-    assert (told.rows, told.high, told.alarms, told.watched) == (None, None, 0, 500)
-    assert told.low == pytest.approx(500.0 / -math.log(0.05))
+    rate, late = arl0(found, 0.5), delay(found, 0.5)
+    assert (rate.rows, rate.high, rate.alarms, rate.watched) == (None, None, 0, 500)
+    assert rate.low == pytest.approx(500.0 / -math.log(0.05))
     assert (late.mean, late.capped, late.left_out) == (100.0, 5, 0)
     assert share(found, 0.5, 100).share == 1.0
 

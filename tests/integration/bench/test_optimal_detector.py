@@ -66,10 +66,10 @@ def test_the_optimum_keeps_its_rate_and_is_soon(fault: StreamChange) -> None:
     limit = optimal_limit(changed, rate)
     assert limit < math.log(rate)
     sound = watched(world, WatchedCase(150, 5000, purpose="null"), replace(method, limit=limit))
-    told, late = arl0(sound, limit), delay(changed, limit)
-    assert told.low is not None
-    assert told.high is not None
-    assert 0.9 * told.low < rate < 1.1 * told.high
+    alarms, late = arl0(sound, limit), delay(changed, limit)
+    assert alarms.low is not None
+    assert alarms.high is not None
+    assert 0.9 * alarms.low < rate < 1.1 * alarms.high
     assert late.mean is not None
     assert 1.0 < late.mean < 1.2 * expected_delay(fault, 10, rate)
 

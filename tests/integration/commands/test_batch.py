@@ -68,14 +68,14 @@ def test_findings_are_those_of_a_diagnosis_alone(bridges: Path, alone: Path) -> 
         model = package.load_model(bridges.parent / name / "model.json")
         record = package.load_record(bridges.parent / name / "record.csv", model)
         findings = package.diagnose(model, record)
-        told = (alone / name / "findings.json").read_text(encoding="utf-8")
-        assert told == findings.to_json() + "\n"
+        written = (alone / name / "findings.json").read_text(encoding="utf-8")
+        assert written == findings.to_json() + "\n"
     assert set(contents(alone)) == {
         "summary.csv", *(f"{name}/{file}" for name in ("west", "east") for file in FILES)
     }  # fmt: skip
 
 
-def test_summary_tells_causes_and_errors(alone: Path) -> None:
+def test_summary_reports_causes_and_errors(alone: Path) -> None:
     with (alone / "summary.csv").open(encoding="utf-8", newline="") as file:
         west, broken, east = csv.DictReader(file)
     findings = package.load_findings(alone / "west")
@@ -120,12 +120,12 @@ def _half(number: int) -> int:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_failed_task_stops_no_other(workers: int) -> None:
-    told = {
+    outcomes = {
         task: future.exception() or future.result()
         for task, future in finished(_half, range(1, 5), workers=workers)
     }
-    assert {task: str(one) for task, one in told.items()}[3].startswith("3 is odd")
-    assert (told[2], told[4]) == (1, 2)
+    assert {task: str(one) for task, one in outcomes.items()}[3].startswith("3 is odd")
+    assert (outcomes[2], outcomes[4]) == (1, 2)
 
 
 def _free_address() -> str:
@@ -172,7 +172,7 @@ def test_without_dask_the_error_says_what_to_install(
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("name,model\na,m.json\n", "the list has no column 'record'"),
         ("name,model,record,owner\na,m.json,r.csv,b\n", "the column 'owner' is unknown"),
@@ -185,12 +185,12 @@ def test_without_dask_the_error_says_what_to_install(
     ],
 )
 def test_a_bad_list_is_refused_before_anything_is_written(
-    tmp_path: Path, rga: Rga, text: str, told: str
+    tmp_path: Path, rga: Rga, text: str, message: str
 ) -> None:
     listed = tmp_path / "list.csv"
     listed.write_text(text, encoding="utf-8")
     outcome = rga("diagnose-many", listed, "-o", tmp_path / "out")
     assert outcome.code == 2
-    assert told in outcome.err
+    assert message in outcome.err
     assert str(listed) in outcome.err
     assert not (tmp_path / "out").exists()

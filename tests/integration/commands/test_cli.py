@@ -252,8 +252,8 @@ def test_diagnosis_is_written_and_said(
     assert json.loads(printed.out)["seed"] == 8
     stricter = tmp_path / "criteria.json"
     stricter.write_text('{"naming": {"log_odds": 9.2}}', encoding="utf-8")
-    told = rga("diagnose", model_file, record, "-o", target, "--criteria", stricter, "--json")
-    assert json.loads(told.out)["criteria"] == {"naming.log_odds": 9.2}
+    outcome = rga("diagnose", model_file, record, "-o", target, "--criteria", stricter, "--json")
+    assert json.loads(outcome.out)["criteria"] == {"naming.log_odds": 9.2}
 
 
 def interrupted(whole: Callable[..., Any], target: Path, name: str) -> None:

@@ -61,7 +61,7 @@ def test_same_seed_same_bytes(case: Path) -> None:
     assert diagnose(model, record, seed=5).to_json() == diagnose(model, record, seed=5).to_json()
 
 
-def test_a_context_outside_its_range_is_told(case: Path) -> None:
+def test_a_context_outside_its_range_is_reported(case: Path) -> None:
     content = json.loads((case / "model.json").read_text(encoding="utf-8"))
     content["context"]["air"]["range"] = [0.0, 1.0]
     (case / "model.json").write_text(json.dumps(content), encoding="utf-8")

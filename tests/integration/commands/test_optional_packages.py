@@ -78,7 +78,7 @@ print(sorted(path.name for path in (folder / "out").iterdir()))
         ("from rga.twin import Settings", "sqlalchemy", "twin"),
     ],
 )
-def test_what_is_missed_is_told(use: str, package: str, extra: str, model_file: Path) -> None:
+def test_what_is_missed_is_reported(use: str, package: str, extra: str, model_file: Path) -> None:
     done = without(f"import rga\n{use}", model_file)
     assert done.returncode == 1
     said = f'{package} is not installed: pip install "rga[{extra}]"'

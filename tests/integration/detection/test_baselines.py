@@ -5,27 +5,27 @@ from typing import Any
 import numpy as np
 import pytest
 
-from monitored_worlds import BASELINE, WORLDS, Rows, noise
 from rga.detection import SyncMonitor
+from unchanged_streams import BASELINE, WORLDS, Rows, noise
 
 
-def doubted(rows: Rows) -> bool:
+def warned_of(rows: Rows) -> bool:
     return bool(SyncMonitor(rows, arl0=1000).warnings)
 
 
 @pytest.mark.parametrize("world", WORLDS)
-def test_a_stationary_baseline_is_not_doubted(world: str) -> None:
+def test_a_stationary_baseline_is_not_warned_of(world: str) -> None:
     """One in a hundred may be."""
-    assert sum(doubted(noise(world, BASELINE, seed)) for seed in range(40)) <= 3
+    assert sum(warned_of(noise(world, BASELINE, seed)) for seed in range(40)) <= 3
 
 
-def test_many_sensors_that_go_together_are_doubted_only_where_one_changes() -> None:
+def test_many_sensors_that_go_together_are_warned_of_only_where_one_changes() -> None:
     generator = np.random.default_rng(4)
     for _ in range(6):
         rows = generator.normal(size=(1000, 84)) + generator.normal(size=(1000, 1))
-        assert not doubted(rows)
+        assert not warned_of(rows)
         rows[500:, 3] += 1.0
-        assert doubted(rows)
+        assert warned_of(rows)
 
 
 def drift(rows: Rows) -> None:
@@ -50,18 +50,18 @@ def louder(rows: Rows) -> None:
 
 @pytest.mark.parametrize("world", ["white", "heavy tails", "correlated"])
 @pytest.mark.parametrize("change", [drift, long_drift, step, high_step, louder])
-def test_a_baseline_that_changes_is_doubted(world: str, change: Any) -> None:
+def test_a_baseline_that_changes_is_warned_of(world: str, change: Any) -> None:
     found = 0
     for seed in range(10):
         rows = noise(world, BASELINE, seed)
         change(rows)
-        found += doubted(rows)
+        found += warned_of(rows)
     assert found >= 8
 
 
-def test_a_baseline_that_wanders_is_doubted() -> None:
+def test_a_baseline_that_wanders_is_warned_of() -> None:
     walks = [np.cumsum(noise("white", BASELINE, seed), axis=0) for seed in range(10)]
-    assert sum(doubted(walk) for walk in walks) >= 6
+    assert sum(warned_of(walk) for walk in walks) >= 6
 
 
 @pytest.mark.parametrize(

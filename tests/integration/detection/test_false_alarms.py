@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from monitored_worlds import BASELINE, MISSING, SENSORS, WORLDS, noise
 from rga.detection import SyncMonitor
+from unchanged_streams import BASELINE, MISSING, SENSORS, WORLDS, noise
 
 
 @pytest.mark.parametrize("world", WORLDS)
-def test_false_alarms_are_as_rare_as_asked(world: str) -> None:
+def test_false_alarms_are_as_rare_as_set(world: str) -> None:
     """Over `arl0` rows the chance of one is 1 - 1/e."""
     arl0, draws = 500, 60
     alarms = 0

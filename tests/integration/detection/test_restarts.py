@@ -7,8 +7,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from monitored_worlds import MISSING, Rows
 from rga.detection import SyncMonitor
+from unchanged_streams import MISSING, Rows
 
 
 def stream_of(memory: float, common: float, gaps: bool, dead: bool, seed: int) -> Rows:

@@ -29,7 +29,7 @@ def peaks() -> Peaks:
 
 
 @pytest.mark.parametrize("arl0", [10_000.0, 100_000.0, 300_000.0])
-def test_false_alarms_are_as_rare_as_asked_beyond_the_streams(arl0: float, peaks: Peaks) -> None:
+def test_false_alarms_are_as_rare_as_set_beyond_the_streams(arl0: float, peaks: Peaks) -> None:
     """On average over calibrations, each from streams of 10 000 rows."""
     expected = ROWS / arl0
     low, high = poisson.interval(0.98, expected)

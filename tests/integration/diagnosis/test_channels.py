@@ -64,7 +64,7 @@ def warnings(case: Case, folder: Path) -> list[str]:
     return prepare(model, record, lambda done: None).warnings
 
 
-def test_another_unit_and_a_context_that_stands_still_are_doubted(
+def test_another_unit_and_a_context_that_stands_still_are_warned_of(
     healthy: Case, tmp_path: Path
 ) -> None:
     sensors = healthy.model["sensors"]
@@ -72,17 +72,17 @@ def test_another_unit_and_a_context_that_stands_still_are_doubted(
         name: 1e3 * column if name in sensors else column
         for name, column in healthy.channels.items()
     }
-    (doubt,) = warnings(replace(healthy, channels=milli), tmp_path)
-    assert "check the units" in doubt
+    (warning,) = warnings(replace(healthy, channels=milli), tmp_path)
+    assert "check the units" in warning
     kelvin = healthy.channels["air"] + 273.15
-    *_, doubt = warnings(replace(healthy, channels={**healthy.channels, "air": kelvin}), tmp_path)
-    assert "air lies outside its range" in doubt
-    assert "in every row" in doubt
+    *_, warning = warnings(replace(healthy, channels={**healthy.channels, "air": kelvin}), tmp_path)
+    assert "air lies outside its range" in warning
+    assert "in every row" in warning
     still = healthy.channels["air"].copy()
     still[120:] = still[120]
-    (doubt,) = warnings(replace(healthy, channels={**healthy.channels, "air": still}), tmp_path)
-    assert "air reads" in doubt
-    assert "last 180 of 300 rows" in doubt
+    (warning,) = warnings(replace(healthy, channels={**healthy.channels, "air": still}), tmp_path)
+    assert "air reads" in warning
+    assert "last 180 of 300 rows" in warning
     assert warnings(healthy, tmp_path) == []
 
 

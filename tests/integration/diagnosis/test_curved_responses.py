@@ -12,7 +12,7 @@ def loaded(name: str, folder: Path) -> tuple[rga.Model, rga.Record]:
     return model, rga.load_record(folder / "record.csv", model)
 
 
-def test_a_cause_that_follows_the_straight_part_of_a_curve_is_not_named(tmp_path: Path) -> None:
+def test_a_cause_that_follows_the_linear_part_of_a_curve_is_not_named(tmp_path: Path) -> None:
     strange = rga.diagnose(*loaded("8-outside-5", tmp_path), seed=8)
     assert strange.verdict == "unknown"
     assert "go with the square of temperature" in strange.unexplained.looks_like

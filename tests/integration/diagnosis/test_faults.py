@@ -38,7 +38,7 @@ def broken(name: str, column: np.ndarray, seed: int = 1, onset: int = 0) -> np.n
     return FAULTS[name].spoil(column, np.random.default_rng(seed), scale, other(), onset)
 
 
-def test_there_are_the_ways_in_which_loggers_break() -> None:
+def test_there_are_the_faults_that_loggers_have() -> None:
     assert len(FAULTS) >= 17
     for name, fault in FAULTS.items():
         assert fault.name == name
@@ -162,16 +162,16 @@ def test_a_diagnosis_is_held_against_that_of_the_sound_record() -> None:
     assert not compared(outcome(causes=[member, member, fault]), sound).unmoved
     rival = {**member, "member": "b-c", "rivals": [{"kind": member["kind"], "member": "a-b"}]}
     assert compared(outcome(causes=[rival, fault]), sound).unmoved
-    untold = compared(outcome(causes=[member]), sound)
-    assert (untold.told, untold.named, untold.calm) == (False, False, True)
+    unreported = compared(outcome(causes=[member]), sound)
+    assert (unreported.told, unreported.named, unreported.calm) == (False, False, True)
     # In words, and not as one of the like of another channel.
-    for text, told in (
+    for text, reported in (
         ("channel S1 does not fit", True),
         ("channel S11 does not fit: its like (S1, S2) do", False),
         ("channel S11 does not fit", False),
     ):
         one = compared(outcome(causes=[member], warnings=[text]), sound)
-        assert (one.told, one.named) == (told, False)
+        assert (one.told, one.named) == (reported, False)
         said_before = replace(sound, warnings=[text])
         assert not compared(outcome(causes=[member], warnings=[text]), said_before).told
     assert compared(outcome(before=9.0, after=12.0, gain=(-4.0, -2.0)), sound).calm
@@ -205,19 +205,19 @@ def test_channels_are_broken_as_the_trial_says(name: str) -> None:
     sound = load(base, 1)
     for way, many in (("whole", 1), ("late", 1), ("pair", 2), ("several", 3)):
         trial = FaultTrial(base, 1, 5, way, "creep")
-        record, told = broken_channels(trial, sound.model, sound.record)
+        record, broken = broken_channels(trial, sound.model, sound.record)
         again, _ = broken_channels(trial, sound.model, sound.record)
         assert np.array_equal(record.readings, again.readings, equal_nan=True)
-        assert told[0]["fault"] == "creep"
-        assert len({one["sensor"] for one in told}) == len(told) >= many
+        assert broken[0]["fault"] == "creep"
+        assert len({one["sensor"] for one in broken}) == len(broken) >= many
         changed = record.readings != sound.record.readings
         changed &= np.isfinite(sound.record.readings)
         for column, name in enumerate(record.sensors):
-            first = next((one["row"] for one in told if one["sensor"] == name), len(record))
+            first = next((one["row"] for one in broken if one["sensor"] == name), len(record))
             assert not changed[:first, column].any()
             assert changed[first:, column].any() == (first < len(record))
         if way == "late":
-            assert 0.2 * 60 - 1 <= told[0]["row"] <= 0.7 * 60
+            assert 0.2 * 60 - 1 <= broken[0]["row"] <= 0.7 * 60
     same, nothing = broken_channels(FaultTrial(base, 1, 0, SOUND), sound.model, sound.record)
     assert same is sound.record
     assert nothing == []
@@ -225,7 +225,7 @@ def test_channels_are_broken_as_the_trial_says(name: str) -> None:
     assert set(fewer.sensors) == set(sound.record.sensors) - {one["sensor"] for one in gone}
 
 
-def test_a_dead_channel_is_told_and_in_a_sound_record_nothing() -> None:
+def test_a_dead_channel_is_reported_and_in_a_sound_record_nothing() -> None:
     """A tiny run: the table of one broken record, and its null twin."""
     base = Base("drawn-0", 100)
     trials = [FaultTrial(base, 1, 0, SOUND), FaultTrial(base, 1, 1, "whole", "dead")]

@@ -189,11 +189,11 @@ class Truth:
         gain, build = rng.normal(1.0, GAIN, len(sd)), rng.normal(1.0, BUILT, len(MEMBERS))
         shown = np.column_stack([wind, weight]) @ self.per_force(model, build) * gain
         shown += autoregressive(rng, ROWS, sd, np.full(len(sd), 0.5))
-        told = {
+        measured = {
             "wind": wind + rng.normal(0, 0.03, ROWS),
             "weight": weight + rng.normal(0, 0.05, ROWS),
         }
-        return Record(60.0 * t, 0.0, "seconds", tuple(model.sensors), shown, told)
+        return Record(60.0 * t, 0.0, "seconds", tuple(model.sensors), shown, measured)
 
 
 PINNED = ("ux", "uz")
@@ -254,8 +254,8 @@ def test_its_report_is_written(hidden: str, tmp_path: Path) -> None:
     truth, fixed, place, *_ = HIDDEN[hidden]
     model = portal(fixed)
     rga.diagnose(model, truth.record(model)).write(tmp_path)
-    told = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert all(str(name).replace("_", " ") in told for name in place.values())
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert all(str(name).replace("_", " ") in page for name in place.values())
 
 
 @pytest.mark.parametrize("fixed", [("ux", "uz", "ry"), PINNED])

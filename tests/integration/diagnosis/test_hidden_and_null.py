@@ -80,7 +80,7 @@ def holds(cause: Cause, truth: dict[str, Any]) -> bool:
     return bool(low - more < truth["value"] < high + more)
 
 
-def test_a_ramp_is_told_as_a_ramp(diagnosed: Diagnosed) -> None:
+def test_a_ramp_is_reported_as_a_ramp(diagnosed: Diagnosed) -> None:
     case = RAMP.case()
     truth = case.truth
     cause = only_cause(diagnosed(case), truth)
@@ -91,7 +91,7 @@ def test_a_ramp_is_told_as_a_ramp(diagnosed: Diagnosed) -> None:
     assert abs(cause.effect["end"] - truth["end"]) < length / 4
 
 
-def test_a_jump_is_told_as_a_jump(diagnosed: Diagnosed) -> None:
+def test_a_jump_is_reported_as_a_jump(diagnosed: Diagnosed) -> None:
     case = JUMP.case()
     truth = case.truth
     assert truth["end"] is None
@@ -102,7 +102,7 @@ def test_a_jump_is_told_as_a_jump(diagnosed: Diagnosed) -> None:
     assert abs(cause.effect["onset"] - truth["onset"]) <= 2 * step
 
 
-def test_a_channel_that_falls_silent_is_told_with_its_moment(diagnosed: Diagnosed) -> None:
+def test_a_channel_that_falls_silent_is_reported_with_its_moment(diagnosed: Diagnosed) -> None:
     case = SILENT.case()
     truth = case.truth
     assert case.time[0] < truth["onset"] < case.time[-1]
@@ -145,7 +145,7 @@ def test_a_bearing_that_sticks_is_found(diagnosed: Diagnosed) -> None:
     assert holds(cause, case.truth)
 
 
-def test_what_always_acts_is_not_told_with_an_onset(diagnosed: Diagnosed) -> None:
+def test_what_always_acts_is_not_reported_with_an_onset(diagnosed: Diagnosed) -> None:
     case = THERMOMETER.case()
     assert case.truth["onset"] is None
     cause = only_cause(diagnosed(case), case.truth)

@@ -164,9 +164,9 @@ def test_a_late_settlement(span: Span, zeroed: Zeroed) -> None:
 def test_a_late_dead_load(healthy: Case, span: Span | None, zeroed: Zeroed) -> None:
     (cause,) = zeroed(loaded(healthy), span).causes
     # More people all the time are the same.
-    told = [cause.effect, *cause.rivals]
-    assert ("dead_load", "deck chord") in [(one["kind"], one.get("group")) for one in told]
-    assert {one["kind"] for one in told} <= {"dead_load", "context_bias", "unmodelled_load"}
+    named = [cause.effect, *cause.rivals]
+    assert ("dead_load", "deck chord") in [(one["kind"], one.get("group")) for one in named]
+    assert {one["kind"] for one in named} <= {"dead_load", "context_bias", "unmodelled_load"}
     assert cause.onset == healthy.time[LATE]
 
 
@@ -319,14 +319,14 @@ def zeroed_again(case: Case) -> Case:
     return replace(case, channels=channels)
 
 
-def told(case: Case, folder: Path) -> list[str]:
+def warnings_of(case: Case, folder: Path) -> list[str]:
     """What is said of the zeros of a record that declares none."""
     model, record = record_of(case, None, folder)
     return prepare(model, record, lambda done: None).warnings
 
 
 @pytest.mark.parametrize("spoilt", [from_anywhere, zeroed_again])
-def test_undeclared_zeros_are_told_and_name_nothing(
+def test_undeclared_zeros_are_reported_and_name_nothing(
     spoilt: Callable[[Case], Case], healthy: Case, zeroed: Zeroed
 ) -> None:
     word = OWN if spoilt is from_anywhere else ANEW
@@ -349,12 +349,12 @@ def test_undeclared_zeros_are_told_and_name_nothing(
 def test_offsets_that_one_cause_makes_are_no_zeros(
     effect: dict[str, Any], healthy: Case, tmp_path: Path
 ) -> None:
-    assert told(hidden(healthy, effect), tmp_path) == []
-    assert told(hidden(healthy, {**effect, "onset": healthy.time[LATE]}), tmp_path) == []
+    assert warnings_of(hidden(healthy, effect), tmp_path) == []
+    assert warnings_of(hidden(healthy, {**effect, "onset": healthy.time[LATE]}), tmp_path) == []
 
 
 def test_few_channels_that_are_off_are_no_zeros_of_all(healthy: Case, tmp_path: Path) -> None:
-    assert told(healthy, tmp_path) == []
+    assert warnings_of(healthy, tmp_path) == []
     few = dict.fromkeys(list(sensors_of(healthy))[:5], 30.0)
     apart = {n: c + few.get(n, 0.0) for n, c in healthy.channels.items()}
-    assert told(replace(healthy, channels=apart), tmp_path) == []
+    assert warnings_of(replace(healthy, channels=apart), tmp_path) == []

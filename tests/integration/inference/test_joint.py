@@ -232,7 +232,7 @@ def test_the_model_with_its_unknowns_is_a_model_file(
     )
 
 
-def test_a_context_that_no_sensor_sees_is_told(model: Model) -> None:
+def test_a_context_that_no_sensor_sees_is_reported(model: Model) -> None:
     contexts, noise = drawn(model, 50, 17), noise_of(model)
     seen = unseen_share(Simulator(model), contexts, noise)
     assert seen[0] < 0.1

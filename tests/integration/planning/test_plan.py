@@ -60,7 +60,7 @@ def found(cause: dict[str, Any], *rivals: dict[str, Any], sha256: str = "") -> F
         "held_out": {"before": 9.0, "after": 1.0, "gain": 8.0, "gain_ci90": [7.0, 9.0]},
         "by_sensor": {},
     }
-    told = {
+    cause = {
         "effect": cause,
         "status": "ambiguous" if rivals else "named",
         "log_odds": 50.0,
@@ -72,7 +72,7 @@ def found(cause: dict[str, Any], *rivals: dict[str, Any], sha256: str = "") -> F
         {
             "verdict": "ambiguous" if rivals else "named",
             "gap": gap,
-            "causes": [told],
+            "causes": [cause],
             "unexplained": {"share": 0.0, "looks_like": "nothing"},
             "seed": 0,
             "model_sha256": sha256,
@@ -166,7 +166,7 @@ def alike(
     ("hide", "true", "both"),
     [(soft, SOFT, {SOFT, HEAVY}), (heavy, HEAVY, {SOFT, HEAVY})],
 )
-def test_a_truck_tells_soft_steel_from_heavy_loads(
+def test_a_truck_separates_soft_steel_from_heavy_loads(
     bridge: dict[str, Any],
     tmp_path: Path,
     hide: Hidden,
@@ -182,9 +182,9 @@ def test_a_truck_tells_soft_steel_from_heavy_loads(
     assert planned.sensors == []
     assert planned.tests
     assert all(test.position is not None for test in planned.tests)
-    told = [one for one in planned.separations if SOFT in one.one + one.other]
-    assert told
-    assert all(one.separated and one.simulated.clearly >= 0.9 for one in told)
+    of_steel = [one for one in planned.separations if SOFT in one.one + one.other]
+    assert of_steel
+    assert all(one.separated and one.simulated.clearly >= 0.9 for one in of_steel)
 
     truck = planned.truck
     assert truck is not None
@@ -209,7 +209,7 @@ def test_a_truck_tells_soft_steel_from_heavy_loads(
     ("hide", "true", "both"),
     [(thin, THIN, {THIN, MISREAD}), (misread, MISREAD, {THIN, MISREAD})],
 )
-def test_a_sensor_tells_a_thin_bar_from_a_gauge_that_misreads(
+def test_a_sensor_separates_a_thin_bar_from_a_gauge_that_misreads(
     bridge: dict[str, Any],
     tmp_path: Path,
     hide: Hidden,
@@ -232,7 +232,7 @@ def test_a_sensor_tells_a_thin_bar_from_a_gauge_that_misreads(
     assert not rivals & both
 
 
-def test_nothing_tells_what_is_exactly_alike(bridge: dict[str, Any]) -> None:
+def test_nothing_separates_what_is_exactly_alike(bridge: dict[str, Any]) -> None:
     """The null twin: softer steel, and all bars (of that steel) thinner by as much."""
     model = read_model(bridge, "bridge")
     soft_steel = effect("elastic_modulus", 0.85, material="steel")
@@ -246,7 +246,7 @@ def test_nothing_tells_what_is_exactly_alike(bridge: dict[str, Any]) -> None:
     assert "Nothing affordable" in planned.sentence
 
 
-def test_a_second_thermometer_tells_expansion_from_a_thermometer_that_misreads(
+def test_a_second_thermometer_separates_expansion_from_a_thermometer_that_misreads(
     bridge: dict[str, Any],
 ) -> None:
     bridge["sensors"]["DX"] = {
@@ -388,6 +388,6 @@ def test_bad_findings_get_one_clear_line(
     assert len(refused.err.strip().splitlines()) == 1
 
 
-def test_findings_that_are_missing_are_told(tmp_path: Path) -> None:
+def test_findings_that_are_missing_are_reported(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         load_findings(tmp_path)

@@ -126,9 +126,9 @@ def test_a_truck_is_chosen_for_a_model_with_effects_at_sensors(welded: Model) ->
 
 
 def test_which_effects_are_at_sensors() -> None:
-    told = {kind for kind, one in Effect.vocabulary.items() if one.at_sensors()}
-    assert {"gauge_position", "sensor_gain", "sensor_swap", "sensor_fault"} <= told
-    assert not told & {"member_stiffness", "support_spring", "context_bias", "load_scale"}
+    at_sensors = {kind for kind, one in Effect.vocabulary.items() if one.at_sensors()}
+    assert {"gauge_position", "sensor_gain", "sensor_swap", "sensor_fault"} <= at_sensors
+    assert not at_sensors & {"member_stiffness", "support_spring", "context_bias", "load_scale"}
 
 
 @pytest.fixture(scope="module")
@@ -165,10 +165,10 @@ def test_the_nearest_of_each_other_kind_comes_first(open_kind: Findings) -> None
         key=lambda one: one.behind,
     )
     others = list(dict.fromkeys(name for name in kinds(within) if name != cause.effect["kind"]))
-    told = [rival["kind"] for rival in cause.rivals]
+    listed = [rival["kind"] for rival in cause.rivals]
     assert len(others) >= 3
-    assert told[: len(others)] == others
-    assert len(told) == RIVALS.listed < len(within)
+    assert listed[: len(others)] == others
+    assert len(listed) == RIVALS.listed < len(within)
     assert cause.rivals_omitted == len(within) - RIVALS.listed
 
 
@@ -182,7 +182,7 @@ def test_places_come_after_kinds_however_near(open_kind: Findings) -> None:
         one for one in ranked if one.hypothesis.name not in (several, known.fit.hypotheses[0].name)
     )
 
-    def told(*chosen: tuple[Alternative, float]) -> tuple[list[str], int]:
+    def listed(*chosen: tuple[Alternative, float]) -> tuple[list[str], int]:
         near = tuple(replace(one, behind=by) for one, by in chosen)
         found = replace(known, alternatives=(near,))
         (cause,) = causes(found, effects_of(found, record), record, [])
@@ -190,12 +190,12 @@ def test_places_come_after_kinds_however_near(open_kind: Findings) -> None:
 
     last = other.hypothesis.name
     near = [(one, 0.1 * k) for k, one in enumerate(places)]
-    assert told(*near, (other, 4.0)) == ([several, last, *[several] * (len(near) - 1)], 0)
+    assert listed(*near, (other, 4.0)) == ([several, last, *[several] * (len(near) - 1)], 0)
     # What is farther than a hundred to one is no rival, and not counted.
-    assert told(*near, (other, RIVALS.log_odds + 0.1)) == ([several] * len(near), 0)
-    assert told((other, RIVALS.log_odds + 0.1)) == ([], 0)
+    assert listed(*near, (other, RIVALS.log_odds + 0.1)) == ([several] * len(near), 0)
+    assert listed((other, RIVALS.log_odds + 0.1)) == ([], 0)
     many = [(replace(places[0]), 0.1 * k) for k in range(RIVALS.listed + 4)]
-    assert told(*many, (other, 4.0)) == ([several, last, *[several] * (RIVALS.listed - 2)], 5)
+    assert listed(*many, (other, 4.0)) == ([several, last, *[several] * (RIVALS.listed - 2)], 5)
 
 
 def test_omitted_rivals_are_said(open_kind: Findings, tmp_path: Path) -> None:
@@ -211,9 +211,9 @@ def test_omitted_rivals_are_said(open_kind: Findings, tmp_path: Path) -> None:
 def test_findings_without_the_count_are_read(open_kind: Findings, tmp_path: Path) -> None:
     content = json.loads(open_kind.to_json())
     path = tmp_path / "findings.json"
-    for told, read in ((None, 0), (7, 7)):
+    for omitted, read in ((None, 0), (7, 7)):
         content["causes"][0].pop("rivals_omitted", None)
-        content["causes"][0] |= {} if told is None else {"rivals_omitted": told}
+        content["causes"][0] |= {} if omitted is None else {"rivals_omitted": omitted}
         path.write_text(json.dumps(content), encoding="utf-8")
         assert load_findings(path).causes[0].rivals_omitted == read
     content["causes"][0]["rivals_omitted"] = -1
@@ -295,25 +295,25 @@ def test_a_plan_begins_with_what_the_findings_advise(
     assert len(taken) == 3
 
 
-def test_a_truck_at_either_end_of_its_path_tells_as_much(
+def test_a_truck_at_either_end_of_its_path_separates_as_far(
     soft_or_heavy: tuple[Model, Findings],
 ) -> None:
     """Its place is known to 5 cm, and no axle leaves the path for that."""
     model, findings = soft_or_heavy
-    told = []
+    separations = []
     for stand in ("1.50 m (node L1)", "6.00 m (node L3)"):
         words = f"a load test, truck with its first axle at {stand}, axles [kN] @ [m] 100,100@1.5, "
         (one,) = plan(model, advising(findings, words), sensors=0, positions=1).advised
-        told.append(one.d_perp)
-    assert told[0] == pytest.approx(told[1], rel=0.1)
+        separations.append(one.d_perp)
+    assert separations[0] == pytest.approx(separations[1], rel=0.1)
 
 
 def test_what_is_advised_and_worse_is_compared(soft_or_heavy: tuple[Model, Findings]) -> None:
     model, findings = soft_or_heavy
     useless = "the displacement of node L4 along x"
-    told = advising(findings, f"against it: measuring {useless} tells them apart (d_perp 9)")
+    advised = advising(findings, f"against it: measuring {useless} tells them apart (d_perp 9)")
     for sensors in (0, 1):
-        planned = plan(model, told, sensors=sensors, positions=1)
+        planned = plan(model, advised, sensors=sensors, positions=1)
         (one,), (only,) = planned.advised, planned.separations
         assert (one.words, one.planned) == (useless, False)
         assert one.d_perp < only.d_perp / 2

@@ -84,10 +84,10 @@ def fails(*_: Any, **__: Any) -> Any:
 
 def whole(folder: Path, findings: Findings) -> bool:
     """Whether findings and model stand in a folder, and nothing half written does."""
-    told = load_findings(folder)
+    loaded = load_findings(folder)
     causes = len(load_model(folder / "model.json").effects) - len(findings.account.model.effects)
     return (
-        told.to_json() == findings.to_json()
+        loaded.to_json() == findings.to_json()
         and causes == len(findings.causes)
         and not list(folder.glob("*.partial"))
     )
@@ -100,7 +100,7 @@ def test_a_sound_report_has_lost_nothing(cracked: Findings, sound: str) -> None:
 
 
 @pytest.mark.parametrize("place", PARTS)
-def test_a_part_that_fails_is_told_in_its_place(
+def test_a_part_that_fails_is_reported_in_its_place(
     cracked: Findings, sound: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
 ) -> None:
     monkeypatch.setattr(place, fails)
@@ -120,9 +120,11 @@ def test_findings_stand_without_their_report(
 ) -> None:
     (tmp_path / "report.html").write_text("of other findings", encoding="utf-8")
     monkeypatch.setattr(broken, fails)
-    with pytest.raises(ReportError) as told:
+    with pytest.raises(ReportError) as refused:
         cracked.write(tmp_path)
-    assert all(str(tmp_path / name) in str(told.value) for name in ("findings.json", "model.json"))
+    assert all(
+        str(tmp_path / name) in str(refused.value) for name in ("findings.json", "model.json")
+    )
     assert whole(tmp_path, cracked)
     shown = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert f"The report {LOST}: LinAlgError: Singular matrix." in shown
@@ -185,7 +187,7 @@ def test_of_many_bridges_no_findings_are_lost(files: Path, monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize(
-    ("stage", "told", "error"),
+    ("stage", "part", "error"),
     [
         (
             "rga.diagnosis.pipeline.compare",
@@ -211,7 +213,7 @@ def test_a_stage_after_the_search_loses_no_findings(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     stage: str,
-    told: str,
+    part: str,
     error: Exception,
 ) -> None:
     def stumbles(*_: Any, **__: Any) -> Any:
@@ -220,7 +222,7 @@ def test_a_stage_after_the_search_loses_no_findings(
     monkeypatch.setattr(stage, stumbles)
     findings = diagnose(model, measured_record(model, CRACK))
     (warning,) = findings.warnings
-    assert warning.startswith(f"{told} could not be worked out: ")
+    assert warning.startswith(f"{part} could not be worked out: ")
     assert str(error) in warning
     (cause,), (sound,) = findings.causes, cracked.causes
     assert cause.effect == sound.effect
@@ -229,7 +231,7 @@ def test_a_stage_after_the_search_loses_no_findings(
     assert (cause.separated_by == "") == (stage == "rga.diagnosis.assemble.causes.Advice")
     html = findings.write(tmp_path).read_text(encoding="utf-8")
     assert LOST not in html
-    assert told in html
+    assert part in html
 
 
 def test_nothing_wrong_and_nothing_lost(

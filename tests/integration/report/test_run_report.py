@@ -36,7 +36,9 @@ def model() -> Model:
     return read_model(draw_case(1, bridge="footbridge", kind="null", rows=4).model, "case")
 
 
-def lived(model: Model, rows: int = 120, start: str | float = "2024-03-01T00:00:00") -> History:
+def made_history(
+    model: Model, rows: int = 120, start: str | float = "2024-03-01T00:00:00"
+) -> History:
     """A run with an alarm half way, a new version soon after, and nothing but noise otherwise."""
     random = np.random.default_rng(0)
     sensors, contexts = tuple(model.sensors), tuple(name for name in model.context if name != "air")
@@ -151,7 +153,7 @@ def read(history: History, directory: Path, **changes: Any) -> tuple[Reader, str
 
 
 def test_report_says_all_and_fetches_nothing(model: Model, tmp_path: Path) -> None:
-    reader, html = read(lived(model), tmp_path, warnings=["a warning of the diagnosis"])
+    reader, html = read(made_history(model), tmp_path, warnings=["a warning of the diagnosis"])
     assert not reader.fetched
     assert "script" not in reader.tags
     assert reader.figures_of_the_run() == FIGURES
@@ -166,8 +168,8 @@ def test_report_says_all_and_fetches_nothing(model: Model, tmp_path: Path) -> No
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
 
 
-def test_the_diagnosis_is_told_as_without_a_run(model: Model, tmp_path: Path) -> None:
-    history = lived(model)
+def test_the_diagnosis_is_reported_as_without_a_run(model: Model, tmp_path: Path) -> None:
+    history = made_history(model)
     alone = write_report(closing(history), tmp_path / "alone.html").read_text(encoding="utf-8")
     _, html = read(history, tmp_path)
     start = "<section>\n<h2>Causes</h2>"
@@ -176,7 +178,7 @@ def test_the_diagnosis_is_told_as_without_a_run(model: Model, tmp_path: Path) ->
 
 
 def test_report_is_the_same_twice(model: Model, tmp_path: Path) -> None:
-    assert read(lived(model), tmp_path)[1] == read(lived(model), tmp_path)[1]
+    assert read(made_history(model), tmp_path)[1] == read(made_history(model), tmp_path)[1]
 
 
 def test_hostile_names_stay_text(model: Model, tmp_path: Path) -> None:
@@ -184,7 +186,7 @@ def test_hostile_names_stay_text(model: Model, tmp_path: Path) -> None:
     sensors["\ud800 名 \n$x^{"] = next(iter(model.sensors.values()))
     context = {HOSTILE: model.context["people"], "air": model.context["air"]}
     hostile = model.model_copy(update={"sensors": sensors, "context": context, "name": HOSTILE})
-    history = lived(hostile)
+    history = made_history(hostile)
     events = tuple(replace(one, words=HOSTILE, sensors=(HOSTILE,)) for one in history.events)
     versions = tuple(replace(one, causes=(HOSTILE,)) for one in history.versions)
     history.record.warnings.append(HOSTILE)
@@ -199,13 +201,13 @@ def test_hostile_names_stay_text(model: Model, tmp_path: Path) -> None:
     [(1, "2024-03-01T00:00:00+01:00"), (1, 0.0), (2, 1.7e9), (7, 0.0), (9000, "2024-03-01")],
 )
 def test_any_number_of_rows(model: Model, tmp_path: Path, rows: int, start: str | float) -> None:
-    reader, html = read(lived(model, rows, start), tmp_path)
+    reader, html = read(made_history(model, rows, start), tmp_path)
     assert reader.figures_of_the_run() == FIGURES
     assert len(html) < 2_000_000
 
 
 def test_a_record_without_rows(model: Model, tmp_path: Path) -> None:
-    history = lived(model)
+    history = made_history(model)
     nothing = np.zeros((0, len(history.record.sensors)))
     empty = replace(
         history,
@@ -224,7 +226,7 @@ def test_a_record_without_rows(model: Model, tmp_path: Path) -> None:
 
 
 def test_a_quiet_run(model: Model, tmp_path: Path) -> None:
-    history = lived(model)
+    history = made_history(model)
     none = np.zeros((len(history.record), 0))
     quiet = replace(
         history, level="A", contexts=(), inferred=none, spread=none, events=(),
@@ -239,7 +241,7 @@ def test_a_quiet_run(model: Model, tmp_path: Path) -> None:
 
 
 def test_columns_without_values(model: Model, tmp_path: Path) -> None:
-    history = lived(model)
+    history = made_history(model)
     gaps, inferred, spread = history.gaps.copy(), history.inferred.copy(), history.spread.copy()
     gaps[:, :2] = np.nan
     inferred[:, 0], spread[:, 1] = np.nan, np.nan
@@ -255,7 +257,7 @@ def test_columns_without_values(model: Model, tmp_path: Path) -> None:
 
 
 def test_sensors_without_noise_are_passed_over(model: Model) -> None:
-    history = lived(model)
+    history = made_history(model)
     history.noise[:2] = 0.0, np.nan
     gaps = standardised(history)
     assert np.isnan(gaps[:, :2]).all()
@@ -263,7 +265,7 @@ def test_sensors_without_noise_are_passed_over(model: Model) -> None:
 
 
 def test_many_events_stand_on_few_lines(model: Model, tmp_path: Path) -> None:
-    history = lived(model, 2000)
+    history = made_history(model, 2000)
     novel = tuple(replace(history.events[1], row=row, words=f"crowd {row}") for row in range(1500))
     reader, html = read(replace(history, events=(*history.events[2:], *novel)), tmp_path)
     assert "1500 novel contexts; the first: crowd 0" in reader.text
@@ -272,7 +274,7 @@ def test_many_events_stand_on_few_lines(model: Model, tmp_path: Path) -> None:
 
 
 def test_phases_follow_the_events(model: Model) -> None:
-    history = lived(model)
+    history = made_history(model)
     found = phases(history)
     assert [phase.title.split(" 2024")[0] for phase in found] == [
         "After calibration", "At the alarm of", "With version 2 from", "At the end",
@@ -285,7 +287,7 @@ def test_phases_follow_the_events(model: Model) -> None:
 
 
 def test_smoothing_stops_where_the_twin_changed(model: Model) -> None:
-    history = lived(model)
+    history = made_history(model)
     mended = history.events[3].row
     by_row = np.where(np.arange(120) < mended, 10.0, 1.0)
     by_row[5] = np.nan
@@ -293,7 +295,7 @@ def test_smoothing_stops_where_the_twin_changed(model: Model) -> None:
 
 
 def test_the_map_keeps_means_and_holes(model: Model) -> None:
-    history = lived(model, 3000)
+    history = made_history(model, 3000)
     gaps = standardised(history)
     gaps[:, 4] = np.nan
     edges, cells = stretches(gaps, time_axis(history.record))

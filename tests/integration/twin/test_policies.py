@@ -149,45 +149,45 @@ def test_the_clock_recalibrates_where_nothing_happens(null: Path, tmp_path: Path
 
 
 @pytest.fixture(scope="module")
-def lived(changed: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, History]:
+def histories(changed: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, History]:
     """What twins of each policy lived through where the structure changed."""
-    place = tmp_path_factory.mktemp("lived")
+    place = tmp_path_factory.mktemp("histories")
     return {
         name: play(changed, place / name, policy=name, interval=None if name == "event" else 30)
         for name in POLICIES
     }
 
 
-def test_an_alarm_recalibrates_where_it_is_listened_to(lived: dict[str, History]) -> None:
-    (alarm,) = rows(lived["event"], "alarm")
+def test_an_alarm_recalibrates_where_it_is_listened_to(histories: dict[str, History]) -> None:
+    (alarm,) = rows(histories["event"], "alarm")
     assert 105 <= alarm < 115
     # The alarm comes in the packet up to row 109, and has 12 rows with the packet up to row 119.
-    assert rows(lived["event"], "recalibration") == [119]
+    assert rows(histories["event"], "recalibration") == [119]
     # Here it is told, and the clock goes on as before.
-    assert rows(lived["time"], "alarm") == [alarm]
-    assert rows(lived["time"], "recalibration") == [69, 99, 129]
+    assert rows(histories["time"], "alarm") == [alarm]
+    assert rows(histories["time"], "recalibration") == [69, 99, 129]
     # Both: the clock begins anew with the recalibration of the alarm.
-    assert rows(lived["hybrid"], "alarm") == [alarm]
-    assert rows(lived["hybrid"], "recalibration") == [69, 99, 119, 149]
+    assert rows(histories["hybrid"], "alarm") == [alarm]
+    assert rows(histories["hybrid"], "recalibration") == [69, 99, 119, 149]
     # Nothing was gained at row 69, and the clock would wait up to row 129.
-    assert rows(lived["adaptive"], "alarm") == [alarm]
-    assert rows(lived["adaptive"], "recalibration")[:2] == [69, 119]
+    assert rows(histories["adaptive"], "alarm") == [alarm]
+    assert rows(histories["adaptive"], "recalibration")[:2] == [69, 119]
 
 
-def test_every_policy_finds_that_the_model_is_wrong(lived: dict[str, History]) -> None:
-    for history in lived.values():
+def test_every_policy_finds_that_the_model_is_wrong(histories: dict[str, History]) -> None:
+    for history in histories.values():
         assert len(history.versions) == 2
         assert "support settlement" in history.versions[1].causes[0]
 
 
 def test_interrupted_after_every_step_it_ends_the_same(
-    changed: Path, lived: dict[str, History], tmp_path: Path
+    changed: Path, histories: dict[str, History], tmp_path: Path
 ) -> None:
     """An interval that adapts is all that any policy has to remember, and an alarm besides."""
     again = play(changed, tmp_path, steps=1, policy="adaptive", interval=30)
-    assert again.events == lived["adaptive"].events
-    np.testing.assert_array_equal(again.gaps, lived["adaptive"].gaps)
-    np.testing.assert_array_equal(again.inferred, lived["adaptive"].inferred)
+    assert again.events == histories["adaptive"].events
+    np.testing.assert_array_equal(again.gaps, histories["adaptive"].gaps)
+    np.testing.assert_array_equal(again.inferred, histories["adaptive"].inferred)
 
 
 #: as little as can be played

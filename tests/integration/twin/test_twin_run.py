@@ -34,7 +34,7 @@ def run(folder: Path, directory: Path, *, seed: int = 0, **more: Any) -> Outcome
     return rga.run(model, record, directory, settings=settings, seed=seed, **more)
 
 
-def told(outcome: Outcome) -> list[tuple[str, int, float | None, float | None]]:
+def events(outcome: Outcome) -> list[tuple[str, int, float | None, float | None]]:
     return [(e.kind, e.row, e.gap_before, e.gap_after) for e in outcome.history.events]
 
 
@@ -44,9 +44,9 @@ def stream(small_stream: Stream) -> Path:
 
 
 @pytest.fixture(scope="module")
-def lived(stream: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Outcome]:
+def finished(stream: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Outcome]:
     """A finished run and its directory."""
-    directory = tmp_path_factory.mktemp("lived")
+    directory = tmp_path_factory.mktemp("finished")
     return directory, run(stream, directory)
 
 
@@ -73,9 +73,9 @@ def at_level(
     return level
 
 
-def test_the_story_of_a_stream(lived: tuple[Path, Outcome]) -> None:
+def test_the_story_of_a_stream(finished: tuple[Path, Outcome]) -> None:
     """Calibration, a novel context, an alarm, a recalibration that fails, a cause, a version."""
-    directory, outcome = lived
+    directory, outcome = finished
     kinds = [event.kind for event in outcome.history.events]
     first = {kind: kinds.index(kind) for kind in kinds}
     order = ["calibration", "novel context", "alarm", "recalibration", "diagnosis", "version"]
@@ -99,8 +99,8 @@ def test_the_story_of_a_stream(lived: tuple[Path, Outcome]) -> None:
     assert any(effect.kind == "support_settlement" for effect in extended.effects.values())
 
 
-def test_contexts_are_inferred_within_their_intervals(lived: tuple[Path, Outcome]) -> None:
-    history = lived[1].history
+def test_contexts_are_inferred_within_their_intervals(finished: tuple[Path, Outcome]) -> None:
+    history = finished[1].history
     days = np.arange(150) / 24
     east = 25 + 10 * np.cos(2 * days) + 4  # plus a draw of 0 to 8
     off = history.inferred[:100, history.contexts.index("east load")] - east[:100]
@@ -124,13 +124,13 @@ def test_a_drift_alone_is_no_cause(small_stream: Stream, tmp_path: Path) -> None
 
 
 def test_the_same_seed_gives_the_same(
-    lived: tuple[Path, Outcome], again: tuple[Path, Outcome]
+    finished: tuple[Path, Outcome], again: tuple[Path, Outcome]
 ) -> None:
-    assert told(again[1]) == told(lived[1])
-    np.testing.assert_array_equal(again[1].history.inferred, lived[1].history.inferred)
+    assert events(again[1]) == events(finished[1])
+    np.testing.assert_array_equal(again[1].history.inferred, finished[1].history.inferred)
     found, expected = (
         json.loads((folder / "findings.json").read_text(encoding="utf-8"))
-        for folder in (again[0], lived[0])
+        for folder in (again[0], finished[0])
     )
     assert found == expected
 
@@ -140,7 +140,7 @@ class _Stop(Exception):
 
 
 def test_interrupted_after_every_step_it_ends_the_same(
-    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+    stream: Path, finished: tuple[Path, Outcome], tmp_path: Path
 ) -> None:
     def stop(running: Running) -> None:
         raise _Stop
@@ -151,15 +151,15 @@ def test_interrupted_after_every_step_it_ends_the_same(
         except _Stop:
             continue
         break
-    assert told(outcome) == told(lived[1])
-    np.testing.assert_array_equal(outcome.history.inferred, lived[1].history.inferred)
-    np.testing.assert_array_equal(outcome.history.gaps, lived[1].history.gaps)
-    expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
+    assert events(outcome) == events(finished[1])
+    np.testing.assert_array_equal(outcome.history.inferred, finished[1].history.inferred)
+    np.testing.assert_array_equal(outcome.history.gaps, finished[1].history.gaps)
+    expected = (finished[0] / "findings.json").read_text(encoding="utf-8")
     assert (tmp_path / "findings.json").read_text(encoding="utf-8") == expected
 
 
-def test_a_run_that_is_done_is_not_done_again(stream: Path, lived: tuple[Path, Outcome]) -> None:
-    directory, first = lived
+def test_a_run_that_is_done_is_not_done_again(stream: Path, finished: tuple[Path, Outcome]) -> None:
+    directory, first = finished
     with Repository.open(directory, read_only=True) as kept:
         steps = kept.runs()[0].steps
     steps_seen: list[int] = []
@@ -171,7 +171,7 @@ def test_a_run_that_is_done_is_not_done_again(stream: Path, lived: tuple[Path, O
 
 
 def test_another_model_in_the_same_directory_is_another_run(
-    stream: Path, lived: tuple[Path, Outcome], again: tuple[Path, Outcome], tmp_path: Path
+    stream: Path, finished: tuple[Path, Outcome], again: tuple[Path, Outcome], tmp_path: Path
 ) -> None:
     """Files and twin are always those of the run that was asked for last."""
     stiffer = json.loads((stream / "model.json").read_text(encoding="utf-8"))
@@ -183,7 +183,7 @@ def test_another_model_in_the_same_directory_is_another_run(
         (other / name).write_bytes((stream / name).read_bytes())
     directory = tmp_path / "out"
     shutil.copytree(again[0], directory)
-    expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
+    expected = (finished[0] / "findings.json").read_text(encoding="utf-8")
     for folder in (stream, other, stream):
         outcome = run(folder, directory, settings={"level": "C"})
         text = (directory / "findings.json").read_text(encoding="utf-8")
@@ -196,7 +196,7 @@ def test_another_model_in_the_same_directory_is_another_run(
 
 def test_killed_at_random_it_loses_nothing_and_ends_the_same(
     stream: Path,
-    lived: tuple[Path, Outcome],
+    finished: tuple[Path, Outcome],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -210,7 +210,7 @@ def test_killed_at_random_it_loses_nothing_and_ends_the_same(
     draw = random.Random(5)
     command = ["run", stream / "model.json", stream / "record.csv"]
     command += ["--settings", stream / "settings.json", "-o"]
-    expected = (lived[0] / "findings.json").read_text(encoding="utf-8")
+    expected = (finished[0] / "findings.json").read_text(encoding="utf-8")
     kills, directories, waiting = 0, 0, 5.0
     while kills < KILLS:
         directory = tmp_path / f"run {directories}"
@@ -234,7 +234,7 @@ def test_killed_at_random_it_loses_nothing_and_ends_the_same(
             waiting = waiting * 1.1 if acknowledged == before else max(5.0, waiting / 1.2)
         assert (directory / "findings.json").read_text(encoding="utf-8") == expected
         with rga.Twin.open(directory) as twin:
-            assert told_of(twin) == told(lived[1])
+            assert stored_events(twin) == events(finished[1])
 
 
 def _kept(directory: Path, acknowledged: int) -> int:
@@ -253,12 +253,12 @@ def _kept(directory: Path, acknowledged: int) -> int:
     return steps
 
 
-def told_of(twin: rga.Twin) -> list[tuple[str, int, float | None, float | None]]:
+def stored_events(twin: rga.Twin) -> list[tuple[str, int, float | None, float | None]]:
     return [(e.kind, e.row, e.gap_before, e.gap_after) for e in twin.history().events]
 
 
-def test_the_log_tells_the_sequence_of_the_paper(lived: tuple[Path, Outcome]) -> None:
-    with rga.Twin.open(lived[0]) as twin:
+def test_the_log_has_the_sequence_of_the_paper(finished: tuple[Path, Outcome]) -> None:
+    with rga.Twin.open(finished[0]) as twin:
         log = twin.log()
     kinds = [kinds for _, kinds, _ in log]
     for task in ("T1 alarm", "T1 recalibration", "T2 stored", "diagnosis", "version"):
@@ -271,8 +271,8 @@ def test_the_log_tells_the_sequence_of_the_paper(lived: tuple[Path, Outcome]) ->
     assert rows == sorted(rows)
 
 
-def test_the_past_stands_as_it_was(lived: tuple[Path, Outcome]) -> None:
-    with rga.Twin.open(lived[0]) as twin:
+def test_the_past_stands_as_it_was(finished: tuple[Path, Outcome]) -> None:
+    with rga.Twin.open(finished[0]) as twin:
         early = twin.as_of(row=79)
         assert (early.version, early.state.row) == (1, 79)
         assert twin.version > 1
@@ -280,7 +280,7 @@ def test_the_past_stands_as_it_was(lived: tuple[Path, Outcome]) -> None:
         assert twin.as_of(time=600.0 * 79).context == early.context
 
 
-def test_a_repository_that_was_tampered_with_is_told(
+def test_a_repository_that_was_tampered_with_is_reported(
     at_level: Callable[[str], tuple[Path, Outcome]], tmp_path: Path
 ) -> None:
     import sqlalchemy
@@ -322,8 +322,8 @@ def test_rollback_puts_an_earlier_version_in_force(
         rollback(tmp_path, 9)
 
 
-def test_whatif_answers_from_where_the_twin_stands(lived: tuple[Path, Outcome]) -> None:
-    with rga.Twin.open(lived[0]) as twin:
+def test_whatif_answers_from_where_the_twin_stands(finished: tuple[Path, Outcome]) -> None:
+    with rga.Twin.open(finished[0]) as twin:
         answer = twin.whatif({"west load": 60.0})
         assert answer.contexts["east load"] == twin.context["east load"]
         far = twin.whatif({"west load": 400.0})
@@ -339,7 +339,7 @@ def test_whatif_answers_from_where_the_twin_stands(lived: tuple[Path, Outcome]) 
 
 
 def test_postgresql_serves_as_well(
-    stream: Path, lived: tuple[Path, Outcome], tmp_path: Path
+    stream: Path, finished: tuple[Path, Outcome], tmp_path: Path
 ) -> None:
     url = os.environ.get("RGA_TEST_POSTGRES")
     if not url:

@@ -71,7 +71,7 @@ def test_only_the_temperature_is_measured(tmp_path: Path) -> None:
     assert error.std() == pytest.approx(0.3, rel=0.3)
 
 
-def test_sight_of_known_contexts_is_the_plain_d_prime() -> None:
+def test_of_known_contexts_it_is_the_plain_d_prime() -> None:
     rng = np.random.default_rng(0)
     signature, share = rng.standard_normal((2, 50, 4))
     jacobian = rng.standard_normal((50, 4, 2))
@@ -81,7 +81,7 @@ def test_sight_of_known_contexts_is_the_plain_d_prime() -> None:
     assert known.d_prime(signature) == pytest.approx(plain)
 
 
-def test_sight_is_blind_to_what_a_latent_context_may_do() -> None:
+def test_d_prime_leaves_out_what_a_latent_context_may_do() -> None:
     rng = np.random.default_rng(1)
     jacobian = rng.standard_normal((50, 6, 2))
     variance = np.ones(6)

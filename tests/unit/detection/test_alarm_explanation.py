@@ -36,7 +36,7 @@ def test_a_sensor_that_is_not_read_has_not_changed() -> None:
     assert sorted(alarm.sensors) == [one for one in range(SENSORS) if one != 5]
 
 
-def test_it_is_told_in_a_sentence() -> None:
+def test_it_is_reported_in_a_sentence() -> None:
     alarm = Alarm(12, "", "step", (3,), (1.0,), (2.0,), 10, (8, 11))
     assert alarm.sentence() == (
         "a step in sensor 3 since row 10 (8 to 11); one bad sensor would look like this"

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from monitored_worlds import MISSING, SENSORS, WORLDS, noise
 from rga.detection import SyncMonitor
 from rga.detection.baseline.baseline_model import Reference
 from rga.detection.statistic import STATISTICS
 from rga.errors import InputError
+from unchanged_streams import MISSING, SENSORS, WORLDS, noise
 
 
 @pytest.mark.parametrize("world", [*WORLDS, "few digits"])
@@ -86,7 +86,7 @@ def test_a_number_that_is_none_of_a_sensors_is_named(value: float, words: str) -
 
 
 @pytest.mark.parametrize(("value", "why"), [(MISSING, "0 readings"), (7.0, "all alike")])
-def test_a_sensor_that_tells_nothing_is_left_out(value: float, why: str) -> None:
+def test_a_sensor_without_information_is_left_out(value: float, why: str) -> None:
     """The others are watched as if it were not there, under their own numbers."""
     baseline, stream = noise("white", 200, 0), noise("white", 60, 1)
     stream[20:, 3] += 5.0

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from monitored_worlds import BASELINE, MISSING, SENSORS, Rows, noise
 from rga.detection import SyncMonitor, rows_between
 from rga.errors import InputError
+from unchanged_streams import BASELINE, MISSING, SENSORS, Rows, noise
 
 
 def hidden_step(stream: Rows) -> None:
@@ -237,16 +237,16 @@ def test_an_alarm_stays_explained_by_the_rows_around_it() -> None:
     assert not quiet.update_many(stream[:400]).any()
     assert quiet.alarm is None
     stream[300:, 1] += 2.0
-    told = []
+    alarms = []
     for chunk in (9000, 700):
         one = pickle.loads(pickle.dumps(monitor))
         for first in range(0, len(stream), chunk):
             one.update_many(stream[first : first + chunk])
-        told.append(one.alarm)
-    assert told[0] == told[1]
-    assert told[0] is not None
-    assert told[0].since_ci90[0] <= told[0].since <= told[0].since_ci90[1] <= told[0].row
-    assert abs(told[0].since - 300) < 10
+        alarms.append(one.alarm)
+    assert alarms[0] == alarms[1]
+    assert alarms[0] is not None
+    assert alarms[0].since_ci90[0] <= alarms[0].since <= alarms[0].since_ci90[1] <= alarms[0].row
+    assert abs(alarms[0].since - 300) < 10
     one.begin_again()
     assert one.alarm is None
 
@@ -257,7 +257,7 @@ def test_a_logger_that_is_silent_raises_no_alarm(sensors: int) -> None:
     assert not monitor.update_many(np.full((3000, sensors), np.nan)).any()
 
 
-def test_sensors_that_repeat_others_are_doubted() -> None:
+def test_sensors_that_repeat_others_are_warned_of() -> None:
     rows = np.random.default_rng(1).normal(size=(400, 4))
     assert SyncMonitor(rows, arl0=500).warnings == ()
     copied = np.c_[rows, rows[:, 1]]
@@ -265,7 +265,7 @@ def test_sensors_that_repeat_others_are_doubted() -> None:
     assert warning.startswith("sensors 1, 4 read nearly what others of them read")
 
 
-def test_coarse_readings_are_doubted() -> None:
+def test_coarse_readings_are_warned_of() -> None:
     rows = np.random.default_rng(2).normal(size=(400, 2))
     coarse = np.c_[rows[:, 0], np.round(rows[:, 1] / 2.0)]
     assert "sensor 1 reads mostly one value" in " ".join(SyncMonitor(coarse, arl0=500).warnings)

@@ -53,7 +53,7 @@ def test_twice_the_load_is_twice_the_force(model: Model) -> None:
     assert found.without == {}
 
 
-def test_gauges_tell_the_force_of_their_member(model: Model) -> None:
+def test_gauges_give_the_force_of_their_member(model: Model) -> None:
     found = forces(model, 1.1, heavier=TWICE)
     assert found is not None
     number = found.members.index("L0-L1")

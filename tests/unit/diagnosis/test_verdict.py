@@ -53,26 +53,26 @@ def test_with_a_cause(cause: Found) -> None:
     assert verdict(with_rival(cause, 0.5), False, True) == "partial"
 
 
-def doubts(found: Found, **changes: Any) -> list[str]:
+def reasons(found: Found, **changes: Any) -> list[str]:
     given: dict[str, Any] = {"faults": [], "dropped": [], "off": []}
     given |= {"gained": SOUND, "unseen": None, **changes}
     return reasons_for_doubt(found.problem.data.sensors, found=found, **given)
 
 
 def test_a_record_that_is_explained_has_no_warning(nothing: Found, cause: Found) -> None:
-    assert doubts(nothing) == doubts(cause) == []
+    assert reasons(nothing) == reasons(cause) == []
 
 
 def test_a_cause_that_held_out_rows_do_not_confirm_is_said_once(nothing: Found) -> None:
     one = candidate(nothing.problem, "support_settlement", support="east", dof="uz")
-    (words,) = doubts(nothing, dropped=[one, one.beginning(600.0)])
+    (words,) = reasons(nothing, dropped=[one, one.beginning(600.0)])
     assert "support settlement" in words
     assert "east" in words
 
 
 def test_many_misfits_are_counted(nothing: Found) -> None:
     off = [Misfit(f"S{k}", (f"S{k}",), 12.0, 5.0) for k in range(8)]
-    words = doubts(nothing, off=off)
+    words = reasons(nothing, off=off)
     assert "channel S0 reads +12 %" in words[0]
     assert words[-1] == f"{9 - len(words)} more channels or groups are off"
 
@@ -80,22 +80,22 @@ def test_many_misfits_are_counted(nothing: Found) -> None:
 def test_half_of_the_channels_broken_is_a_warning(nothing: Found) -> None:
     channels = nothing.problem.data.sensors
     broken = [BrokenChannel(name, "dead", "it is silent", 9) for name in channels[:6]]
-    assert f"6 of {len(channels)} channels" in doubts(nothing, faults=broken)[0]
-    assert doubts(nothing, faults=broken[:5]) == []
+    assert f"6 of {len(channels)} channels" in reasons(nothing, faults=broken)[0]
+    assert reasons(nothing, faults=broken[:5]) == []
 
 
 def test_a_gap_that_the_causes_do_not_close_is_a_warning(cause: Found, nothing: Found) -> None:
     worse = Gain(1.0, 1.2, (-0.3, -0.1))
-    assert "rows that no step saw" in doubts(cause, gained=worse)[0]
-    assert doubts(nothing, gained=worse) == []
-    (words,) = doubts(nothing, gained=Gain(9.0, 9.0, (0.0, 0.0)))
+    assert "rows that no step saw" in reasons(cause, gained=worse)[0]
+    assert reasons(nothing, gained=worse) == []
+    (words,) = reasons(nothing, gained=Gain(9.0, 9.0, (0.0, 0.0)))
     assert "9 times the noise" in words
 
 
 def test_channels_left_out_that_get_worse_are_a_warning(cause: Found) -> None:
-    (words,) = doubts(cause, unseen=(1.0, 3.0))
+    (words,) = reasons(cause, unseen=(1.0, 3.0))
     assert "channels left out of the fit are predicted worse" in words
-    assert doubts(cause, unseen=(3.0, 1.0)) == []
+    assert reasons(cause, unseen=(3.0, 1.0)) == []
 
 
 def test_scatter_beyond_what_is_plausible_is_a_warning(nothing: Found) -> None:
@@ -103,5 +103,5 @@ def test_scatter_beyond_what_is_plausible_is_a_warning(nothing: Found) -> None:
         levels = nothing.problem.levels.copy()
         levels[number] = 0.2
         wide = replace(nothing, problem=replace(nothing.problem, levels=levels))
-        (words,) = doubts(wide)
+        (words,) = reasons(wide)
         assert words.startswith(f"{of} would have to scatter by 20.0%")

@@ -31,10 +31,10 @@ def test_a_line_is_found_among_gross_errors(seed: int) -> None:
     time, estimate, spread, line = crossing(seed)
     # Half of the good rows are pulled the same way only where they are a minority.
     estimate = np.where((estimate - line > 10) & (np.arange(len(time)) % 2 == 0), -70.0, estimate)
-    value, doubt = follow_law(time, estimate, spread, LINE)
+    value, spread_of_line = follow_law(time, estimate, spread, LINE)
     assert np.abs(value - line).max() < 0.5
-    assert (np.abs(value - line) < 5 * doubt).all()
-    assert doubt.max() < 2.0
+    assert (np.abs(value - line) < 5 * spread_of_line).all()
+    assert spread_of_line.max() < 2.0
 
 
 def test_a_line_through_candidates_keeps_to_its_direction() -> None:
@@ -99,10 +99,10 @@ def test_weak_estimates_of_a_constant_add_up() -> None:
     spread = (1 / noise**2 + 1 / prior) ** -0.5
     rows = seen * spread**2 / noise**2
     constant = LINE.model_copy(update={"law": "constant"})
-    value, doubt = follow_law(np.arange(4000.0), rows, np.full(4000, spread), constant)
+    value, spread_of_value = follow_law(np.arange(4000.0), rows, np.full(4000, spread), constant)
     assert abs(rows.mean() - truth) > 20
     assert abs(value[0] - truth) < 4 * noise / np.sqrt(4000) + 1
-    assert doubt[0] < 5
+    assert spread_of_value[0] < 5
 
 
 def test_smooth_follows_and_weighs() -> None:

@@ -46,7 +46,7 @@ def test_the_same_seed_draws_the_same_and_nothing_measured_draws_nothing(
     assert (none.draws, none.won, none.clearly) == (0, 0.0, 0.0)
 
 
-def test_evidence_of_an_unknown_that_acts_straight_is_that_of_the_textbook(
+def test_evidence_of_an_unknown_that_acts_linearly_is_that_of_the_textbook(
     bridge: MeasurementModel, errors: Errors, pair: Pair, present: np.ndarray
 ) -> None:
     """-1/2 (r' (C + s s')^-1 r + log det(I + s' C^-1 s)) with s the derivative by the unknown."""

@@ -58,7 +58,7 @@ def test_what_stays_rigid_stays_so_between() -> None:
     assert found(np.array([0.3]))[0, 0, 0] == pytest.approx(1 / 1.5, rel=1e-11)
 
 
-def test_what_no_few_points_follow_is_told() -> None:
+def test_what_no_few_points_follow_is_reported() -> None:
     ends = np.zeros(1), np.ones(1)
     smooth = between(*ends, lambda state: np.array([[1.0 / (1.2 + state[0])]]))
     assert smooth is not None

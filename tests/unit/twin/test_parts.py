@@ -161,14 +161,14 @@ def test_simulations_are_relative_to_the_unloaded_rows(small_bridge: dict[str, A
 def test_the_zero_of_the_model_is_that_of_the_station(small_bridge: dict[str, Any]) -> None:
     """A logger that zeroed its channels itself, as the model says, is one that the record tells."""
     warm = {"temperature": np.full(5, 25.0)}
-    told = station(small_bridge, contexts=warm, zero=(0.0, 1200.0))
+    zeroed = station(small_bridge, contexts=warm, zero=(0.0, 1200.0))
     stated = {n: {**one, "zero": [0.0, 1200.0]} for n, one in small_bridge["sensors"].items()}
     same = {**small_bridge, "sensors": stated}
-    assert station(same, contexts=warm).to_json() == told.to_json()
-    query = first_question(told)
+    assert station(same, contexts=warm).to_json() == zeroed.to_json()
+    query = first_question(zeroed)
     simulations = []
     for model in (small_bridge, same):
-        twin = DigitalTwin(read_model(model, "test"), told)
+        twin = DigitalTwin(read_model(model, "test"), zeroed)
         twin.accept(twin.answer(query))
         contexts = np.tile([25.0, 50.0, 50.0], (2, 1))
         simulations.append(twin.simulation().readings(np.array([600.0, 2400.0]), contexts))
@@ -237,8 +237,8 @@ def test_noise_is_estimated_where_it_is_not_stated() -> None:
 def test_missing_contexts_are_carried_on_and_reported() -> None:
     ledger = RowBuffer.empty(1, 2, 2)
     ledger.measured = np.array([[np.nan, 1.0], [5.0, np.nan], [np.nan, 3.0]])
-    told, complete = ledger.last_measured(np.array([9.0, 9.0]))
-    np.testing.assert_array_equal(told, [[9, 1], [5, 1], [5, 3]])
+    measured, complete = ledger.last_measured(np.array([9.0, 9.0]))
+    np.testing.assert_array_equal(measured, [[9, 1], [5, 1], [5, 3]])
     np.testing.assert_array_equal(complete, [False, False, False])
 
 

@@ -121,10 +121,10 @@ def test_a_directory_for_reading_only(tmp_path: Path) -> None:
 )
 def test_urls_that_lead_nowhere(url: str, words: str) -> None:
     pytest.importorskip("psycopg")
-    with pytest.raises(InputError, match=words) as told:
+    with pytest.raises(InputError, match=words) as refused:
         Repository.open(url)
-    assert "secret" not in str(told.value)
-    assert "\n" not in str(told.value)
+    assert "secret" not in str(refused.value)
+    assert "\n" not in str(refused.value)
 
 
 def test_a_missing_driver(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,7 +29,7 @@ def no_advice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rga.diagnosis.assemble.causes.Advice", Silent)
 
 
-def told(found: Found, prepared: PreparedRecord) -> Cause:
+def reported(found: Found, prepared: PreparedRecord) -> Cause:
     warnings: list[str] = []
     effects = effects_of(found, prepared.record)
     (cause,) = causes(found, effects, prepared.record, warnings)
@@ -47,7 +47,7 @@ def test_sizes_of_a_cause_are_those_of_its_change(noisy: Problem, prepared: Prep
     problem = settled(noisy)
     sunk = candidate(noisy, "support_settlement", support="east")
     bias = candidate(noisy, "sensor_bias", sensor="D3")
-    cause = told(found_with(problem, [sunk], [bias]), prepared)
+    cause = reported(found_with(problem, [sunk], [bias]), prepared)
     found = found_with(problem, [sunk], [bias])
     sigma = problem.noise.sigma
     own = (found.fit.simulated - noisy.simulated) / sigma
@@ -60,7 +60,7 @@ def test_sizes_of_a_cause_are_those_of_its_change(noisy: Problem, prepared: Prep
     assert cause.rivals == []
     assert cause.separated_by.endswith(": measure it")
     assert "D3" in cause.why.split(",")[0]
-    alone = told(found_with(problem, [sunk]), prepared)
+    alone = reported(found_with(problem, [sunk]), prepared)
     assert alone.d_perp == alone.d_prime
     assert alone.separated_by == ""
 
@@ -85,7 +85,7 @@ def test_a_cause_with_a_rival_is_ambiguous(noisy: Problem, prepared: PreparedRec
     found = found_with(settled(noisy), [sunk], [candidate(noisy, "sensor_bias", sensor="D3")])
     (ranked,) = found.alternatives
     close = replace(found, alternatives=((replace(ranked[0], behind=0.4),),))
-    cause = told(close, prepared)
+    cause = reported(close, prepared)
     assert cause.status == "ambiguous"
     assert [one["kind"] for one in cause.rivals] == ["sensor_bias"]
     assert cause.rivals_omitted == 0
@@ -94,7 +94,7 @@ def test_a_cause_with_a_rival_is_ambiguous(noisy: Problem, prepared: PreparedRec
 def test_an_onset_has_an_interval_that_holds_it(noisy: Problem, prepared: PreparedRecord) -> None:
     sunk = candidate(noisy, "support_settlement", support="east")
     moment = float(noisy.data.time[45])
-    cause = told(found_with(settled(noisy, 0.2, 45), [sunk.beginning(moment)]), prepared)
+    cause = reported(found_with(settled(noisy, 0.2, 45), [sunk.beginning(moment)]), prepared)
     assert cause.onset_ci90 is not None
     first, last = map(float, cause.onset_ci90)
     at = moment - prepared.record.origin

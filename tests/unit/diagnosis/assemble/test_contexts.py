@@ -11,14 +11,16 @@ from rga.model import Model
 
 
 def test_a_measured_context_has_its_noise(posed: Problem, model: Model) -> None:
-    told = contexts(posed, model)
-    assert list(told) == ["temperature", "west load", "east load"]
-    assert told["temperature"] == {
+    reported = contexts(posed, model)
+    assert list(reported) == ["temperature", "west load", "east load"]
+    assert reported["temperature"] == {
         "noise of its measurement [degC]": pytest.approx(posed.noise.context_sigma[0])
     }
 
 
-def test_a_latent_one_has_its_course_and_a_line_its_rate(posed: Problem, model: Model) -> None:
+def test_a_latent_one_has_its_time_history_and_a_line_its_rate(
+    posed: Problem, model: Model
+) -> None:
     belief = posed.data.belief
     clock = posed.data.time
     table = {**belief.table, "east load": 5.0 + 0.002 * (clock - clock[0])}
@@ -27,10 +29,10 @@ def test_a_latent_one_has_its_course_and_a_line_its_rate(posed: Problem, model: 
         belief, table=table, spread=spread, latent=frozenset({"west load"}),
         lines={"east load": (10.0, 0.1)},
     )  # fmt: skip
-    told = contexts(replace(posed, data=replace(posed.data, belief=other)), model)
-    assert told["east load"]["rate [kN/s]"] == pytest.approx(0.002)
-    assert told["east load"]["at the first analysed row [kN]"] == pytest.approx(5.0)
+    reported = contexts(replace(posed, data=replace(posed.data, belief=other)), model)
+    assert reported["east load"]["rate [kN/s]"] == pytest.approx(0.002)
+    assert reported["east load"]["at the first analysed row [kN]"] == pytest.approx(5.0)
     west = belief.table["west load"]
-    assert list(told["west load"].values()) == pytest.approx(
+    assert list(reported["west load"].values()) == pytest.approx(
         [np.mean(west), np.min(west), np.max(west)]
     )

@@ -31,26 +31,26 @@ def test_an_estimate_has_the_interval_of_its_spread(
     problem = off_by(noisy, "sensor_bias", 0.1, sensor="D1")
     found = found_with(problem, [candidate(noisy, "sensor_bias", sensor="D1")])
     (effect,) = estimated_effects(found.fit, prepared.record)
-    told = content(effect)
+    written = content(effect)
     scale = 5.0
     half = HALF_WIDTH * scale * found.fit.spreads()[0]
     value = scale * found.fit.z[0]
-    assert told["kind"] == "sensor_bias"
-    assert told["sensor"] == "D1"
-    assert told["offset"]["value"] == pytest.approx(value)
-    assert told["offset"]["ci90"] == pytest.approx([value - half, value + half])
-    assert "onset" not in told
+    assert written["kind"] == "sensor_bias"
+    assert written["sensor"] == "D1"
+    assert written["offset"]["value"] == pytest.approx(value)
+    assert written["offset"]["ci90"] == pytest.approx([value - half, value + half])
+    assert "onset" not in written
 
 
 def test_a_late_effect_has_its_onset_and_profile(noisy: Problem, prepared: PreparedRecord) -> None:
     one = candidate(noisy, "sensor_bias", sensor="D1")
     moment, end = (float(noisy.data.time[row]) for row in (40, 70))
     found = found_with(noisy, [one.beginning(moment, "ramp", end)])
-    told = last_effect(found.fit, prepared.record)
+    written = last_effect(found.fit, prepared.record)
     label = prepared.record.time_label
     origin = prepared.record.origin
-    assert told["onset"] == label(moment - origin)
-    assert (told["profile"], told["end"]) == ("ramp", label(end - origin))
+    assert written["onset"] == label(moment - origin)
+    assert (written["profile"], written["end"]) == ("ramp", label(end - origin))
 
 
 @pytest.mark.parametrize(("factor", "kind"), [(0.0, "sensor_fault"), (0.7, "sensor_gain")])

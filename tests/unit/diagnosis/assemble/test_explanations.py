@@ -33,7 +33,7 @@ def fitted(found: Found, *hypotheses: Hypothesis) -> Fit:
     return fit(found.problem, found.base, hypotheses, [0.1] * len(hypotheses))
 
 
-def told(found: Found, prepared: PreparedRecord, *tried: Tried) -> list[Explanation]:
+def reported(found: Found, prepared: PreparedRecord, *tried: Tried) -> list[Explanation]:
     nothing = Tried(fitted(found), 9.0, 9.0)
     return explanations([nothing, *tried], found, prepared.record)
 
@@ -43,7 +43,7 @@ def test_the_likeliest_comes_first_and_nothing_tried_is_nothing(
 ) -> None:
     gains = Tried(None, 1.2, 9.0)
     named = Tried(found.fit, 1.0, 1.1)
-    page = told(found, prepared, gains, named)
+    page = reported(found, prepared, gains, named)
     assert [one.log_odds for one in page] == sorted((one.log_odds for one in page), reverse=True)
     assert page[0].remark == "what is named"
     assert page[0].effects[0]["kind"] == "support_settlement"
@@ -56,14 +56,14 @@ def test_the_likeliest_comes_first_and_nothing_tried_is_nothing(
 
 def test_why_another_is_rejected(found: Found, prepared: PreparedRecord) -> None:
     far = found.alternatives[0][0].fit
-    (one,) = (o for o in told(found, prepared, Tried(far, 5.0, 4.0)) if "bias" in o.words)
+    (one,) = (o for o in reported(found, prepared, Tried(far, 5.0, 4.0)) if "bias" in o.words)
     assert one.remark.startswith("rejected (-")
     near = replace(far, log_evidence=found.fit.log_evidence - 0.5)
-    (one,) = (o for o in told(found, prepared, Tried(near, 5.0, 4.0)) if "bias" in o.words)
+    (one,) = (o for o in reported(found, prepared, Tried(near, 5.0, 4.0)) if "bias" in o.words)
     assert one.remark.startswith("cannot be separated from what is named (-0.5")
     rival = replace(found.alternatives[0][0], behind=1.0)
     hanging = replace(found, alternatives=((rival,),))
-    (one,) = (o for o in told(hanging, prepared, Tried(far, 5.0, 4.0)) if "bias" in o.words)
+    (one,) = (o for o in reported(hanging, prepared, Tried(far, 5.0, 4.0)) if "bias" in o.words)
     assert "hangs on one channel" in one.remark
 
 
@@ -71,7 +71,7 @@ def test_what_is_added_to_the_causes_is_weighed_by_what_it_earns(
     found: Found, prepared: PreparedRecord, sunk: Hypothesis, noisy: Problem
 ) -> None:
     both = fitted(found, sunk, candidate(noisy, "sensor_bias", sensor="D1"))
-    (one,) = (o for o in told(found, prepared, Tried(both, 1.0, 1.1)) if "bias" in o.words)
+    (one,) = (o for o in reported(found, prepared, Tried(both, 1.0, 1.1)) if "bias" in o.words)
     assert one.remark.startswith("what is added earns -")
 
 
@@ -80,13 +80,13 @@ def test_unseen_channels_and_unlikely_values_are_remarked(
 ) -> None:
     far = found.alternatives[0][0].fit
     named = Tried(found.fit, 1.0, 3.0)
-    page = told(found, prepared, named, Tried(far, 5.0, 1.0))
+    page = reported(found, prepared, named, Tried(far, 5.0, 1.0))
     (one,) = (o for o in page if "bias" in o.words)
     assert "predicts channels that were left out better" in one.remark
-    (one,) = (o for o in told(found, prepared, Tried(far, 5.0, 9.5)) if "bias" in o.words)
+    (one,) = (o for o in reported(found, prepared, Tried(far, 5.0, 9.5)) if "bias" in o.words)
     assert "does not help channels that it was not fitted to" in one.remark
     wild = replace(far, z=np.array([6.0]))
-    (one,) = (o for o in told(found, prepared, Tried(wild, 5.0, np.nan)) if "bias" in o.words)
+    (one,) = (o for o in reported(found, prepared, Tried(wild, 5.0, np.nan)) if "bias" in o.words)
     assert "sensor bias would need an unlikely value" in one.remark
     assert one.gap_unseen_channels is None
 
@@ -96,9 +96,9 @@ def test_without_causes_only_what_is_not_likely_is_not_named(
 ) -> None:
     nothing = found_with(noisy, [])
     tried = fitted(nothing, sunk)
-    page = told(nothing, prepared, Tried(tried, 1.0, 1.0))
+    page = reported(nothing, prepared, Tried(tried, 1.0, 1.0))
     (one,) = (o for o in page if "settlement" in o.words)
     assert one.remark.startswith("rejected: not likelier than no effect")
     sure = replace(tried, log_evidence=40.0)
-    (one,) = (o for o in told(nothing, prepared, Tried(sure, 1.0, 1.0)) if "settle" in o.words)
+    (one,) = (o for o in reported(nothing, prepared, Tried(sure, 1.0, 1.0)) if "settle" in o.words)
     assert one.remark.startswith("likelier than no effect (+40 log-odds), and rejected")

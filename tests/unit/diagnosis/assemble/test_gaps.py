@@ -48,9 +48,9 @@ def test_a_channel_without_a_reading_has_no_gap(arrays: DiagnosisArrays) -> None
 def test_groups_are_off_by_percent(arrays: DiagnosisArrays) -> None:
     readings = arrays.record.readings
     scaled = replace(arrays, before=readings / 1.25, after=readings / 0.9)
-    (told,) = groups(scaled, {"west": ["D1", "D2"]})
-    assert told.sensors == ["D1", "D2"]
-    assert told.before_percent == pytest.approx(25)
-    assert told.after_percent == pytest.approx(-10)
+    (group,) = groups(scaled, {"west": ["D1", "D2"]})
+    assert group.sensors == ["D1", "D2"]
+    assert group.before_percent == pytest.approx(25)
+    assert group.after_percent == pytest.approx(-10)
     silent = replace(arrays, before=np.zeros_like(readings))
     assert groups(silent, {"west": ["D1"]})[0].before_percent == 0.0

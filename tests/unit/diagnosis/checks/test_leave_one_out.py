@@ -27,15 +27,15 @@ def test_a_cause_and_its_rival_differ_most_where_only_one_of_them_acts(
     problem = with_settlement(noisy, sunk, "D1", "D2", "D3")
     bias = candidate(problem, "sensor_bias", sensor="D3")
     found = found_with(problem, [sunk], [bias])
-    told = contrast(found, 0, most=2)
-    assert told is not None
-    assert told.channels[0] == "D2"
-    assert told.lead == pytest.approx(found.alternatives[0][0].behind)
-    apart = found.fit.simulated - told.against.simulated
-    np.testing.assert_allclose(told.predicted[:, 0], apart[:, 1])
+    shown = contrast(found, 0, most=2)
+    assert shown is not None
+    assert shown.channels[0] == "D2"
+    assert shown.lead == pytest.approx(found.alternatives[0][0].behind)
+    apart = found.fit.simulated - shown.against.simulated
+    np.testing.assert_allclose(shown.predicted[:, 0], apart[:, 1])
     expected = np.sqrt((apart[:, 1] ** 2).mean()) / problem.noise.sigma[1]
-    assert told.size[0] == pytest.approx(expected)
-    assert told.size[0] > told.size[1]
+    assert shown.size[0] == pytest.approx(expected)
+    assert shown.size[0] > shown.size[1]
     assert contrast(found_with(problem, [sunk]), 0) is None
 
 
@@ -53,23 +53,23 @@ def test_a_cause_at_a_sensor_does_not_hang_on_others(noisy: Problem) -> None:
     bias = candidate(noisy, "sensor_bias", sensor="D1")
     problem = with_white_noise(noisy, noisy.residual(noisy.simulated) + change_of(noisy, bias, 0.1))
     found = found_with(problem, [bias])
-    told = hold(found, 0)
-    assert told is not None
-    assert told.channel != "D1"
-    assert told.left == pytest.approx(found.log_odds[0], rel=0.01)
+    held = hold(found, 0)
+    assert held is not None
+    assert held.channel != "D1"
+    assert held.left == pytest.approx(found.log_odds[0], rel=0.01)
 
 
 def test_every_group_is_predicted_without_it(noisy: Problem, sunk: Hypothesis) -> None:
     problem = with_settlement(noisy, sunk, "D1", "D2", "D3")
-    told = {one.group: one for one in unseen_groups(found_with(problem, [sunk]))}
-    assert sorted(name for one in told.values() for name in one.channels) == sorted(
+    groups = {one.group: one for one in unseen_groups(found_with(problem, [sunk]))}
+    assert sorted(name for one in groups.values() for name in one.channels) == sorted(
         problem.data.sensors
     )
     # No other channel shows the settlement: without the displacements it is not there.
-    moved = told["displacement"]
+    moved = groups["displacement"]
     assert moved.gap_with == pytest.approx(moved.gap_without, rel=0.01)
     assert moved.gap_without > 5
-    for group, one in told.items():
+    for group, one in groups.items():
         if group != "displacement":
             assert one.gap_with == pytest.approx(1.0, abs=0.3)
     assert unseen_groups(found_with(problem, [])) == []

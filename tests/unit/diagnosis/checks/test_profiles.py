@@ -10,7 +10,7 @@ from rga.diagnosis.checks.profiles import onset_profile, profiles
 from rga.diagnosis.search.linearised import Problem
 
 
-def test_a_straight_parameter_has_a_parabola(noisy: Problem) -> None:
+def test_a_linear_parameter_has_a_parabola(noisy: Problem) -> None:
     two = [candidate(noisy, "sensor_bias", sensor=name) for name in ("D1", "D2")]
     off = noisy.residual(noisy.simulated) + sum(change_of(noisy, one, 0.1) for one in two)
     found = found_with(with_white_noise(noisy, off), two)
@@ -58,9 +58,9 @@ def test_onsets_count_from_the_first_row(noisy: Problem) -> None:
     change[:50] = 0.0
     problem = with_white_noise(noisy, noisy.residual(noisy.simulated) + change)
     late = found_with(problem, [one.beginning(float(problem.data.time[50]))])
-    told = onset_profile(late, 0, float(problem.data.time[10]))
-    assert told is not None
-    assert told.chances.sum() == pytest.approx(1.0)
-    likeliest = told.times[np.argmax(told.chances)]
+    profile = onset_profile(late, 0, float(problem.data.time[10]))
+    assert profile is not None
+    assert profile.chances.sum() == pytest.approx(1.0)
+    likeliest = profile.times[np.argmax(profile.chances)]
     assert likeliest == problem.data.time[50] - problem.data.time[10]
     assert onset_profile(found_with(problem, [one]), 0, 0.0) is None

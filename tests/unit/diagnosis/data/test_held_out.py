@@ -76,7 +76,7 @@ def test_missing_readings_have_no_part() -> None:
     )
 
 
-def test_too_few_held_out_blocks_are_told() -> None:
+def test_too_few_held_out_blocks_are_reported() -> None:
     left = np.full((ROWS, SENSORS), np.nan)
     left[np.flatnonzero(HELD_OUT)[:3]] = 1.0
     with pytest.raises(InputError, match="fewer than two held-out blocks"):

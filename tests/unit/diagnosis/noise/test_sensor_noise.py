@@ -32,7 +32,7 @@ def heavy(seed: int, sensors: int = SENSORS) -> FloatArray:
 
 
 @pytest.mark.parametrize("memory", [False, True])
-def test_heavy_tails_are_told_from_gaussian_noise(memory: bool) -> None:
+def test_heavy_tails_are_distinguished_from_gaussian_noise(memory: bool) -> None:
     light = np.random.default_rng(0).standard_normal((ROWS, SENSORS))
     for values, heavy_tailed in ((heavy(0), True), (light, False)):
         noise, tails = noise_of(with_memory(values) if memory else values)

@@ -71,12 +71,12 @@ def test_a_context_that_stands_still_or_is_out_of_range_is_a_warning(
     still = record.contexts["temperature"].copy()
     still[-30:] = still[-30]
     contexts = {**record.contexts, "temperature": still}
-    told = " ".join(ready(model, replace(record, contexts=contexts)).warnings)
-    assert "temperature reads" in told
-    assert "in the last 30 of 100 rows" in told
+    warnings = " ".join(ready(model, replace(record, contexts=contexts)).warnings)
+    assert "temperature reads" in warnings
+    assert "in the last 30 of 100 rows" in warnings
     kelvin = {**record.contexts, "temperature": record.contexts["temperature"] + 273.15}
-    told = " ".join(ready(model, replace(record, contexts=kelvin)).warnings)
-    assert "temperature lies outside its range -20..40 in every row" in told
+    warnings = " ".join(ready(model, replace(record, contexts=kelvin)).warnings)
+    assert "temperature lies outside its range -20..40 in every row" in warnings
 
 
 def test_few_rows_are_a_warning_and_fewer_are_refused(model: Model, record: Record) -> None:

@@ -60,14 +60,14 @@ def test_a_channel_that_mostly_repeats_itself_is_stuck(share: float, found: bool
     column = SOUND.copy()
     still = int(share * ROWS)
     column[10 : 10 + still] = column[10]
-    told = of_stuck(column)
-    assert [one.mode for one in told] == ["stuck"] * found
+    faults = of_stuck(column)
+    assert [one.mode for one in faults] == ["stuck"] * found
     if found:
-        assert f"{(still - 1) / (ROWS - 1):.0%}" in told[0].why
+        assert f"{(still - 1) / (ROWS - 1):.0%}" in faults[0].why
 
 
 @pytest.mark.parametrize(("value", "mode"), [(0.0, "dead"), (1.3, "stuck")])
-def test_a_channel_that_falls_silent_is_told_from_its_row(value: float, mode: str) -> None:
+def test_a_channel_that_falls_silent_is_reported_from_its_row(value: float, mode: str) -> None:
     column = SOUND.copy()
     column[35:] = value
     found = of_silent(column)
@@ -112,8 +112,8 @@ def test_a_zero_that_is_lost_over_a_crossing(off: float, found: int) -> None:
     loaded = (np.arange(ROWS) >= 15) & (np.arange(ROWS) < 40)
     column = np.where(loaded, 5.0, 0.0) + 0.05 * DRAW.standard_normal(ROWS)
     column[40:] += off
-    told = of_lost(column, loaded)
-    assert len(told) == found
+    faults = of_lost(column, loaded)
+    assert len(faults) == found
     assert of_lost(column, np.zeros(ROWS, dtype=bool)) == []
 
 

@@ -43,7 +43,7 @@ def with_response(healthy: Problem, power: int) -> Problem:
     return settled(healthy.simulator, data)
 
 
-def test_a_square_is_told_whatever_its_pattern(healthy: Problem) -> None:
+def test_a_square_is_reported_whatever_its_pattern(healthy: Problem) -> None:
     (found,) = curves(with_response(healthy, 2))
     assert found.driver == "air"
     assert np.corrcoef(found.sizes, pattern(healthy))[0, 1] > 0.8

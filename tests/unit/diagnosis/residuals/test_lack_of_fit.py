@@ -24,7 +24,9 @@ def test_a_sound_record_has_no_misfit(posed: Problem) -> None:
 
 
 @pytest.mark.parametrize("factor", [1.4, 0.6])
-def test_a_channel_that_reads_otherwise_is_told_by_how_much(posed: Problem, factor: float) -> None:
+def test_a_channel_that_reads_otherwise_is_reported_by_how_much(
+    posed: Problem, factor: float
+) -> None:
     problem = reading(posed, ["S L0-L1"], factor)
     found = misfits(problem, posed.simulated, {})
     assert found[0].channels == ("S L0-L1",)
@@ -33,7 +35,7 @@ def test_a_channel_that_reads_otherwise_is_told_by_how_much(posed: Problem, fact
     assert len(found) == 1
 
 
-def test_a_group_is_told_where_each_of_its_channels_is_off_a_little(posed: Problem) -> None:
+def test_a_group_is_reported_where_each_of_its_channels_is_off_a_little(posed: Problem) -> None:
     problem = reading(posed, STRAINS["strains"], 1.12)
     groups = [one for one in misfits(problem, posed.simulated, STRAINS) if not one.alone]
     (group,) = groups

@@ -56,7 +56,7 @@ def test_a_square_is_what_no_line_has() -> None:
     assert squares({"switch": np.where(line > 0, 1.0, -1.0)}) == {}
 
 
-def test_courses_are_standard_units_of_what_varies(posed: Problem) -> None:
+def test_time_histories_are_standard_units_of_what_varies(posed: Problem) -> None:
     for column in linear_histories(posed).values():
         assert column.mean() == pytest.approx(0.0, abs=1e-9)
         assert column.std() == pytest.approx(1.0)

@@ -21,7 +21,7 @@ def by_hand(problem: Problem, slope: np.ndarray, log_prior: float) -> tuple[floa
     ("kind", "place"),
     [("sensor_bias", {"sensor": "D1"}), ("support_settlement", {"support": "east", "dof": "uz"})],
 )
-def test_a_straight_response_has_the_evidence_of_the_textbook(
+def test_a_linear_response_has_the_evidence_of_the_textbook(
     noisy: Problem, kind: str, place: dict[str, str]
 ) -> None:
     one = candidate(noisy, kind, **place)

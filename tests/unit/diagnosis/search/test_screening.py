@@ -37,7 +37,7 @@ def test_the_largest_is_d_prime_at_two_prior_deviations(nothing_off: Problem) ->
     assert found.largest == pytest.approx(expected, rel=1e-5)
 
 
-def test_what_begins_late_is_told_with_its_moment(noisy: Problem) -> None:
+def test_what_begins_late_is_reported_with_its_moment(noisy: Problem) -> None:
     one = candidate(noisy, "sensor_bias", sensor="D3")
     change = change_of(noisy, one, 0.1)
     change[:60] = 0.0

@@ -38,7 +38,7 @@ def watched(detector: Monitored, rows: Residuals, first: int, packet: int) -> Ou
     return None
 
 
-def test_a_step_is_told_with_its_sensor_and_onset() -> None:
+def test_a_step_is_reported_with_its_sensor_and_onset() -> None:
     rows = residuals(step=15.0)
     detector = Monitored(CHANNELS, Settings())
     detector.begin_again(0, rows[:100])
@@ -95,7 +95,7 @@ def test_few_rows_are_waited_for() -> None:
     assert watched(quiet, twin, 10, 10) is None
 
 
-def test_channels_without_readings_are_never_told() -> None:
+def test_channels_without_readings_are_never_reported() -> None:
     rows = np.full((80, 2), np.nan)
     detector = Monitored(("a", "b"), Settings())
     detector.begin_again(0, rows[:40])
@@ -124,7 +124,7 @@ def played(folder: Path, directory: Path) -> History:
 
 
 @pytest.mark.parametrize("sinks", [True, False])
-def test_the_twin_tells_since_when_a_bearing_is_lower(
+def test_the_twin_reports_since_when_a_bearing_is_lower(
     sinks: bool, small_stream: Callable[..., Path], tmp_path: Path
 ) -> None:
     """A bearing sinks at row 105; in the null twin nothing does."""

@@ -148,7 +148,7 @@ def test_bearing_sticks_then_slips() -> None:
     assert grip == pytest.approx([0.0, -5e-5 / f, -cap, -cap + 5e-5 / f, cap])
 
 
-def test_noise_has_the_sd_and_memory_asked_for() -> None:
+def test_noise_has_the_sd_and_memory_that_are_set() -> None:
     noise = autoregressive(np.random.default_rng(0), 40000, np.array([2.0]), np.array([0.6]))[:, 0]
     assert noise.std() == pytest.approx(2.0, rel=0.03)
     assert np.corrcoef(noise[1:], noise[:-1])[0, 1] == pytest.approx(0.6, abs=0.02)
