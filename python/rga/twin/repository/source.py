@@ -10,8 +10,8 @@ from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, sele
 
 from rga.arrays import FloatArray
 from rga.twin.repository import tables
+from rga.twin.repository.chunks import LONGEST, unpack
 from rga.twin.repository.entries import Rows
-from rga.twin.repository.packets import LONGEST, unpack
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Source:
         """Rows from `first` to before `end` as they were stored last, or first (`at_the_time`).
 
         Returns:
-            The rows int[n], an array float[n, width] for each name, and the packet of each row.
+            The rows int[n], an array float[n, width] for each name, and the chunk of each row.
         """
         c = table.c
         where = [c.first_row > first - LONGEST]
@@ -68,17 +68,15 @@ class Source:
             where.append(c.first_row < end)
         if version is not None:
             where.append(c.version == version)
-        packets = self.entries(table, where=where)
-        spans = [
-            np.arange(packet.first_row, packet.first_row + packet.length) for packet in packets
-        ]
+        chunks = self.entries(table, where=where)
+        spans = [np.arange(chunk.first_row, chunk.first_row + chunk.length) for chunk in chunks]
         stored = np.concatenate(spans) if spans else np.zeros(0, dtype=np.int64)
         rows, place = np.unique(stored if at_the_time else stored[::-1], return_index=True)
         inside = (rows >= first) & (rows < (np.inf if end is None else end))
         chosen = place[inside] if at_the_time else len(stored) - 1 - place[inside]
-        owner = np.repeat(np.arange(len(packets)), [packet.length for packet in packets])[chosen]
-        arrays = [joined(packets, name)[chosen] for name in names]
-        return rows[inside], arrays, [packets[index] for index in owner]
+        owner = np.repeat(np.arange(len(chunks)), [chunk.length for chunk in chunks])[chosen]
+        arrays = [joined(chunks, name)[chosen] for name in names]
+        return rows[inside], arrays, [chunks[index] for index in owner]
 
     def step_at(self, row: int) -> int:
         """Number of the last step about rows up to this one; 0 where there is none."""
@@ -88,17 +86,17 @@ class Source:
     def row_at(self, time: float) -> int:
         """Last measured row at or before a time [s]; -1 where there is none."""
         c = tables.measured.c
-        packet = self.last(
+        chunk = self.last(
             tables.measured,
             c.first_time
             == self._select(tables.measured, func.max(c.first_time))
             .where(c.first_time <= time)
             .scalar_subquery(),
         )
-        if packet is None:
+        if chunk is None:
             return -1
-        clock = unpack(packet.time, packet.length).ravel()
-        return int(packet.first_row + np.searchsorted(clock, time, side="right") - 1)
+        clock = unpack(chunk.time, chunk.length).ravel()
+        return int(chunk.first_row + np.searchsorted(clock, time, side="right") - 1)
 
     def _select(self, table: Table, *columns: ColumnElement[Any]) -> Select[Any]:
         statement = select(*columns).where(table.c.run_id == self.run_id)
@@ -108,8 +106,8 @@ class Source:
         return statement.where(step <= self.until)
 
 
-def joined(packets: Sequence[Row[Any]], name: str) -> FloatArray:
-    """The rows of packets one after another, float[n, width]; float[0, 0] without packets."""
-    if not packets:
+def joined(chunks: Sequence[Row[Any]], name: str) -> FloatArray:
+    """The rows of chunks one after another, float[n, width]; float[0, 0] without chunks."""
+    if not chunks:
         return np.zeros((0, 0))
-    return np.concatenate([unpack(getattr(packet, name), packet.length) for packet in packets])
+    return np.concatenate([unpack(getattr(chunk, name), chunk.length) for chunk in chunks])

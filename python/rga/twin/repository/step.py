@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from sqlalchemy import Connection, Table, insert, select, update
 
 from rga.twin.repository import tables
+from rga.twin.repository.chunks import chunks
 from rga.twin.repository.entries import Origin, Time
-from rga.twin.repository.packets import packets
 
 
 class Transaction:
@@ -64,9 +64,9 @@ class Transaction:
     ) -> None:
         """Rows of the record: float[n] [s], float[n, sensors], float[n, measured contexts]."""
         clock = np.asarray(time, dtype=float)
-        for start, packet in packets(time=clock, readings=readings, contexts=contexts):
+        for start, chunk in chunks(time=clock, readings=readings, contexts=contexts):
             first_time = float(clock[start])
-            self._store_rows(tables.measured, first_row + start, packet, first_time=first_time)
+            self._store_rows(tables.measured, first_row + start, chunk, first_time=first_time)
 
     def simulated(
         self,
@@ -83,21 +83,21 @@ class Transaction:
         """
         if falling is None:
             falling = np.zeros(len(np.asarray(contexts)))
-        for _, packet in packets(contexts=contexts, readings=readings, falling=falling):
-            packet |= {"version": version, "origin": origin, "row": row}
-            self._store(tables.simulated, row, **packet)
+        for _, chunk in chunks(contexts=contexts, readings=readings, falling=falling):
+            chunk |= {"version": version, "origin": origin, "row": row}
+            self._store(tables.simulated, row, **chunk)
 
     def inferred(
         self, first_row: int, contexts: ArrayLike, spread: ArrayLike, version: int
     ) -> None:
         """Posterior mean and standard deviation of the contexts of rows: float[n, k] each."""
-        for start, packet in packets(contexts=contexts, spread=spread):
-            self._store_rows(tables.inferred, first_row + start, packet, version=version)
+        for start, chunk in chunks(contexts=contexts, spread=spread):
+            self._store_rows(tables.inferred, first_row + start, chunk, version=version)
 
     def gaps(self, first_row: int, simulated: ArrayLike, gaps: ArrayLike, version: int) -> None:
         """What a version simulated for rows, and their gaps [unit squared]: float[n, sensors]."""
-        for start, packet in packets(simulated=simulated, gaps=gaps):
-            self._store_rows(tables.gap, first_row + start, packet, version=version)
+        for start, chunk in chunks(simulated=simulated, gaps=gaps):
+            self._store_rows(tables.gap, first_row + start, chunk, version=version)
 
     def version(
         self,
@@ -168,10 +168,10 @@ class Transaction:
         self._ended = True
 
     def _store_rows(
-        self, table: Table, first_row: int, packet: dict[str, Any], **columns: Any
+        self, table: Table, first_row: int, chunk: dict[str, Any], **columns: Any
     ) -> None:
-        last_row = first_row + packet["length"] - 1
-        self._store(table, last_row, first_row=first_row, **packet, **columns)
+        last_row = first_row + chunk["length"] - 1
+        self._store(table, last_row, first_row=first_row, **chunk, **columns)
 
     def _store(self, table: Table, about: int, **columns: Any) -> None:
         if self._ended:

@@ -99,11 +99,11 @@ class RunView:
     ) -> Inferred:
         """Inferred contexts of rows: what was stored last, or first (`at_the_time`)."""
         names = ("contexts", "spread")
-        rows, arrays, packets = self._source.rows(
+        rows, arrays, chunks = self._source.rows(
             tables.inferred, names, first, end, version, at_the_time
         )
         contexts, spread = arrays
-        return Inferred(rows, contexts, spread, _versions(packets))
+        return Inferred(rows, contexts, spread, _versions(chunks))
 
     def gaps(
         self,
@@ -114,28 +114,28 @@ class RunView:
     ) -> StoredGaps:
         """What was simulated for rows, and their gaps: as stored last, or first (`at_the_time`)."""
         names = ("simulated", "gaps")
-        rows, arrays, packets = self._source.rows(
+        rows, arrays, chunks = self._source.rows(
             tables.gap, names, first, end, version, at_the_time
         )
         simulated, gaps = arrays
-        return StoredGaps(rows, simulated, gaps, _versions(packets))
+        return StoredGaps(rows, simulated, gaps, _versions(chunks))
 
     def simulated(
         self, version: int | None = None, origin: Origin | None = None, within: Box | None = None
     ) -> StoredSimulations:
         """Simulations, of a version, of an origin, with contexts in a box (low, high) float[k]."""
-        packets = self._source.entries(tables.simulated, where=_conditions(version, origin))
-        contexts = joined(packets, "contexts")
+        chunks = self._source.entries(tables.simulated, where=_conditions(version, origin))
+        contexts = joined(chunks, "contexts")
         inside = _inside(contexts, within)
-        owner = np.repeat(np.arange(len(packets)), [packet.length for packet in packets])[inside]
-        owners = [packets[index] for index in owner]
+        owner = np.repeat(np.arange(len(chunks)), [chunk.length for chunk in chunks])[inside]
+        owners = [chunks[index] for index in owner]
         return StoredSimulations(
             _versions(owners),
-            np.array([packet.origin for packet in owners], dtype=np.str_),
-            np.array([packet.row for packet in owners], dtype=np.int64),
+            np.array([chunk.origin for chunk in owners], dtype=np.str_),
+            np.array([chunk.row for chunk in owners], dtype=np.int64),
             contexts[inside],
-            joined(packets, "readings")[inside],
-            joined(packets, "falling").reshape(-1)[inside] > 0,
+            joined(chunks, "readings")[inside],
+            joined(chunks, "falling").reshape(-1)[inside] > 0,
         )
 
     def count_simulated(
@@ -146,8 +146,8 @@ class RunView:
         if within is None:
             return int(self._source.scalar(tables.simulated, func.sum(c.length), *where) or 0)
         columns = c.length, c.contexts
-        packets = self._source.entries(tables.simulated, *columns, where=where)
-        return int(_inside(joined(packets, "contexts"), within).sum())
+        chunks = self._source.entries(tables.simulated, *columns, where=where)
+        return int(_inside(joined(chunks, "contexts"), within).sum())
 
     def versions(self) -> tuple[ModelVersion, ...]:
         """Model versions in the order in which they were stored."""
@@ -234,8 +234,8 @@ def _inside(contexts: FloatArray, within: Box | None) -> NDArray[np.bool_]:
     return np.asarray(((contexts >= low) & (contexts <= high)).all(axis=1))
 
 
-def _versions(packets: Sequence[Row[Any]]) -> NDArray[np.int64]:
-    return np.array([packet.version for packet in packets], dtype=np.int64)
+def _versions(chunks: Sequence[Row[Any]]) -> NDArray[np.int64]:
+    return np.array([chunk.version for chunk in chunks], dtype=np.int64)
 
 
 def _version(entry: Row[Any]) -> ModelVersion:

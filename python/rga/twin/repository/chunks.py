@@ -1,4 +1,4 @@
-"""Rows of arrays as packets of little-endian float64 bytes."""
+"""Rows of arrays as chunks of little-endian float64 bytes."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -12,16 +12,16 @@ from rga.arrays import FloatArray
 LONGEST = 1024
 
 
-def packets(**arrays: ArrayLike) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Cut float[n] or float[n, width] arrays into packets of LONGEST rows at most.
+def chunks(**arrays: ArrayLike) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Cut float[n] or float[n, width] arrays into chunks of LONGEST rows at most.
 
     Returns:
-        For each packet its first row and its columns: `length` in rows, and bytes for each array.
+        For each chunk its first row and its columns: `length` in rows, and bytes for each array.
 
     Raises:
         ValueError: the arrays differ in their number of rows, or have none or more than two axes.
 
-    >>> [(start, packet["length"]) for start, packet in packets(time=np.arange(1500.0))]
+    >>> [(start, chunk["length"]) for start, chunk in chunks(time=np.arange(1500.0))]
     [(0, 1024), (1024, 476)]
     """
     columns = {name: np.asarray(array, dtype="<f8") for name, array in arrays.items()}
@@ -38,10 +38,10 @@ def packets(**arrays: ArrayLike) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def unpack(packed: bytes, count: int) -> FloatArray:
-    """The array of a packet, float[count, width].
+    """The array of a chunk, float[count, width].
 
-    >>> [(_, packet)] = packets(readings=[[1.0, np.nan], [2.0, 3.0]])
-    >>> unpack(packet["readings"], packet["length"])
+    >>> [(_, chunk)] = chunks(readings=[[1.0, np.nan], [2.0, 3.0]])
+    >>> unpack(chunk["readings"], chunk["length"])
     array([[ 1., nan],
            [ 2.,  3.]])
     """
