@@ -9,6 +9,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+from findings_invariants import check_invariants
 from rga.cli import main
 from rga.diagnosis import diagnose
 from rga.findings import Findings
@@ -16,7 +17,6 @@ from rga.model import Model, load_model, read_effect, read_model
 from rga.records import Record, load_record
 from rga.simulation import Simulator
 from rga_bench.synthetic import Case
-from safe_words import check
 
 
 class Outcome(NamedTuple):
@@ -50,7 +50,7 @@ def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Find
         case.write(folder)
         model = load_model(folder / "model.json")
         findings = diagnose(model, load_record(folder / "record.csv", model))
-        check(findings)
+        check_invariants(findings)
         return findings
 
     return diagnosis

@@ -7,7 +7,7 @@ from typing import Protocol
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
 
 class Page(Protocol):
@@ -41,14 +41,14 @@ class MarkdownPage:
     title: str
     origin: str
     about: Sequence[str]
-    parts: Sequence[Sheet | str]
+    parts: Sequence[TextTable | str]
     figures: Mapping[str, str] = field(default_factory=dict)
 
     def text(self) -> str:
         """Markdown."""
         lines = [f"# {self.title}", "", self.origin, "", *(f"- {one}" for one in self.about), ""]
         for part in self.parts:
-            lines += part.markdown() if isinstance(part, Sheet) else [part, ""]
+            lines += part.markdown() if isinstance(part, TextTable) else [part, ""]
         for file, shown in self.figures.items():
             lines += [f"![{shown}]({file})", ""]
         return "\n".join(lines)
@@ -57,7 +57,7 @@ class MarkdownPage:
         """Lines, tables and paragraphs."""
         yield from map(Text, self.about)
         for part in self.parts:
-            yield part.terminal() if isinstance(part, Sheet) else Text(f"{part}\n")
+            yield part.terminal() if isinstance(part, TextTable) else Text(f"{part}\n")
 
 
 @dataclass(frozen=True)

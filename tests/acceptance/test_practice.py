@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import rga
-from safe_words import check
+from findings_invariants import check_invariants
 
 CASES = Path(__file__).parents[3] / "shared" / "measured" / "practice"
 pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="the practice cases are not here")
@@ -19,7 +19,7 @@ def diagnosed(case: str) -> tuple[dict[str, Any], rga.Findings]:
     record = rga.load_record(folder / "record.csv", model)
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
     findings = rga.diagnose(model, record)
-    check(findings)
+    check_invariants(findings)
     return truth, findings
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import rga
-from safe_words import check
+from findings_invariants import check_invariants
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rdso45m"
 RECORD = Path(__file__).parents[3] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
@@ -27,7 +27,7 @@ def findings() -> rga.Findings:
     """The diagnosis of the record as it is."""
     model = rga.load_model(EXAMPLE / "model.json")
     findings = rga.diagnose(model, rga.load_record(RECORD, model))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 
@@ -52,7 +52,7 @@ def test_a_swing_under_the_axles_moves_no_cause(findings: rga.Findings) -> None:
     swing = np.sin(14 * np.pi * passing + 0.02 * own) * np.exp(-(((passing - 0.5) / 0.2) ** 2))
     readings[:, record.sensors.index("S33")] = 1750 + 15750 * swing
     swinging = rga.diagnose(model, replace(record, readings=readings))
-    check(swinging)
+    check_invariants(swinging)
     assert gist(swinging) == gist(findings)
     assert swinging.gap.held_out.after < 0.3 * swinging.gap.held_out.before
 

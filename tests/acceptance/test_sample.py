@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import rga
+from findings_invariants import check_invariants
 from rga.model import model_content
 from rga_bench.synthetic import Case, Conditions, draw_case
-from safe_words import check
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "examples" / "footbridge"
@@ -30,7 +30,7 @@ def drawn(kind: str) -> Case:
 def findings_of(folder: Path) -> rga.Findings:
     model = rga.load_model(folder / "model.json")
     findings = rga.diagnose(model, rga.load_record(folder / "record.csv", model))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from findings_invariants import check_invariants
 from rga import Findings, Simulator, diagnose
 from rga.model import read_effect
-from safe_words import check
 from site_truss import BARS, MEMBERS, ROWS, STEP, Array, Logged, Site, logged, model
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -30,7 +30,7 @@ seeds = pytest.mark.parametrize("seed", [1, 2])
 
 def found(log: Logged, *gauges: str, zero: Zero = None) -> Findings:
     findings = diagnose(model(*gauges), log.record(*gauges, zero=zero))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 

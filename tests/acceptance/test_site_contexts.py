@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from findings_invariants import check_invariants
 from rga import Findings, Model, diagnose
 from rga.model import read_model
-from safe_words import check
 from site_truss import ROWS, Logged, Site, content, logged, model
 
 #: standard deviation of what measures the loads [kN]: a deflection errs by more than by its noise
@@ -36,7 +36,7 @@ def coarse(seed: int) -> Logged:
 
 def found(structure: Model, log: Logged) -> Findings:
     findings = diagnose(structure, log.record())
-    check(findings)
+    check_invariants(findings)
     return findings
 
 
@@ -95,7 +95,7 @@ def zeroed(log: Logged) -> Findings:
     own = {name: column - np.nanmean(column[:12]) for name, column in log.readings.items()}
     span = float(log.time[0]), float(log.time[11])
     findings = diagnose(model(), replace(replace(log, readings=own).record(), zero=span))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 

@@ -15,9 +15,9 @@ from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
 from rga_bench.contexts.methods.iterated_kalman import iterated_kalman
 from rga_bench.contexts.methods.joint import joint_posterior
 from rga_bench.contexts.methods.low_rank import low_rank_discrepancy
-from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.methods.neural_posterior import neural_posterior
 from rga_bench.contexts.methods.oracle import oracle_posterior
+from rga_bench.contexts.methods.posterior_modes import maximum_posterior
 from rga_bench.contexts.methods.prior import prior_mean
 from rga_bench.contexts.methods.refined_network import refined_network
 from rga_bench.contexts.methods.unscented_kalman import unscented_kalman

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from rga.arrays import FloatArray
 from rga_bench.contexts.data import CalibrationData, DriftStream, stream_of
-from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.evaluation import Evaluation
 from rga_bench.contexts.levels import (
     LEVELS,
     CalibratedMethod,
@@ -49,7 +49,7 @@ class StreamResult:
 
 
 def results_of_streams(
-    task: ContextsTask, known: CalibrationData, calibrated: Calibrated, usual: Examination
+    task: ContextsTask, known: CalibrationData, calibrated: Calibrated, usual: Evaluation
 ) -> list[StreamResult]:
     """Every drift of a task at every level.
 
@@ -67,9 +67,9 @@ def results_of_streams(
     for drift in task.drifts:
         stream = stream_of(task, drift)
         rows = stream.rows.readings
-        examination = Examination(stream.drifted, known.problem.ranges, sizes.settle)
+        evaluation = Evaluation(stream.drifted, known.problem.ranges, sizes.settle)
         first = CalibratedMethod(calibrated, ordinary, residuals(calibrated, rows), ordinary)
-        scores = usual.score(calibrated), examination.score(calibrated)
+        scores = usual.score(calibrated), evaluation.score(calibrated)
         played.append(StreamResult(drift, LEVELS[0], *scores))
         for level in LEVELS[1:]:
             stores = level == LEVELS[-1] and sizes.repository == "measured"
@@ -78,7 +78,7 @@ def results_of_streams(
                 learned = with_novel(METHODS[task.row], known, rows)
             run = run_stream(first, sizes, learned, stores=stores)
             states = run.stored if stores else [run.state]
-            scores = usual.score_of_likeliest(states), examination.score_of_likeliest(states)
+            scores = usual.score_of_likeliest(states), evaluation.score_of_likeliest(states)
             played.append(_played(drift, level, scores, stream, run))
     return played
 

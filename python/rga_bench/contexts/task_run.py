@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 from rga.inference.networks.determinism import one_thread
 from rga_bench.contexts.data import CalibrationData, calibration_of, stream_of
 from rga_bench.contexts.drift import MeasuredRows
-from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.evaluation import Evaluation
 from rga_bench.contexts.floors import FLOORS, floor
 from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import METHODS
@@ -54,7 +54,7 @@ def run_task(task: ContextsTask) -> TaskOutcome:
         begun = time.perf_counter()
         calibrated = METHODS[task.row].calibrated(known)
         learned = time.perf_counter()
-        usual = Examination(known.test, known.problem.ranges, task.sizes.settle)
+        usual = Evaluation(known.test, known.problem.ranges, task.sizes.settle)
         score = usual.score(calibrated)
         inferred = time.perf_counter()
         played = results_of_streams(task, known, calibrated, usual) if drifts else []

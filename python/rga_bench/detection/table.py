@@ -9,7 +9,7 @@ from rga_bench.detection.result import Bounds, DetectionResult, JudgedFigure, Se
 from rga_bench.detection.setting import BASELINE
 from rga_bench.measurement import HEADINGS, digits
 from rga_bench.page import MarkdownPage
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
 NOTES = """\
 Rows between alarms: watched rows over alarms, without a change. Quiet: share of streams without an
@@ -32,7 +32,7 @@ def page(result: DetectionResult, command: str) -> MarkdownPage:
         "How soon a change is seen, at which rate of false alarms",
         f"`{command}` on {result.day}.",
         _about(result),
-        [*_sheets(result), NOTES],
+        [*_tables(result), NOTES],
         {"delays.png": "delays", "limits.png": "limits"},
     )
 
@@ -51,7 +51,7 @@ def _about(result: DetectionResult) -> list[str]:
     ]
 
 
-def _sheets(result: DetectionResult) -> list[Sheet]:
+def _tables(result: DetectionResult) -> list[TextTable]:
     """All tables."""
     found = [
         _alarms(result),
@@ -63,11 +63,11 @@ def _sheets(result: DetectionResult) -> list[Sheet]:
     if result.judged:
         found.append(_judged(result.judged))
     for case, figures in groupby(result.throughput, lambda one: one.case):
-        found.append(Sheet(case, HEADINGS, [one.cells() for one in figures]))
+        found.append(TextTable(case, HEADINGS, [one.cells() for one in figures]))
     return found
 
 
-def _alarms(result: DetectionResult) -> Sheet:
+def _alarms(result: DetectionResult) -> TextTable:
     headings = ["detector", "limit", "noise", "baseline", "rows between alarms", "quiet"]
     rows = [
         [
@@ -81,10 +81,10 @@ def _alarms(result: DetectionResult) -> Sheet:
         for one in result.alarms
     ]
     wanted = digits(result.setting.arl0)
-    return Sheet(f"False alarms; there should be {wanted} rows between them", headings, rows)
+    return TextTable(f"False alarms; there should be {wanted} rows between them", headings, rows)
 
 
-def _delays(result: DetectionResult, title: str, seen: Sequence[Seen]) -> Sheet:
+def _delays(result: DetectionResult, title: str, seen: Sequence[Seen]) -> TextTable:
     detectors = list(dict.fromkeys(one.detector for one in seen))
     detectors.sort(key=OPTIMUM.__eq__)  # the optimum last
     cells = {(one.fault, one.count, one.detector): _delay(one.delay) for one in seen}
@@ -96,10 +96,10 @@ def _delays(result: DetectionResult, title: str, seen: Sequence[Seen]) -> Sheet:
     left_out = {one.detector: one.delay.left_out for one in seen}
     runs = {one.detector: one.delay.left_out + one.delay.runs for one in seen}
     rows.append(["left out", "", *(f"{left_out[one]} of {runs[one]}" for one in detectors)])
-    return Sheet(title, ["change", "sensors", *detectors], rows)
+    return TextTable(title, ["change", "sensors", *detectors], rows)
 
 
-def _judged(judged: Sequence[JudgedFigure]) -> Sheet:
+def _judged(judged: Sequence[JudgedFigure]) -> TextTable:
     rows = [
         [
             one.name,
@@ -111,7 +111,7 @@ def _judged(judged: Sequence[JudgedFigure]) -> Sheet:
         ]
         for one in judged
     ]
-    return Sheet("Targets", ["figure", "found", "90 %", "least", "aim", ""], rows)
+    return TextTable("Targets", ["figure", "found", "90 %", "least", "aim", ""], rows)
 
 
 def _arl0(one: Arl0) -> str:

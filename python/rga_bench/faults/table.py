@@ -10,7 +10,7 @@ from rga_bench.faults.library import FAULTS
 from rga_bench.faults.result import FaultsResult
 from rga_bench.faults.trial import LEFT_OUT
 from rga_bench.page import MarkdownPage
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
 HEADINGS = [
     "",
@@ -52,7 +52,7 @@ def page(result: FaultsResult, command: str) -> MarkdownPage:
         "What broken channels do to a diagnosis",
         f"`{command}`",
         _about(result),
-        [NOTES, *_sheets(result), failures],
+        [NOTES, *_tables(result), failures],
     )
 
 
@@ -64,7 +64,7 @@ def _about(result: FaultsResult) -> list[str]:
     return [f"{len(several)} diagnoses of {records} records", ", ".join(named)]
 
 
-def _sheets(result: FaultsResult) -> list[Sheet]:
+def _tables(result: FaultsResult) -> list[TextTable]:
     several = comparisons(result.outcomes)
     single = [one for one in several if one.outcome.way in WAYS["one channel"]]
 
@@ -79,9 +79,9 @@ def _sheets(result: FaultsResult) -> list[Sheet]:
 
     sources = dict.fromkeys(_source(one) for one in single)
     return [
-        _sheet("By the channels that break", WAYS, of_ways),
-        _sheet("One channel, by its fault", FAULTS, of_fault),
-        _sheet("One channel, by its record", sources, of_source),
+        _table("By the channels that break", WAYS, of_ways),
+        _table("One channel, by its fault", FAULTS, of_fault),
+        _table("One channel, by its record", sources, of_source),
     ]
 
 
@@ -89,8 +89,10 @@ def _source(one: Comparison) -> str:
     return one.outcome.base.split("-")[0].split("/")[0]
 
 
-def _sheet(title: str, names: Iterable[str], chosen: Callable[[str], list[Comparison]]) -> Sheet:
-    return Sheet(title, HEADINGS, [[name, *_cells(chosen(name))] for name in names])
+def _table(
+    title: str, names: Iterable[str], chosen: Callable[[str], list[Comparison]]
+) -> TextTable:
+    return TextTable(title, HEADINGS, [[name, *_cells(chosen(name))] for name in names])
 
 
 def _cells(several: Sequence[Comparison]) -> list[str]:

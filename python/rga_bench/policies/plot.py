@@ -5,7 +5,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure as Canvas
 
-from rga_bench.policies.means import means
+from rga_bench.policies.mean_results import means
 from rga_bench.policies.twin_run import PolicyResult
 
 MARKS = {"event": "o", "time": "s", "hybrid": "D", "adaptive": "^"}

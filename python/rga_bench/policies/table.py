@@ -5,9 +5,9 @@ from itertools import groupby
 
 from rga_bench.machine import machine, versions
 from rga_bench.page import MarkdownPage
-from rga_bench.policies.means import Means, means
+from rga_bench.policies.mean_results import Means, means
 from rga_bench.policies.twin_run import PolicyResult
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
 #: measure and format of each column
 COLUMNS = {
@@ -39,7 +39,7 @@ def page(played: Sequence[PolicyResult], command: str) -> MarkdownPage:
         "What each policy of synchronisation costs",
         f"`{command}`",
         _about(played),
-        [_sheet(played), NOTES],
+        [_table(played), NOTES],
         {"policies.png": "cost against gap"},
     )
 
@@ -56,13 +56,13 @@ def _about(played: Sequence[PolicyResult]) -> list[str]:
     ]
 
 
-def _sheet(played: Sequence[PolicyResult]) -> Sheet:
+def _table(played: Sequence[PolicyResult]) -> TextTable:
     """Policies under each sort of stream."""
     rows = []
     for stream, places in groupby(means(played).items(), lambda one: one[0][0]):
         rows.append([stream])
         rows += [[policy, *_cells(measured)] for (_, policy), measured in places]
-    return Sheet("", ["policy", *COLUMNS], rows, numbers=True)
+    return TextTable("", ["policy", *COLUMNS], rows, numbers=True)
 
 
 def _cells(measured: Means) -> list[str]:

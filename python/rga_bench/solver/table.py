@@ -4,8 +4,8 @@ from itertools import groupby
 
 from rga_bench.measurement import HEADINGS
 from rga_bench.page import MarkdownPage
-from rga_bench.sheet import Sheet
 from rga_bench.solver.result import SolverResult
+from rga_bench.text_table import TextTable
 
 NOTES = """\
 Times as good: of rates, ours over theirs; of times, theirs over ours.
@@ -26,17 +26,17 @@ def page(result: SolverResult, command: str) -> MarkdownPage:
         f"`{command}` on {result.day}, on one core\n"
         "unless it says otherwise, after all solvers agreed.",
         _about(result),
-        [_sheet(result), NOTES],
+        [_table(result), NOTES],
         {"solver.png": "times as good as the peers"},
     )
 
 
-def _sheet(result: SolverResult) -> Sheet:
+def _table(result: SolverResult) -> TextTable:
     rows = []
     for case, figures in groupby(result.figures, lambda one: one.case):
         rows.append([case])
         rows += [figure.cells() for figure in figures]
-    return Sheet("", HEADINGS, rows)
+    return TextTable("", HEADINGS, rows)
 
 
 def _about(result: SolverResult) -> list[str]:

@@ -8,12 +8,12 @@ import pytest
 
 from rga.inference.rows import Rows
 from rga_bench.contexts.data import CalibrationData, calibration_of
-from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.evaluation import Evaluation
 from rga_bench.contexts.method import Calibrated
 from rga_bench.contexts.methods.joint import joint_posterior
-from rga_bench.contexts.methods.modes import maximum_posterior
 from rga_bench.contexts.methods.networks import NETWORKS, learn
 from rga_bench.contexts.methods.oracle import oracle_posterior
+from rga_bench.contexts.methods.posterior_modes import maximum_posterior
 from rga_bench.contexts.methods.refined_network import refined_network
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import ContextsTask, Sizes
@@ -28,7 +28,7 @@ def known(gap: str) -> CalibrationData:
 
 
 def scored(calibrated: Calibrated, data: CalibrationData) -> Score:
-    return Examination(data.test, data.problem.ranges, 30).score(calibrated)
+    return Evaluation(data.test, data.problem.ranges, 30).score(calibrated)
 
 
 @pytest.fixture(scope="module")

@@ -11,10 +11,10 @@ import pytest
 from context_tasks import SIZES, Nearest, nearest, task
 from rga.arrays import FloatArray
 from rga_bench.contexts.data import DriftStream, calibration_of, stream_of
-from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.evaluation import Evaluation
 from rga_bench.contexts.levels import CalibratedMethod, Learned, most_likely, run_stream
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
-from rga_bench.contexts.methods.modes import maximum_posterior
+from rga_bench.contexts.methods.posterior_modes import maximum_posterior
 from rga_bench.contexts.novel import with_novel
 from rga_bench.contexts.rows import Row
 from rga_bench.contexts.setting import ContextsTask, Sizes
@@ -141,7 +141,7 @@ def test_what_is_new_is_not_taken_for_what_is_stored() -> None:
 def test_a_method_lives_through_drifts(few_methods: dict[str, Row]) -> None:
     known = calibration_of(task())
     method = nearest(known.problem)
-    usual = Examination(known.test, known.problem.ranges, SIZES.settle)
+    usual = Evaluation(known.test, known.problem.ranges, SIZES.settle)
     played = results_of_streams(task(drifts=("none", "sensor", "recurring")), known, method, usual)
     by_place = {(one.drift, one.level): one for one in played}
     assert len(by_place) == len(played) == 9
@@ -204,7 +204,7 @@ def levels() -> list[StreamResult]:
     """Results at every level, where offsets are learned."""
     known = calibration_of(RIGHT)
     method = Levelled(modes(), np.zeros(84))
-    usual = Examination(known.test, known.problem.ranges, FEW.settle)
+    usual = Evaluation(known.test, known.problem.ranges, FEW.settle)
     return results_of_streams(RIGHT, known, method, usual)
 
 
@@ -291,10 +291,10 @@ def test_each_block_is_inferred_by_the_state_after_which_it_is_likeliest() -> No
     one, other = nearest(known.problem), Nearest(known.problem, np.full(84, 5.0))
     first = CalibratedMethod.of(one, known.problem.real, known.problem.real)
     second = CalibratedMethod.of(other, known.problem.real + 5.0, known.problem.real)
-    examination = Examination(shifted, known.problem.ranges, 20)
-    both, alone = examination.score_of_likeliest([first, second]), examination.score(one)
-    clean = Examination(known.test, known.problem.ranges, 20).score(one)
+    evaluation = Evaluation(shifted, known.problem.ranges, 20)
+    both, alone = evaluation.score_of_likeliest([first, second]), evaluation.score(one)
+    clean = Evaluation(known.test, known.problem.ranges, 20).score(one)
     assert both.error == pytest.approx(clean.error)
     assert both.rg == pytest.approx(clean.rg)
     assert alone.rg > both.rg
-    assert examination.score_of_likeliest([first]) == alone
+    assert evaluation.score_of_likeliest([first]) == alone

@@ -15,7 +15,7 @@ from rga_bench.contexts.methods.discrepancy import smooth_discrepancy
 from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
 from rga_bench.contexts.methods.iterated_kalman import iterated_kalman
 from rga_bench.contexts.methods.low_rank import low_rank_discrepancy
-from rga_bench.contexts.methods.modes import maximum_posterior
+from rga_bench.contexts.methods.posterior_modes import maximum_posterior
 from rga_bench.contexts.methods.unscented_kalman import unscented_kalman
 from rga_bench.contexts.methods.updated_model import updated_model
 

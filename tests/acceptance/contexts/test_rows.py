@@ -8,7 +8,7 @@ import pytest
 from context_methods import NEEDS, UNLABELLED
 from rga.inference.rows import Rows
 from rga_bench.contexts.data import CalibrationData, calibration_of
-from rga_bench.contexts.examination import Examination
+from rga_bench.contexts.evaluation import Evaluation
 from rga_bench.contexts.methods import networks
 from rga_bench.contexts.methods.networks import NETWORKS
 from rga_bench.contexts.methods.refined_network import refined_network
@@ -49,7 +49,7 @@ def few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_row_learns_and_looks_at_no_label_but_its_own(name: str, easy: CalibrationData) -> None:
     row, tests = METHODS[name], easy.problem.load_tests
     calibrated = row.calibrated(easy)
-    found = Examination(easy.test, easy.problem.ranges, 30).score(calibrated)
+    found = Evaluation(easy.test, easy.problem.ranges, 30).score(calibrated)
     assert found.error is not None
     assert found.error < 0.3
 
@@ -60,6 +60,6 @@ def test_a_row_learns_and_looks_at_no_label_but_its_own(name: str, easy: Calibra
     if not own.all():
         problem = replace(easy.problem, load_tests=Rows(wrong, tests.readings))
         calibrated = row.calibrated(replace(easy, problem=problem, test=test))
-    again = Examination(test, easy.problem.ranges, 30).score(calibrated)
+    again = Evaluation(test, easy.problem.ranges, 30).score(calibrated)
     assert again.rg == found.rg
     assert again.error != found.error

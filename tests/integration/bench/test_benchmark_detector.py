@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from chance_detector import coin
 from rga_bench.detection.detectors import MONITOR, WINDOW_RULE
 from rga_bench.detection.experiment import DetectionExperiment
 from rga_bench.detection.faults import Step
@@ -21,7 +22,6 @@ from rga_bench.detection.setting import DetectionSetting
 from rga_bench.detection.table import page
 from rga_bench.detection.targets import targets
 from rga_bench.experiment import Execution
-from watched_coin import coin
 
 #: as little as can be measured
 LITTLE = DetectionSetting(

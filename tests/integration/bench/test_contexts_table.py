@@ -17,7 +17,7 @@ from rga_bench.contexts.rows import ORACLE, PAPERS, Row
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.setting import DRIFTING, ContextsSetting, ContextsTask
 from rga_bench.contexts.stream_results import StreamResult
-from rga_bench.contexts.tables.sheets_levels import order
+from rga_bench.contexts.tables.level_tables import order
 from rga_bench.contexts.tables.table import page
 from rga_bench.contexts.tables.targets import targets
 from rga_bench.contexts.task_run import TaskOutcome, run_task

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from chance_detector import Rows, coin, courses
 from rga_bench.detection.charts import Method
 from rga_bench.detection.faults import Drift, Spread, Step, StreamChange
 from rga_bench.detection.rates import Delay, arl0, delay, limit_for, share
 from rga_bench.detection.watch import Course
-from watched_coin import Rows, coin, courses
 
 
 @pytest.mark.parametrize("probability", [0.3, 0.01])

@@ -5,13 +5,13 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
+from chance_detector import Coin, Rows, courses
 from rga_bench.detection.charts import Chart, Method, detecting
 from rga_bench.detection.detectors import Mewma
 from rga_bench.detection.faults import Drift, Spikes, Spread, Step, StreamChange, Stuck
 from rga_bench.detection.noise import WHITE, WORLDS, NoiseSource, StationaryNoise
 from rga_bench.detection.streams import ResidualStream
 from rga_bench.detection.watch import StreamWorld, WatchedCase, watched
-from watched_coin import Coin, Rows, courses
 
 SEED = np.random.SeedSequence(1)
 

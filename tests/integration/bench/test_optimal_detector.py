@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from chance_detector import Rows
 from rga.detection import GaussianWindow
 from rga_bench.detection.detectors import WindowChart, mewma
 from rga_bench.detection.faults import Drift, Spread, Step, StreamChange, Stuck
@@ -19,7 +20,6 @@ from rga_bench.detection.optimum import (
 )
 from rga_bench.detection.rates import arl0, delay
 from rga_bench.detection.watch import StreamWorld, WatchedCase, watched
-from watched_coin import Rows
 
 SEED = np.random.SeedSequence(1)
 

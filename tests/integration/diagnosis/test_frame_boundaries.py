@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import rga
+from findings_invariants import check_invariants
 from rga.diagnosis.search.hypothesis import hypotheses
 from rga.findings.phrases import effect_words
 from rga.model import Effect, Model, read_effect, read_model
@@ -29,7 +30,6 @@ from rga_bench.synthetic.physics.frame import (
     Stiffness,
     deformation_stiffness,
 )
-from safe_words import check
 
 E, NU = 2.1e11, 0.3
 AREA, BENDS, TWISTS = 78e-4, 57e-6, 6e-7
@@ -238,7 +238,7 @@ def test_what_is_hidden_is_found(hidden: str) -> None:
     truth, fixed, place, parameter, value = HIDDEN[hidden]
     model = portal(fixed)
     findings = rga.diagnose(model, truth.record(model))
-    check(findings)
+    check_invariants(findings)
     assert findings.verdict == "named"
     (cause,) = findings.causes
     assert {name: cause.effect[name] for name in place} == place
@@ -262,7 +262,7 @@ def test_its_report_is_written(hidden: str, tmp_path: Path) -> None:
 def test_a_frame_as_modelled_is_left_alone(fixed: tuple[str, ...]) -> None:
     model = portal(fixed)
     findings = rga.diagnose(model, Truth(base=np.inf if "ry" in fixed else 1.0).record(model))
-    check(findings)
+    check_invariants(findings)
     assert findings.causes == []
     assert findings.verdict == "nothing_wrong"
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from findings_invariants import check_invariants
 from rga import Findings, Simulator, diagnose, load_model, load_record
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
@@ -20,7 +21,6 @@ from rga.model import read_effect, read_model
 from rga.records import Record, RecordMapping
 from rga.records.zero import rows_within
 from rga_bench.synthetic import Case, Conditions, draw_case
-from safe_words import check
 
 ROWS, LATE = 120, 72
 #: first row of the zero and the row after its last: at the beginning, of two rows, in mid-record
@@ -79,7 +79,7 @@ def zeroed(tmp_path_factory: pytest.TempPathFactory) -> Zeroed:
 
     def diagnosis(case: Case, span: Span | None) -> Findings:
         findings = diagnose(*record_of(case, span, tmp_path_factory.mktemp("case")))
-        check(findings)
+        check_invariants(findings)
         return findings
 
     return diagnosis

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from findings_invariants import check_invariants
 from rga import diagnose, load_findings, plan
 from rga.diagnosis.assemble.causes import causes
 from rga.diagnosis.assemble.effects import effects_of
@@ -28,7 +29,6 @@ from rga.model.schema import Sensor
 from rga.planning.rivals import NEAREST, rival_pairs
 from rga.records import Record
 from rga.twin.simulation_model import mounted
-from safe_words import check
 
 Recorded = Callable[..., Record]
 RIVALS = Criteria().rivals
@@ -59,7 +59,7 @@ def welded(measured_bridge: dict[str, Any]) -> Model:
 def off_fibre(welded: Model, measured_record: Recorded) -> Findings:
     """A gauge that is off its fibre."""
     findings = diagnose(welded, measured_record(welded, OFF_FIBRE))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 
@@ -82,7 +82,7 @@ def test_gauges_at_their_fibres_are_left_alone(
 ) -> None:
     """The null twin of it, its report written too."""
     findings = diagnose(welded, measured_record(welded))
-    check(findings)
+    check_invariants(findings)
     assert findings.verdict == "nothing_wrong"
     assert findings.causes == []
     html = findings.write(tmp_path).read_text(encoding="utf-8")
@@ -138,7 +138,7 @@ def open_kind(measured_bridge: dict[str, Any], measured_record: Recorded) -> Fin
     model = read_model(measured_bridge | one, "one sensor")
     soft = {"kind": "elastic_modulus", "material": "steel", "factor": 0.85}
     findings = diagnose(model, measured_record(model, soft))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 

@@ -20,7 +20,7 @@ from rga.twin.runner import taken_up
 from rga.twin.settings import Pace
 from rga.twin.sync.policy import Policy
 from rga_bench.policies.experiment import PoliciesExperiment
-from rga_bench.policies.means import means
+from rga_bench.policies.mean_results import means
 from rga_bench.policies.setting import STREAMS, PolicySetting
 from rga_bench.policies.twin_run import PolicyResult, run_twin
 

@@ -5,9 +5,9 @@ import io
 from rich.console import Console
 
 from rga_bench.page import MarkdownPage, Page, PlainPage
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
-SHEET = Sheet(
+TABLE = TextTable(
     "Costs",
     ["policy", "RG [mm²]"],
     [["null twin"], ["event", "0.090"], ["time, 40 rows", "1.5"]],
@@ -30,7 +30,7 @@ def test_a_page_has_its_parts_in_order() -> None:
         "What it costs",
         "`rga benchmark costs`",
         ["one core"],
-        ["What is meant.", SHEET],
+        ["What is meant.", TABLE],
         {"costs.png": "costs"},
     )
     assert page.text() == (
@@ -48,7 +48,7 @@ def test_a_page_has_its_parts_in_order() -> None:
 
 
 def test_a_table_without_a_title_has_no_heading() -> None:
-    assert Sheet("", ["a"], [["1"]]).markdown()[0] == "| a |"
+    assert TextTable("", ["a"], [["1"]]).markdown()[0] == "| a |"
 
 
 def test_plain_tables_are_not_broken() -> None:

@@ -10,7 +10,7 @@ from rga.arrays import FloatArray
 from rga.model import Model
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
-from rga_bench.contexts.methods.modes import Modes, maximum_posterior
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes, maximum_posterior
 
 #: amplitude [share of what a sensor varies by] and length [share of the structure] to start from,
 #: and the rounds in which modes and both of them follow each other
@@ -19,7 +19,7 @@ AMPLITUDE, LENGTH, ROUNDS = 0.03, 0.2, 2
 BOUNDS = ((np.log(1e-4), np.log(1.0)), (np.log(0.02), np.log(2.0)))
 
 
-def smooth_discrepancy(problem: LearningProblem) -> Modes:
+def smooth_discrepancy(problem: LearningProblem) -> PosteriorModes:
     """The form of Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001): y = S(c) + d + noise.
 
     The error d is a Gaussian process over places and directions of the sensors. Its amplitude and

@@ -5,7 +5,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.inference.map.standard_units import EDGE, standard
 from rga_bench.contexts.method import LearningProblem
-from rga_bench.contexts.methods.modes import Modes
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes
 from rga_bench.contexts.methods.stream import Filtered, filtered
 
 #: members, and the parts in which a row is assimilated
@@ -22,7 +22,7 @@ def ensemble_kalman(problem: LearningProblem) -> Filtered:
 
 
 def _filter(
-    modes: Modes, readings: FloatArray, memory: FloatArray
+    modes: PosteriorModes, readings: FloatArray, memory: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     middle, scale = standard(modes.twin.ranges)
     noise, size = np.diag(modes.covariance), len(memory)

@@ -6,7 +6,7 @@ from rga.arrays import FloatArray
 from rga.inference.map.standard_units import standard
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
-from rga_bench.contexts.methods.modes import Modes
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes
 from rga_bench.contexts.methods.stream import Filtered, filtered, recursion
 
 #: linearisations of every row
@@ -22,7 +22,7 @@ def iterated_kalman(problem: LearningProblem) -> Filtered:
 
 
 def _filter(
-    modes: Modes, readings: FloatArray, memory: FloatArray
+    modes: PosteriorModes, readings: FloatArray, memory: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     twin, precision = modes.twin, 1.0 / np.diag(modes.covariance)
     middle, scale = standard(twin.ranges)

@@ -11,11 +11,11 @@ from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga.model import Model
 from rga_bench.contexts.method import Calibrated, LearningProblem
-from rga_bench.contexts.methods.modes import Modes
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes
 
 
 @dataclass(frozen=True)
-class JointModes(Modes):
+class JointModes(PosteriorModes):
     """Modes under a twin that has learned its unknowns.
 
     Attributes:

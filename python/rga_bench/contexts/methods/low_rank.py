@@ -7,13 +7,13 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.methods.linearised import Linearised
-from rga_bench.contexts.methods.modes import Modes, maximum_posterior
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes, maximum_posterior
 
 #: numbers of shapes tried; steps of EM; rounds in which modes and shapes follow each other
 RANKS, STEPS, ROUNDS = (0, 1, 2, 4, 8, 16), 15, 3
 
 
-def low_rank_discrepancy(problem: LearningProblem) -> Modes:
+def low_rank_discrepancy(problem: LearningProblem) -> PosteriorModes:
     """y = S(c) + B x + noise, with x standard normal and B found by EM.
 
     Factor analysis (Rubin and Thayer, Psychometrika 47, 1982) whose contexts are integrated along

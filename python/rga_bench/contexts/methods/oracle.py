@@ -9,7 +9,7 @@ from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.rows import Rows
 from rga_bench.contexts.method import LearningProblem
-from rga_bench.contexts.methods.modes import Modes
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes
 from rga_bench.synthetic.physical_twin import PhysicalTwin
 
 #: step of central differences, in shares of the range of a context
@@ -42,10 +42,10 @@ class TrueStructure(TwinOnArrays):
         return np.asarray(((ahead - behind) / (2.0 * step[:, None])).transpose(0, 2, 1))
 
 
-def oracle_posterior(problem: LearningProblem, truth: PhysicalTwin) -> Modes:
+def oracle_posterior(problem: LearningProblem, truth: PhysicalTwin) -> PosteriorModes:
     """MAP with the physical twin itself."""
     twin = TrueStructure(problem.simulator, truth)
     contexts = problem.source.contexts
     source = Rows(contexts, twin.simulate(contexts))
     guess = QuadraticGuess(source, problem.noise, twin.ranges, problem.seed)
-    return Modes(problem, twin, np.diag(truth.sd**2), guess)
+    return PosteriorModes(problem, twin, np.diag(truth.sd**2), guess)

@@ -10,7 +10,7 @@ from rga.inference.map.posterior_mode import Mode
 from rga.inference.map.standard_units import EDGE, standard
 from rga.numerics.bounded_step import bounded_step
 from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
-from rga_bench.contexts.methods.modes import Modes, maximum_posterior
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes, maximum_posterior
 
 #: rows apart at which memory is measured: sensors' noise has forgotten itself by then
 LAG = 5
@@ -21,7 +21,7 @@ CHANCE = 3.0
 
 #: modes of what is filtered, readings, memory -> means and variances, float[n, contexts] each,
 #: in standard units
-Filter = Callable[[Modes, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+Filter = Callable[[PosteriorModes, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Filtered:
         filter: what filters.
     """
 
-    modes: Modes
+    modes: PosteriorModes
     memory: FloatArray
     filter: Filter
 
@@ -59,7 +59,7 @@ def filtered(problem: LearningProblem, by: Filter) -> Filtered:
     return relearned(maximum_posterior(problem), problem.real, by)
 
 
-def relearned(modes: Modes, readings: FloatArray, by: Filter) -> Filtered:
+def relearned(modes: PosteriorModes, readings: FloatArray, by: Filter) -> Filtered:
     """A filter with the memory that consecutive rows, float[n, sensors], show.
 
     Where contexts remember, errors that remember as well do not average out: the variance of the

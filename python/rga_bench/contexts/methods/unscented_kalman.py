@@ -5,7 +5,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.inference.map.standard_units import EDGE, standard
 from rga_bench.contexts.method import LearningProblem
-from rga_bench.contexts.methods.modes import Modes
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes
 from rga_bench.contexts.methods.stream import Filtered, filtered, recursion
 
 #: least square of the arms, where they are clipped to the ranges
@@ -25,7 +25,7 @@ def unscented_kalman(problem: LearningProblem) -> Filtered:
 
 
 def _filter(
-    modes: Modes, readings: FloatArray, memory: FloatArray
+    modes: PosteriorModes, readings: FloatArray, memory: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     twin, (middle, scale) = modes.twin, standard(modes.twin.ranges)
     mode, seen = modes.mode(readings), np.isfinite(readings)

@@ -14,7 +14,7 @@ from rga.model import Model
 from rga.model.schema import ContextVariable
 from rga.simulation import Simulator
 from rga_bench.contexts.method import LearningProblem
-from rga_bench.contexts.methods.modes import Modes, maximum_posterior
+from rga_bench.contexts.methods.posterior_modes import PosteriorModes, maximum_posterior
 from rga_bench.contexts.methods.updated_parameters import UpdatedParameter, unknowns
 
 #: parameters are looked at within this many standard deviations of their priors
@@ -23,7 +23,7 @@ FAR = 4.0
 MOST = 12
 
 
-def updated_model(problem: LearningProblem) -> Modes:
+def updated_model(problem: LearningProblem) -> PosteriorModes:
     """Least squares with priors on the load tests, whose contexts were recorded (Friswell and
     Mottershead, Finite element model updating in structural dynamics, 1995).
 

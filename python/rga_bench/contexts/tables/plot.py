@@ -10,7 +10,7 @@ from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE
 from rga_bench.contexts.tables.aggregate import at_level, mean, over_drifts, scores
-from rga_bench.contexts.tables.sheets_levels import NULL
+from rga_bench.contexts.tables.level_tables import NULL
 
 
 def plot(result: ContextsResult, folder: Path) -> None:

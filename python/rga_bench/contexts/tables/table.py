@@ -1,11 +1,11 @@
 """The tables."""
 
 from rga_bench.contexts.result import ContextsResult
-from rga_bench.contexts.tables.sheets_levels import order, papers, published, worth
-from rga_bench.contexts.tables.sheets_methods import by_context, by_place, cost
+from rga_bench.contexts.tables.level_tables import order, papers, published, worth
+from rga_bench.contexts.tables.method_tables import by_context, by_place, cost
 from rga_bench.contexts.tables.targets import targets
 from rga_bench.page import MarkdownPage
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
 NOTES = """\
 Means over splits, and half of their 90 % intervals by Student's distribution; differences are
@@ -41,7 +41,7 @@ def page(result: ContextsResult, command: str) -> MarkdownPage:
         "Levels of integration, with every rival beside them",
         f"`{command}`",
         _about(result),
-        [order(result), *_sheets(result), NOTES],
+        [order(result), *_tables(result), NOTES],
         figures,
     )
 
@@ -64,7 +64,7 @@ def _about(result: ContextsResult) -> list[str]:
     return lines
 
 
-def _sheets(result: ContextsResult) -> list[Sheet]:
+def _tables(result: ContextsResult) -> list[TextTable]:
     """All tables."""
     levels = papers(result)
     if levels:

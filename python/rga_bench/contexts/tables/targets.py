@@ -17,8 +17,8 @@ from rga_bench.contexts.tables.aggregate import (
     scores,
     whole,
 )
-from rga_bench.contexts.tables.sheets_levels import NULL, RECURRING
-from rga_bench.sheet import Sheet
+from rga_bench.contexts.tables.level_tables import NULL, RECURRING
+from rga_bench.text_table import TextTable
 
 #: share of what there is to gain, and coverage, by load tests: at least, and the aim
 TARGETS = {
@@ -27,7 +27,7 @@ TARGETS = {
 }
 
 
-def targets(result: ContextsResult) -> Sheet:
+def targets(result: ContextsResult) -> TextTable:
     """Figures under the full gap, those of methods of the best one of its sort.
 
     The best is that of the least Error at level A, on the very rows that it is judged by.
@@ -55,7 +55,7 @@ def targets(result: ContextsResult) -> Sheet:
     )
     found = _text(_change(physics, plain), "+.1%")
     rows.append(["RG with physics against without, level A", found, "-42 %; -80 %"])
-    return Sheet("Targets", ["figure", "found", "at least; aim"], [r for r in rows if r[1]])
+    return TextTable("Targets", ["figure", "found", "at least; aim"], [r for r in rows if r[1]])
 
 
 def _levels(result: ContextsResult, row: str) -> list[list[str]]:

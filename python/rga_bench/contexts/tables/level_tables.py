@@ -19,7 +19,7 @@ from rga_bench.contexts.tables.aggregate import (
     whole,
 )
 from rga_bench.measurement import digits
-from rga_bench.sheet import Sheet
+from rga_bench.text_table import TextTable
 
 #: Error [-], RG [mm^2] and AD [rows] in the paper's table, by its columns and levels
 PUBLISHED = {
@@ -32,14 +32,14 @@ ORDER = ("with physics", "residual loss", "without physics")
 NULL, RECURRING = "none", "recurring"
 
 
-def published() -> Sheet:
+def published() -> TextTable:
     """What the paper reports of its own bridge."""
     rows = [
         [column, *(" / ".join(f"{one:g}" for one in of_level[level]) for level in LEVELS)]
         for column, of_level in PUBLISHED.items()
     ]
     headings = ["the paper's column", *(f"{level}: Error / RG / AD" for level in LEVELS)]
-    return Sheet("The paper's own numbers, of its own bridge, not to be mixed", headings, rows)
+    return TextTable("The paper's own numbers, of its own bridge, not to be mixed", headings, rows)
 
 
 def order(result: ContextsResult) -> str:
@@ -65,16 +65,16 @@ def order(result: ContextsResult) -> str:
     return f"The paper's order ({methods}) does not appear here as a whole: {other}."
 
 
-def papers(result: ContextsResult) -> list[Sheet]:
+def papers(result: ContextsResult) -> list[TextTable]:
     """The paper's table: pooled over drifts, and of each drift."""
     drifts = _drifts(result)
     if not drifts:
         return []
-    sheets = [_levels(result, "The paper's table, all drifts together", drifts)]
-    return sheets + [_levels(result, f"Drift: {one}", [one]) for one in result.setting.drifts]
+    tables = [_levels(result, "The paper's table, all drifts together", drifts)]
+    return tables + [_levels(result, f"Drift: {one}", [one]) for one in result.setting.drifts]
 
 
-def worth(result: ContextsResult) -> list[Sheet]:
+def worth(result: ContextsResult) -> list[TextTable]:
     """What recalibration changes, drift by drift, and that it forgets."""
     parts = {
         "once": [one for one in _drifts(result) if one != RECURRING],
@@ -84,7 +84,7 @@ def worth(result: ContextsResult) -> list[Sheet]:
     return [_worth(result, name, drifts) for name, drifts in parts.items() if drifts]
 
 
-def _levels(result: ContextsResult, title: str, drifts: Sequence[str]) -> Sheet:
+def _levels(result: ContextsResult, title: str, drifts: Sequence[str]) -> TextTable:
     headings = ["method"]
     for level in LEVELS:
         headings += [f"{level}: Error", "RG [mm²]", *([] if level == "A" else ["AD (seen)"])]
@@ -101,10 +101,10 @@ def _levels(result: ContextsResult, title: str, drifts: Sequence[str]) -> Sheet:
                 cells.append(_delay([one for several in results.values() for one in several]))
         everywhere = at_level(result.outcomes, row, result.setting.drifts, LEVELS[1])
         rows.append([*cells, _arl([one for several in everywhere.values() for one in several])])
-    return Sheet(title, [*headings, "ARL"], rows)
+    return TextTable(title, [*headings, "ARL"], rows)
 
 
-def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> Sheet:
+def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> TextTable:
     headings = [
         "method", "Error, drifted: A", "B - A", "C - B", "ordinary: B - A", "C - A",
         "recalibrations: B", "C", "C - B", "taken back: B", "recalled: C",
@@ -133,7 +133,7 @@ def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> Sheet:
         cells = ["" if one is None else one.text(form) for one, form in differences]
         rows.append([row, *cells])
     title = f"What recalibration changes: drifts {name} ({', '.join(drifts)})"
-    return Sheet(title, headings, rows)
+    return TextTable(title, headings, rows)
 
 
 def _streamed(result: ContextsResult) -> list[str]:

@@ -11,7 +11,7 @@ from rga_bench.contexts.method import Calibrated, Estimate
 from rga_bench.contexts.score import Score, score
 
 
-class Examination:
+class Evaluation:
     """Scores methods on test rows, which no method infers twice.
 
     Args:

@@ -12,7 +12,7 @@ from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Met
 
 
 @dataclass(frozen=True)
-class Modes:
+class PosteriorModes:
     """Modes of the posterior, with Laplace's spread.
 
     Attributes:
@@ -56,8 +56,8 @@ class Modes:
         return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
 
 
-def maximum_posterior(problem: LearningProblem) -> Modes:
+def maximum_posterior(problem: LearningProblem) -> PosteriorModes:
     """MAP: the simulator is taken as true, and readings differ from it by their noise alone."""
     twin = TwinOnArrays(problem.simulator)
     guess = QuadraticGuess(problem.source, problem.noise, twin.ranges, problem.seed)
-    return Modes(problem, twin, np.diag(problem.noise**2), guess)
+    return PosteriorModes(problem, twin, np.diag(problem.noise**2), guess)

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from findings_invariants import check_invariants
 from rga import Findings, diagnose
 from rga_bench.faults import FAULTS
 from rga_bench.faults.base import Base, Sound, load
 from rga_bench.faults.inject import broken
 from rga_bench.faults.trial import FaultTrial
-from safe_words import check
 
 ROWS = 80
 #: how many records are drawn: a few in every run, thousands where they are asked for
@@ -41,7 +41,7 @@ def bases() -> st.SearchStrategy[Base]:
 def test_what_must_hold_holds_of_any_record(base: Base, number: int, way: str, fault: str) -> None:
     sound = load(base, 11)
     record, _ = broken(FaultTrial(base, 11, number, way, fault), sound.model, sound.record)
-    check(diagnose(sound.model, record))
+    check_invariants(diagnose(sound.model, record))
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def with_gain(sound: Sound, factors: dict[str, float]) -> Findings:
 
 def test_a_sound_record_has_nothing_wrong(sound: Sound) -> None:
     findings = diagnose(sound.model, sound.record)
-    check(findings)
+    check_invariants(findings)
     assert findings.verdict == "nothing_wrong"
 
 
@@ -66,7 +66,7 @@ def test_channels_that_are_off_alike_are_not_nothing(sound: Sound) -> None:
     """All of a kind a fifth too large: no scatter of single gauges."""
     kinds = {name: sound.model.sensors[name].kind for name in sound.record.sensors}
     findings = with_gain(sound, {n: 1.2 for n, kind in kinds.items() if kind == "strain"})
-    check(findings)
+    check_invariants(findings)
     assert findings.verdict != "nothing_wrong"
 
 
@@ -78,6 +78,6 @@ def test_a_record_of_which_half_is_broken_says_so(sound: Sound) -> None:
         40 * np.nanstd(readings[:, :few], axis=0) * rng.standard_normal((len(readings), few))
     )
     findings = diagnose(sound.model, replace(sound.record, readings=readings))
-    check(findings)
+    check_invariants(findings)
     assert findings.verdict in ("unknown", "partial")
     assert "do not work" in findings.unexplained.looks_like

@@ -9,7 +9,7 @@ from rich.text import Text
 
 
 @dataclass(frozen=True)
-class Sheet:
+class TextTable:
     """A table as words.
 
     Attributes:

@@ -1,4 +1,4 @@
-"""What must hold of any findings, however broken the record: see `check`."""
+"""What must hold of any findings, however broken the record: see `check_invariants`."""
 
 from rga import Findings
 from rga.diagnosis.checks.support import unseen_gaps, worsens
@@ -9,7 +9,7 @@ from rga.model.effect import Effect
 NEAR_ONE = 2.0
 
 
-def check(findings: Findings) -> None:
+def check_invariants(findings: Findings) -> None:
     """A structural cause stands on readings that were not fitted, and `nothing_wrong` on all."""
     held = findings.gap.held_out
     kinds = [cause.effect["kind"] for cause in findings.causes]

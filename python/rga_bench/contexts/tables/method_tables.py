@@ -14,14 +14,14 @@ from rga_bench.contexts.rows import ORACLE
 from rga_bench.contexts.score import Score
 from rga_bench.contexts.tables.aggregate import Values, coverage, gap_text, mean, scores
 from rga_bench.measurement import digits
-from rga_bench.sheet import Sheet
 from rga_bench.synthetic.bridges.full_case_study import full_case_study
+from rga_bench.text_table import TextTable
 
 #: rows from which follows what sensors see
 LOOKED_AT = 512
 
 
-def by_place(result: ContextsResult) -> list[Sheet]:
+def by_place(result: ContextsResult) -> list[TextTable]:
     """Error, share of what there is to gain, RG and coverage, by gap and manner of contexts."""
     setting = result.setting
     full, first = setting.gaps[-1], setting.manners[0]
@@ -29,9 +29,9 @@ def by_place(result: ContextsResult) -> list[Sheet]:
     places += [(full, manner) for manner in setting.manners[1:]]
     names = [gap if manner == first else f"{gap}, {manner}" for gap, manner in places]
 
-    def sheet(title: str, rows: tuple[str, ...], cell: Callable[[str, str, str], str]) -> Sheet:
+    def table(title: str, rows: tuple[str, ...], cell: Callable[[str, str, str], str]) -> TextTable:
         cells = [[row, *(cell(row, gap, manner) for gap, manner in places)] for row in rows]
-        return Sheet(title, ["method", *names], [one for one in cells if any(one[1:])])
+        return TextTable(title, ["method", *names], [one for one in cells if any(one[1:])])
 
     def number(of: Callable[[Score], float | None], form: str) -> Callable[[str, str, str], str]:
         def cell(row: str, gap: str, manner: str) -> str:
@@ -57,16 +57,16 @@ def by_place(result: ContextsResult) -> list[Sheet]:
         return gap_text(row, own, true)
 
     methods = tuple(row for row in result.rows if row not in FLOORS)
-    sheets = [
-        sheet("Error [-], level A", methods, number(lambda one: one.error, ".3f")),
-        sheet(f"(1 - Error) / (1 - Error of “{ORACLE}”), level A", methods, share),
-        sheet("RG [mm²], level A", result.rows, gap_left),
-        sheet("Coverage of 90 % intervals, level A", methods, number(coverage, ".2f")),
+    tables = [
+        table("Error [-], level A", methods, number(lambda one: one.error, ".3f")),
+        table(f"(1 - Error) / (1 - Error of “{ORACLE}”), level A", methods, share),
+        table("RG [mm²], level A", result.rows, gap_left),
+        table("Coverage of 90 % intervals, level A", methods, number(coverage, ".2f")),
     ]
-    return [one for one in sheets if one.rows]
+    return [one for one in tables if one.rows]
 
 
-def by_context(result: ContextsResult) -> Sheet:
+def by_context(result: ContextsResult) -> TextTable:
     """Error and coverage of each context, under the full gap."""
     contexts = full_case_study()["context"]
     headings = [f"{name} [{variable['unit']}]" for name, variable in contexts.items()]
@@ -87,7 +87,7 @@ def by_context(result: ContextsResult) -> Sheet:
                 cells = [f"{cell} ({part:.0%})" for cell, part in zip(cells, shares, strict=True)]
             rows.append([row, *cells])
     title = "Each context under the full gap: root mean square error (coverage of 90 % intervals)"
-    return Sheet(title, ["method", *headings], rows)
+    return TextTable(title, ["method", *headings], rows)
 
 
 def _seen() -> list[str]:
@@ -105,7 +105,7 @@ def _seen() -> list[str]:
     ]
 
 
-def cost(result: ContextsResult) -> Sheet:
+def cost(result: ContextsResult) -> TextTable:
     """Seconds of learning and of inference."""
     times: Mapping[str, list[tuple[float, float]]] = {
         row: [
@@ -121,4 +121,4 @@ def cost(result: ContextsResult) -> Sheet:
         if several
         for learning, inference in (np.median(several, axis=0).tolist(),)
     ]
-    return Sheet("Cost, median", ["method", "to learn [s]", "to infer a row [ms]"], rows)
+    return TextTable("Cost, median", ["method", "to learn [s]", "to infer a row [ms]"], rows)
