@@ -4,7 +4,8 @@ from importlib import import_module
 from pkgutil import walk_packages
 
 #: The order in which a diagnosis looks at kinds: findings list what they could not have shown in
-#: it, and the last digits of sums follow it. A kind that is not here comes after these.
+#: it, and the last digits of sums follow it. A kind that is not here comes after these. The folders
+#: in the order of their names would be simpler, and change both in findings that are on file.
 _FIRST = (
     *("supports.support_spring", "supports.support_flexibility", "supports.bearing_friction"),
     *("contexts.context_bias", "contexts.context_gain"),
