@@ -1,19 +1,19 @@
 # One definition of every check, for a developer and for CI: `make help` lists the targets.
 PYTHON ?= python3
-RUN := .venv/bin
-TEST := .venv-test/bin
 DEV := .venv-dev/bin
+# Modules are compiled when they are imported: few of those of torch ever are.
+INSTALL := -m pip install --quiet --no-compile
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick test clean wheel
+.PHONY: help run dev quick test crates package clean wheel
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
 
 run: fresh = .venv
 run: wheel  ## build and install rga in a fresh environment, and run the twin of the case study
-	$(RUN)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[twin]"
-	$(RUN)/python examples/case_study.py
+	$(fresh)/bin/python $(INSTALL) "$$(echo dist/rga-*.whl)[twin]"
+	$(fresh)/bin/python examples/case_study.py
 
 dev:  ## once, and after a change of Rust: an environment that uses the sources as they are
 	$(PYTHON) -m venv .venv-dev
@@ -27,18 +27,22 @@ quick:  ## lint, types and unit tests in the environment of `make dev`, within a
 	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
 
 test: fresh = .venv-test
-test: export PYO3_PYTHON = $(abspath $(TEST)/python)
-test: wheel  ## build and install rga in a fresh environment, and run every check
-	$(TEST)/python -m pip install --quiet "$$(echo dist/rga-*.whl)[test]"
-	$(TEST)/ruff check
-	$(TEST)/ruff format --check
-	$(TEST)/mypy --strict python tests/typing
-	$(TEST)/lint-imports --no-cache
+test: wheel crates package  ## build and install rga in a fresh environment, and run every check
+
+crates: export PYO3_PYTHON = $(PYTHON)
+crates:  ## every check of the Rust code
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
-	$(TEST)/python -m mypy.stubtest rga._core
-	$(TEST)/python -m pytest tests --pyargs rga rga_bench --numprocesses auto --dist worksteal
+
+package:  ## every check of the Python package; fresh=DIR is the environment
+	$(fresh)/bin/python $(INSTALL) "$$(echo dist/rga-*.whl)[test]"
+	$(fresh)/bin/ruff check
+	$(fresh)/bin/ruff format --check
+	$(fresh)/bin/mypy --strict python tests/typing
+	$(fresh)/bin/lint-imports --no-cache
+	$(fresh)/bin/python -m mypy.stubtest rga._core
+	$(fresh)/bin/python -m pytest tests --pyargs rga rga_bench --numprocesses auto --dist worksteal
 
 # pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.
 wheel:
