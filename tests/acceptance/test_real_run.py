@@ -11,8 +11,8 @@ from rga.inference import TrainingSettings
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rdso45m"
 RECORD = Path(__file__).parents[3] / "shared" / "measured" / "rdso45m" / "record_40kmh.txt"
-THINNED = 4
-LITTLE = TrainingSettings(steps=700, fine_steps=60, reduced_steps=500)
+THINNED = 6
+LITTLE = TrainingSettings(steps=450, fine_steps=60, reduced_steps=350)
 
 
 def test_the_crossing_ends_in_the_verdict_of_the_diagnosis(tmp_path: Path) -> None:
@@ -20,7 +20,7 @@ def test_the_crossing_ends_in_the_verdict_of_the_diagnosis(tmp_path: Path) -> No
         pytest.skip("the measured record is not part of this project")
     model = rga.load_model(EXAMPLE / "model.json")
     record = rga.load_record(RECORD, model, EXAMPLE / "import.toml")
-    # A quarter of the samples, and networks that learn less, tell the same in half the time.
+    # A sixth of the samples, and networks that learn less, tell the same in a third of the time.
     record = record.rows(slice(None, None, THINNED))
     settings = read_settings(EXAMPLE / "settings.toml", "B").model_copy(update={"training": LITTLE})
     outcome = rga.run(model, record, tmp_path, settings=settings)

@@ -118,10 +118,10 @@ def test_a_late_dead_load_is_no_load_scale(zero: Zero) -> None:
 @zeroed
 def test_heavier_loads_are_a_load_scale(zero: Zero) -> None:
     """What a dead load must not be taken for, and must not be taken for one."""
-    heavier = Site(loads={"west load": np.full(ROWS, 1.25)})
-    (cause,) = found(logged(heavier), zero=zero).causes
+    findings = found(logged(Site(loads={"west load": np.full(ROWS, 1.25)})), zero=zero)
+    (cause,) = findings.causes
     assert cause.effect["kind"] in ("load_scale", "context_gain")
-    assert "dead_load" not in explained_by(found(logged(heavier), zero=zero))
+    assert "dead_load" not in explained_by(findings)
 
 
 # --- Broken channels ------------------------------------------------------------------------------

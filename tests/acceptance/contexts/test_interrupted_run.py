@@ -18,14 +18,14 @@ from rga_bench.ledger import NAME
 
 SETTING = ContextsSetting(
     seed=11,
-    splits=2,
+    splits=1,
     gaps=("all",),
     manners=("same",),
     drifts=("none", "sensor"),
     rows=("noise", "true context", "prior mean", "MAP"),
     sizes=Sizes(source=64, unlabelled=32, stream=45, test=12, arl0=200.0),
 )
-TASKS = 2 * 2 * 4
+TASKS = 2 * 4
 #: `RGA_TEST_KILLS=50` kills more often
 KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 

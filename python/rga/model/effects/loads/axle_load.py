@@ -123,13 +123,13 @@ class AxleLoad(Effect):
     def _shares(self, values: Values, stations: FloatArray) -> FloatArray:
         """Force that each node of the path takes, float[nodes, rows] [N]."""
         stands = values["position"] - np.array(self.offsets)[:, None] * values["heading"]
-        on_path = (stands >= 0) & (stands <= stations[-1])
-        segment = np.clip(np.searchsorted(stations, stands, side="right") - 1, 0, len(stations) - 2)
-        ratio = (stands - stations[segment]) / np.diff(stations)[segment]
-        force = np.where(on_path, np.array(self.forces)[:, None], 0.0)
+        # Of a long train few axles are on the path at a time.
+        axle, row = np.nonzero(~((stands < 0) | (stands > stations[-1])))
+        at, force = stands[axle, row], np.array(self.forces)[axle]
+        segment = np.clip(np.searchsorted(stations, at, side="right") - 1, 0, len(stations) - 2)
+        weights = force * ((at - stations[segment]) / np.diff(stations)[segment])
         rows = stands.shape[1]
-        cells = segment * rows + np.arange(rows)
-        weights = force * ratio
-        shares = np.bincount(cells.ravel(), (force - weights).ravel(), len(stations) * rows)
-        shares += np.bincount((cells + rows).ravel(), weights.ravel(), len(stations) * rows)
+        cells = segment * rows + row
+        shares = np.bincount(cells, force - weights, len(stations) * rows)
+        shares += np.bincount(cells + rows, weights, len(stations) * rows)
         return np.asarray(shares, dtype=float).reshape(len(stations), rows)
