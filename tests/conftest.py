@@ -1,5 +1,6 @@
 """What several tests share: a small bridge, and the command line as a user meets it."""
 
+import gc
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,18 @@ from rga.model import Model, load_model, read_effect, read_model
 from rga.records import Record, load_record
 from rga.simulation import Simulator
 from rga_bench.synthetic import Case
+
+
+def pytest_configure() -> None:
+    """Modules and tests are gathered without a search for garbage: hardly any of it is."""
+    gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    """What was gathered stays to the end: a search for garbage need not go through it again."""
+    gc.collect()
+    gc.freeze()
+    gc.enable()
 
 
 class Outcome(NamedTuple):
