@@ -7,6 +7,9 @@ INSTALL := -m pip install --quiet --no-compile
 .DEFAULT_GOAL := help
 .PHONY: help run dev quick test crates package clean wheel
 
+# Every core has its process of the tests: products in several threads would wait for each other.
+quick package: export OMP_NUM_THREADS = 1
+
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
 
