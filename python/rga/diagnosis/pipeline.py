@@ -137,6 +137,7 @@ def _diagnose(
     reasons = reasons_for_doubt(
         record.sensors, prepared.faults, found, dropped, off, gained, unseen
     )
+    reasons = [*prepared.doubts, *reasons]
     reasons += [
         f"channel {name} answers the loads in a way of its own, likelier than causes that would "
         "move other channels too: no cause was looked for in it"

@@ -1,7 +1,7 @@
 """From a record to the data that a diagnosis works on: rows, channels, contexts."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -41,8 +41,9 @@ class PreparedRecord:
         record: the same rows of the record, its working and its rejected channels.
         chosen: bool[rows of the record], the rows that are analysed.
         faults: channels that do not work; the data leave them out.
-        apart: channels that work, and that no cause is looked for in; the data leave them out.
         warnings: in words.
+        doubts: why the record cannot be called explained, whatever is found, in words.
+        apart: channels that work, and that no cause is looked for in; the data leave them out.
     """
 
     data: Data
@@ -50,6 +51,7 @@ class PreparedRecord:
     chosen: BoolArray
     faults: list[BrokenChannel]
     warnings: list[str]
+    doubts: list[str] = field(default_factory=list)
     apart: tuple[str, ...] = ()
 
     def leaving_out(self, sensor: str, simulator: Simulator) -> "PreparedRecord":
@@ -81,7 +83,8 @@ def prepare(
     record, limits = without_limits(record, criteria.record)
     simulator = Simulator(model.without_zeros())
     given = _data(model, record, criteria)
-    record, rezeroed = with_own_zeros(model, simulator, record, given)
+    zeros = with_own_zeros(model, simulator, record, given)
+    record = zeros.record
     data = _data(model, record, criteria)
     faults = stuck_channels(data.sensors, data.readings, data.observed, criteria.channels)
     found = {fault.sensor: fault for fault in faults}
@@ -110,7 +113,7 @@ def prepare(
         )
     basis = load_basis(simulator, data)
     spikes = lone_spikes(data.readings, data.observed, basis, criteria.channels)
-    warnings = [*record.warnings, *limits, *rezeroed, *suspicious]
+    warnings = [*record.warnings, *limits, *zeros.warnings, *suspicious]
     if chosen.sum() < criteria.record.few_rows:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -133,7 +136,9 @@ def prepare(
         of = ", ".join(np.array(data.sensors)[spikes.any(0)])
         warnings.append(f"{int(spikes.sum())} lone spikes of {of} were taken as missing readings")
         data = replace(data, observed=data.observed & ~spikes)
-    return PreparedRecord(data, record.rows(chosen), chosen, list(found.values()), warnings)
+    return PreparedRecord(
+        data, record.rows(chosen), chosen, list(found.values()), warnings, zeros.doubts
+    )
 
 
 def _broken(simulator: Simulator, data: Data, record: Record) -> list[BrokenChannel]:

@@ -9,7 +9,7 @@ import pytest
 
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.prepare import PreparedRecord
-from rga.diagnosis.preparation.undeclared_zeros import with_own_zeros
+from rga.diagnosis.preparation.undeclared_zeros import OwnZeros, with_own_zeros
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.model import Model, read_effect
 from rga.records import Record
@@ -22,15 +22,15 @@ def zeroed(
     prepared: PreparedRecord,
     measured_record: Callable[..., Record],
     monkeypatch: pytest.MonkeyPatch,
-) -> Callable[..., tuple[Record, list[str]]]:
+) -> Callable[..., OwnZeros]:
     """The record off by so much; of causes those of one kind, as few channels tell all apart."""
     record = measured_record(model)
 
-    def of(off: np.ndarray, kind: str = "support_settlement") -> tuple[Record, list[str]]:
+    def of(off: np.ndarray, kind: str = "support_settlement") -> OwnZeros:
         def of_kind(*arguments: Any) -> list[Hypothesis]:
             return [one for one in hypotheses(*arguments) if one.name == kind]
 
-        monkeypatch.setattr("rga.diagnosis.preparation.undeclared_zeros.hypotheses", of_kind)
+        monkeypatch.setattr("rga.diagnosis.preparation.levels.hypotheses", of_kind)
         readings = record.readings + off
         data: Data = replace(prepared.data, readings=readings)
         return with_own_zeros(model, Simulator(model), replace(record, readings=readings), data)
@@ -38,31 +38,31 @@ def zeroed(
     return of
 
 
-def test_a_sound_record_is_left_alone(
-    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
-) -> None:
-    record, warnings = zeroed(np.zeros(len(model.sensors)))
-    assert warnings == []
-    assert record.zero is None
+def test_a_sound_record_is_left_alone(zeroed: Callable[..., OwnZeros], model: Model) -> None:
+    found = zeroed(np.zeros(len(model.sensors)))
+    assert found.warnings == found.doubts == []
+    assert found.record.zero is None
 
 
 def test_offsets_of_all_channels_are_zeros_of_their_own(
-    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., OwnZeros], model: Model
 ) -> None:
     noise = np.array([sensor.noise for sensor in model.sensors.values()])
     off = 60 * noise * np.random.default_rng(3).standard_normal(len(noise))
-    record, warnings = zeroed(off)
+    found = zeroed(off)
+    record, warnings = found.record, found.warnings
+    assert found.doubts == []
     assert "zeros of their own" in warnings[0]
     np.testing.assert_allclose(record.readings.mean(0), 0.0, atol=1e-9)
     assert record.zero == (record.time[0], record.time[-1])
 
 
 def test_an_offset_of_one_channel_is_left_to_the_search(
-    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., OwnZeros], model: Model
 ) -> None:
     off = np.zeros(len(model.sensors))
     off[0] = 5.0
-    assert zeroed(off)[1] == []
+    assert zeroed(off).warnings == zeroed(off).doubts == []
 
 
 def made_by(model: Model, *causes: dict[str, Any]) -> np.ndarray:
@@ -74,17 +74,17 @@ def made_by(model: Model, *causes: dict[str, Any]) -> np.ndarray:
 
 
 def test_what_a_settlement_does_to_all_channels_is_no_zero(
-    zeroed: Callable[..., tuple[Record, list[str]]], model: Model
+    zeroed: Callable[..., OwnZeros], model: Model
 ) -> None:
     low = {"kind": "support_settlement", "support": "east", "dof": "uz", "displacement": -0.01}
     off = made_by(model, low)
     assert np.abs(off).max() > 1
-    assert zeroed(off)[1] == []
+    assert zeroed(off).warnings == zeroed(off).doubts == []
 
 
 @pytest.mark.parametrize(("kind", "warnings"), [("dead_load", 0), ("support_settlement", 1)])
 def test_what_two_loads_that_are_much_alike_do_together_is_no_zero(
-    zeroed: Callable[..., tuple[Record, list[str]]], model: Model, kind: str, warnings: int
+    zeroed: Callable[..., OwnZeros], model: Model, kind: str, warnings: int
 ) -> None:
     """They take most of each other off, and what is left resembles neither of them."""
     loads = {"bottom chord": 100e3, "top chord": -140e3}
@@ -95,7 +95,7 @@ def test_what_two_loads_that_are_much_alike_do_together_is_no_zero(
             for group, size in loads.items()
         ),
     )
-    assert len(zeroed(off, kind)[1]) == warnings
+    assert len(zeroed(off, kind).warnings) == warnings
 
 
 @pytest.mark.parametrize(("zero", "warnings"), [(0.0, 0), (100.0, 1)])
@@ -108,23 +108,25 @@ def test_a_load_that_is_greater_than_was_measured_is_no_zero(
     warnings: int,
 ) -> None:
     """Its responses have a mean, and follow the load: here one that grows without any noise."""
-    monkeypatch.setattr("rga.diagnosis.preparation.undeclared_zeros.hypotheses", lambda *of: [])
+    monkeypatch.setattr("rga.diagnosis.preparation.levels.hypotheses", lambda *of: [])
     simulator, belief = Simulator(model), prepared.data.belief
     load = np.sort(belief.table["west load"])
     data = replace(prepared.data, belief=belief.with_values({"west load": load}))
     readings = data.predict(simulator, {"west load": 3 * load}) + zero
     record = replace(measured_record(model), readings=readings)
-    found = with_own_zeros(model, simulator, record, replace(data, readings=readings))[1]
-    assert len(found) == warnings
+    found = with_own_zeros(model, simulator, record, replace(data, readings=readings))
+    assert len(found.warnings) == warnings
 
 
 def test_a_logger_that_is_zeroed_again_keeps_its_longer_part(
-    zeroed: Callable[..., tuple[Record, list[str]]], model: Model, prepared: PreparedRecord
+    zeroed: Callable[..., OwnZeros], model: Model, prepared: PreparedRecord
 ) -> None:
     row = 30
     shown = prepared.data.readings[row]
     off = np.where(np.arange(len(prepared.data.readings))[:, None] >= row, -shown, 0.0)
-    record, warnings = zeroed(off)
+    found = zeroed(off)
+    record, warnings = found.record, found.warnings
+    assert found.doubts == []
     assert "zeroed anew" in warnings[0]
     assert "after" in warnings[0]
     missing = np.isnan(record.readings).all(1)

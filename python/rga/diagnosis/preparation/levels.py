@@ -1,0 +1,160 @@
+"""Levels of residuals: offsets, jumps, and how much of them few causes of the structure make."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.diagnosis.data.observations import Data
+from rga.diagnosis.search.hypothesis import hypotheses
+from rga.diagnosis.search.signatures import signatures
+from rga.model.schema import Model
+from rga.numerics.decompositions import thin_svd
+from rga.simulation import Simulator
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Readings of all rows beside their simulation.
+
+    Attributes:
+        model: as it was given.
+        simulator: of it.
+        data: of all rows.
+        simulated: float[rows, sensors].
+        noise: of the residual of each channel from row to row, float[sensors].
+        own: noise of each sensor itself, float[sensors].
+    """
+
+    model: Model
+    simulator: Simulator
+    data: Data
+    simulated: FloatArray
+    noise: FloatArray
+    own: FloatArray
+
+    @classmethod
+    def of(cls, model: Model, simulator: Simulator, data: Data) -> "Compared":
+        """Readings beside what a simulator says of them."""
+        simulated = data.predict(simulator)
+        noise = noise_by_steps(np.where(data.observed, data.readings - simulated, np.nan))
+        stated = np.array([model.sensors[name].noise or np.inf for name in data.sensors])
+        return cls(model, simulator, data, simulated, noise, np.minimum(stated, noise))
+
+    @property
+    def working(self) -> BoolArray:
+        """Channels that do not stand still, bool[sensors]."""
+        return np.asarray(self.noise > 0)
+
+    def at_least(self, share: float) -> float:
+        """Number of channels that must be off, for it to be no fault of their own.
+
+        Args:
+            share: of the working channels.
+        """
+        return float(max(self.data.criteria.zeros.fewest_channels, share * self.working.sum()))
+
+    @cached_property
+    def readings(self) -> FloatArray:
+        """Float[rows, sensors], NaN where missing."""
+        return np.where(self.data.observed, self.data.readings, np.nan)
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Readings less simulation, float[rows, sensors], NaN where missing."""
+        return self.readings - self.simulated
+
+    @cached_property
+    def changes(self) -> list[tuple[FloatArray, FloatArray]]:
+        """What causes of the structure change, as `changes` has it."""
+        return list(changes(self.model, self.simulator, self.data))
+
+    def over_noise(self, values: FloatArray) -> FloatArray:
+        """Values in units of the noise; zero of channels that stand still, or where missing."""
+        shown = np.nan_to_num(values) / np.where(self.working, self.noise, 1.0)
+        return np.where(self.working, shown, 0.0)
+
+    def sizes(self, levels: FloatArray, off: BoolArray) -> str:
+        """The largest levels [units of the sensors] of some channels, a unit each, in words."""
+        largest: dict[str, float] = {}
+        for k in np.flatnonzero(off):
+            unit = self.model.sensors[self.data.sensors[k]].unit
+            largest[unit] = max(largest.get(unit, 0.0), abs(float(levels[k])))
+        return " and ".join(f"{size:.3g} {unit}" for unit, size in largest.items())
+
+
+def noise_by_steps(residual: FloatArray) -> FloatArray:
+    """Robust deviation of each channel's noise, by what changes from row to row, float[sensors]."""
+    steps = np.abs(np.diff(residual, axis=0))
+    typical = [np.median(one[np.isfinite(one)]) if np.isfinite(one).any() else 0 for one in steps.T]
+    return np.asarray(1.4826 / np.sqrt(2) * np.array(typical, dtype=float))
+
+
+def moving_means(values: FloatArray, width: int) -> FloatArray:
+    """Means over so many rows from each row on, NaN where there is none, float[rows, sensors]."""
+    first = np.arange(len(values) - width + 1)
+    return means_between(values, first, first + width)
+
+
+def means_between(values: FloatArray, first: IntArray, end: IntArray) -> FloatArray:
+    """Means over rows from `first` to before `end`, NaN where there is none, float[n, sensors]."""
+    seen = np.isfinite(values)
+    none = np.zeros((1, values.shape[1]))
+    total = np.cumsum(np.concatenate([none, np.where(seen, values, 0.0)]), axis=0)
+    count = np.cumsum(np.concatenate([none, seen]), axis=0)
+    total, count = total[end] - total[first], count[end] - count[first]
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def constant(simulator: Simulator, data: Data) -> FloatArray:
+    """A constant, less what the time histories of the loads have of it, float[rows]."""
+    loads = simulator.load_coefficients(data.belief.table)
+    u, s, _ = thin_svd(loads)
+    courses = u[:, s > 1e-6 * s.max(initial=0.0)]
+    ones = np.ones(len(data.time))
+    rest = ones - courses @ (courses.T @ ones)
+    # Under loads that hardly vary no constant can be distinguished from their response.
+    return rest if rest @ rest > 1e-3 * len(rest) else ones
+
+
+def changes(
+    model: Model, simulator: Simulator, data: Data
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """What causes of the structure change, float[rows, sensors], and what a late one adds.
+
+    The latter, float[sensors], is what the zero takes off one that always acts.
+    """
+    candidates = [
+        one
+        for one in hypotheses(model, data.sensors, list(data.belief.spread))
+        if not one.kind.on_sensors
+    ]
+    for found in signatures(data, data.about(simulator), candidates):
+        touched = slice(None) if found.channels is None else found.channels
+        change, late = np.zeros((len(data.time), len(data.sensors))), np.zeros(len(data.sensors))
+        change[:, touched], late[touched] = found.values.T, found.zero
+        yield change, late
+
+
+def left_by_causes(levels: FloatArray, patterns: Sequence[FloatArray], most: int) -> FloatArray:
+    """What is left of levels after so many causes, each the best beside those before it.
+
+    Args:
+        levels: of the channels, over their noise, float[sensors].
+        patterns: of single causes, in the same units, float[sensors] each.
+        most: causes.
+    """
+    left = levels
+    rest = np.array([one for one in patterns if one.any()]).reshape(-1, len(left))
+    for _ in range(min(most, len(rest))):
+        sizes = (rest**2).sum(1)
+        along = rest @ left / np.sqrt(np.maximum(sizes, 1e-300))
+        best = rest[np.argmax(np.abs(along))] / np.sqrt(sizes[np.argmax(np.abs(along))])
+        left = left - best * (best @ left)
+        rest = rest - np.outer(rest @ best, best)
+        rest = rest[(rest**2).sum(1) > 1e-6 * sizes]
+        if not len(rest):
+            break
+    return left
