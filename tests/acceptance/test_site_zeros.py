@@ -1,4 +1,4 @@
-"""Loggers that were set to zero, and nobody wrote it down: said, not explained.
+"""Loggers that were set to zero or started anew, and nobody wrote it down: said, not explained.
 
 Each record stands beside its twin with nothing wrong, and beside causes that move many channels.
 """
@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from safe_words import check
 
+from findings_invariants import check
 from rga import Findings, diagnose
 from rga.diagnosis.preparation.prepare import prepare
-from site_truss import MEMBERS, ROWS, STEP, Array, Logged, Site, logged, model
+from site_truss import MEMBERS, NOISE, ROWS, STEP, Array, Logged, Site, logged, model
 
 LATE, ZEROED = 70, (0, 12)
 BEGUN = (np.arange(ROWS) >= LATE).astype(float)
-OFF = "off by a constant"
+OFF, ANEW = "off by a constant", "jump together"
 seeds = pytest.mark.parametrize("seed", [1, 2])
 
 
@@ -33,6 +33,10 @@ def tared(log: Logged, rows: slice = slice(*ZEROED)) -> Logged:
 
 def changed(log: Logged, change: Callable[[str, Array], Array]) -> Logged:
     return replace(log, readings={n: change(n, column) for n, column in log.readings.items()})
+
+
+def noise(name: str) -> float:
+    return NOISE["microstrain" if name.startswith("S ") else "mm"]
 
 
 @seeds
@@ -65,6 +69,28 @@ def test_a_zero_of_other_rows_is_told(seed: int, rows: slice) -> None:
     prepared = prepare(model(), tared(logged(Site(), seed), rows).record(), lambda done: None)
     (told,) = [one for one in [*prepared.doubts, *prepared.warnings] if "import.toml" in one]
     assert f"rows {rows.start + 1} to {rows.stop} " in told
+
+
+@seeds
+@pytest.mark.parametrize("at_zero", [True, False])
+def test_channels_that_jump_together_are_a_logger_started_anew(seed: int, at_zero: bool) -> None:
+    log = logged(Site(), seed)
+    some = list(log.readings)[:9]
+    draw = np.random.default_rng(seed)
+
+    def jumping(name: str, column: Array) -> Array:
+        if name not in some:
+            return column
+        jump = -column[LATE] if at_zero else 40 * noise(name) * draw.standard_normal()
+        return column + jump * BEGUN
+
+    findings = found(changed(log, jumping))
+    assert (findings.verdict, findings.misfits) == ("unknown", [])
+    words = findings.unexplained.looks_like
+    assert f"of 16 channels {ANEW} at row {LATE + 1} ({LATE * STEP:g} s)" in words
+    assert ("to a reading of zero" in words) == at_zero
+    assert "as two records" in words
+    assert ANEW not in found(log).sentence()
 
 
 def late(name: str) -> Site:

@@ -1,8 +1,8 @@
 """Zeros that nobody declared: channels that start from values of their own, or are zeroed again.
 
 A logger without a tare shows every channel from a zero of its own. Then nothing but changes can be
-compared, and the record is taken as zeroed over all of its rows. A logger that is zeroed again in
-mid-record begins anew there: the longer part is kept. All is reported. What leaves
+compared, and the record is taken as zeroed over all of its rows. A logger that is zeroed again or
+started anew in mid-record begins anew there: the longer part is kept. All is reported. What leaves
 more than one reading of the record is a doubt, and such a record is not called explained. Where
 contexts have to be inferred the readings are taken as they are.
 """
@@ -14,6 +14,7 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.levels import Compared, constant, left_by_causes, means_between
+from rga.diagnosis.preparation.restarted import Jump, restarted
 from rga.diagnosis.preparation.zero_rows import ZeroRows, zero_rows
 from rga.diagnosis.preparation.zeroed_again import zeroed_again
 from rga.model.schema import Model
@@ -51,6 +52,10 @@ def with_own_zeros(model: Model, simulator: Simulator, record: Record, data: Dat
     row = zeroed_again(compared)
     if row is not None:
         return OwnZeros(_longer_part(record, row), [_again_words(record, row)])
+    jump = restarted(compared)
+    if jump is not None:
+        part = _longer_part(record, jump.row)
+        return OwnZeros(part, doubts=[_jump_words(compared, record, jump)])
     return OwnZeros(record) if len(data.tare) else _without_zero(compared, record)
 
 
@@ -132,6 +137,19 @@ def _again_words(record: Record, row: int) -> str:
     return (
         f"all channels read zero again from {_moment(record, row)} on: the logger was zeroed anew, "
         f"and only what comes {'after' if _later(record, row) else 'before'} is used"
+    )
+
+
+def _jump_words(compared: Compared, record: Record, jump: Jump) -> str:
+    to_zero = " to a reading of zero" if jump.at_zero else ""
+    return (
+        f"{jump.jumping.sum()} of {len(jump.jumping)} channels jump together at row {jump.row + 1} "
+        f"({_moment(record, jump.row)}){to_zero}, by up to "
+        f"{compared.sizes(jump.size, jump.jumping)}, and stay off from there on, as no few causes "
+        "in the structure would make them: this looks like a logger that was started or set to "
+        f"zero anew. Only what comes {'after' if _later(record, jump.row) else 'before'} is used. "
+        "Look into the log book, and diagnose the rows before and after as two records, each with "
+        "a zero of its own"
     )
 
 

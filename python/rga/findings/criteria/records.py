@@ -94,6 +94,12 @@ class ZeroCriteria(CriteriaGroup):
         "share of the working channels that must be off",
         "fewer are faults of their own",
     )
+    share_that_jumps: Share = criterion(
+        0.3,
+        "-",
+        "share of the working channels that must jump in one row, for a logger started anew",
+        "judgement: the channels of one card of several",
+    )
     fewest_channels: Count = criterion(
         4,
         "channels",
@@ -115,7 +121,8 @@ class ZeroCriteria(CriteriaGroup):
     one_cause: Share = criterion(
         0.95,
         "-",
-        "share of the squares of a jump that one cause alone must make, to be no new zero",
+        "share of the squares of a jump that one cause alone must make, to be no new zero; that "
+        "most_causes must make where the channels do not jump to zero",
         "a new zero undoes what several loads have done, and resembles no single cause so much",
     )
     reading_zero: Share = criterion(
