@@ -19,6 +19,7 @@ from rga.diagnosis.checks.robustness import (
     with_hanging_leads,
     without_unhelpful,
 )
+from rga.diagnosis.checks.short_record import too_short
 from rga.diagnosis.checks.support import supported, unseen_gaps
 from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
@@ -149,21 +150,29 @@ def _diagnose(
         or share > criteria.structure.share
         or bool(bends(found.problem) or curves(found.problem))
     )
+    said = verdict(found, bool(prepared.faults), structure)
     pattern = spared(
         "what the structure that is left goes with",
         lambda: patterns.in_words(found.problem, patterns.known_contexts(found.problem, measured)),
         "not known",
         failed,
     )
+    looks_like = [*reasons, pattern]
+    short = too_short(whole.data, before, whole.deviation)
+    if short and said == "unknown":
+        # What else is said of so few rows is chance.
+        off, looks_like = [], [*prepared.doubts, short]
+    elif short and said == "partial":
+        looks_like = [short, *looks_like]
     findings = Findings(
-        verdict=verdict(found, bool(prepared.faults), structure),
+        verdict=said,
         gap=gap(account, gained),
         causes=[
             *(fault_cause(fault, effect) for fault, effect in faults.items()),
             *causes(found, effects, prepared.record, failed),
         ],
         unidentifiable=unidentifiable(screening.first, criteria.explanations.smallest_d_prime),
-        unexplained={"share": share, "looks_like": "; ".join([*reasons, pattern])},
+        unexplained={"share": share, "looks_like": "; ".join(looks_like)},
         explanations=explanations(tried, found, prepared.record),
         groups=groups(account, grouped),
         contexts=contexts(found.problem, model),

@@ -35,6 +35,12 @@ class RecordCriteria(CriteriaGroup):
         "rows below which a record is refused",
         "of fewer no two blocks are held out",
     )
+    loaded_rows: Count = criterion(
+        10,
+        "rows",
+        "rows under load below which an unknown record of few rows is called too short to decide",
+        "of ten rows two are held out and eight fitted; judgement: fewer confirm no cause",
+    )
     unit_correlation: Share = criterion(
         0.8,
         "-",
