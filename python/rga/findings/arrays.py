@@ -3,8 +3,11 @@
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rga.arrays import BoolArray, FloatArray
 from rga.model.effect import Values
+from rga.model.effects.sensors.sensor_fault import SensorFault
 from rga.model.schema import Model
 from rga.records import Record
 
@@ -43,3 +46,15 @@ class DiagnosisArrays:
     noise: FloatArray
     contexts: Values = field(default_factory=dict)
     found: "Found | None" = None
+
+    @property
+    def since(self) -> int:
+        """The first row in which a cause acts; 0 without a cause that begins late."""
+        causes = [
+            effect
+            for name, effect in self.extended.effects.items()
+            if name not in self.model.effects and not isinstance(effect, SensorFault)
+        ]
+        clock = self.record.origin + self.record.time
+        acts = np.array([effect.weight(clock) > 0 for effect in causes]).reshape(-1, len(clock))
+        return int(np.argmax(acts.any(0))) if acts.any() else 0

@@ -116,12 +116,17 @@ class Explanation(FindingsPart):
 
 
 class GroupGap(FindingsPart):
-    """Measured over simulated by group of sensors, as percent off."""
+    """Measured over simulated by group of sensors, as percent off.
+
+    Attributes:
+        since: time from which on the rows are compared, where all causes begin late; else None.
+    """
 
     group: str
     sensors: list[str]
     before_percent: float
     after_percent: float
+    since: float | str | None = None
 
 
 class Findings(FindingsPart):

@@ -42,7 +42,11 @@ def gap(account: DiagnosisArrays, gained: Gain) -> Gap:
 
 
 def groups(account: DiagnosisArrays, grouped: Mapping[str, Sequence[str]]) -> list[GroupGap]:
-    """Measured over simulated of each group of sensors, in percent off."""
+    """Measured over simulated of each group of sensors, in percent off.
+
+    Of causes that begin late from their onset on: rows before it would dilute what they do.
+    """
+    since = account.record.time_label(float(account.record.time[account.since]))
     order = {name: k for k, name in enumerate(account.record.sensors)}
     return [
         GroupGap(
@@ -50,13 +54,15 @@ def groups(account: DiagnosisArrays, grouped: Mapping[str, Sequence[str]]) -> li
             sensors=list(names),
             before_percent=_percent_off(account, account.before, [order[n] for n in names]),
             after_percent=_percent_off(account, account.after, [order[n] for n in names]),
+            since=since if account.since else None,
         )
         for word, names in grouped.items()
     ]
 
 
 def _percent_off(account: DiagnosisArrays, simulated: FloatArray, columns: Sequence[int]) -> float:
-    measured, own = account.record.readings[:, columns], simulated[:, columns]
+    acting = slice(account.since, None)
+    measured, own = account.record.readings[acting, columns], simulated[acting, columns]
     seen = np.isfinite(measured) & np.isfinite(own)
     weight = np.broadcast_to(account.sigma[list(columns)] ** -2, measured.shape)[seen]
     power = float((weight * own[seen] ** 2).sum())

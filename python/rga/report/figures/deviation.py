@@ -9,12 +9,14 @@ from rga.findings.arrays import DiagnosisArrays
 def percent_off(account: DiagnosisArrays, simulated: FloatArray) -> FloatArray:
     """Measured over simulated by sensor, as percent off.
 
-    The ratio is the slope of the line through the origin that fits measured against simulated.
+    The ratio is the slope of the line through the origin that fits measured against simulated, of
+    causes that begin late from their onset on.
 
     Returns:
         float[sensors] [%]; NaN for rejected sensors and where the simulation hardly moves.
     """
-    measured = account.record.readings
+    acting = slice(account.since, None)
+    measured, simulated = account.record.readings[acting], simulated[acting]
     seen = np.isfinite(measured) & np.isfinite(simulated)
     target, driver = np.where(seen, measured, 0.0), np.where(seen, simulated, 0.0)
     energy = (driver**2).sum(axis=0)

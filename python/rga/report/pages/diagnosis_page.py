@@ -8,6 +8,7 @@ import numpy as np
 from rga.diagnosis.checks.leave_one_out import unseen_groups
 from rga.diagnosis.member_forces import member_forces
 from rga.findings import Findings
+from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, kind_words
 from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.report.figures.bridge import draw_bridge, draw_residuals
@@ -56,6 +57,7 @@ def page(findings: Findings) -> dict[str, Any]:
         "rest": " ".join(rest),
         "period": period(findings),
         "gain": gain(findings),
+        "since": _since(findings.account),
         "warnings": list(dict.fromkeys([*findings.warnings, *record.warnings])),
         "next": BY_VERDICT[findings.verdict],
         "tasks": part("What to do first", tasks, findings),
@@ -220,6 +222,14 @@ def explanations(findings: Findings) -> list[dict[str, Any]]:
         }
         for one in ranked(findings.explanations)
     ]
+
+
+def _since(account: DiagnosisArrays) -> str | None:
+    """The time of the first row in which a cause acts, where all causes begin late."""
+    if not account.since:
+        return None
+    label = account.record.time_label(float(account.record.time[account.since]))
+    return label if isinstance(label, str) else f"{label:g} s"
 
 
 def sensors(findings: Findings) -> list[dict[str, str]]:

@@ -9,7 +9,7 @@ from rga.diagnosis.assemble.gaps import gap, groups
 from rga.diagnosis.data.held_out import Gain
 from rga.diagnosis.preparation.prepare import PreparedRecord
 from rga.findings.arrays import DiagnosisArrays
-from rga.model import Model
+from rga.model import Model, read_effect
 
 
 @pytest.fixture
@@ -54,3 +54,22 @@ def test_groups_are_off_by_percent(arrays: DiagnosisArrays) -> None:
     assert group.after_percent == pytest.approx(-10)
     silent = replace(arrays, before=np.zeros_like(readings))
     assert groups(silent, {"west": ["D1"]})[0].before_percent == 0.0
+
+
+def test_percents_of_a_late_cause_are_over_the_rows_from_its_onset_on(
+    arrays: DiagnosisArrays,
+) -> None:
+    record, row = arrays.record, 30
+    late = np.arange(len(record))[:, None] >= row
+    begun = record.origin + float(record.time[row])
+    bias = {"kind": "sensor_bias", "sensor": "D1", "offset": 1.0, "onset": begun}
+    always = {name: one for name, one in bias.items() if name != "onset"}
+    before = np.where(late, record.readings / 1.25, record.readings)
+    other = arrays.model.extended({"cause": read_effect(bias, "test")})
+    (told,) = groups(replace(arrays, extended=other, before=before), {"west": ["D1"]})
+    assert told.before_percent == pytest.approx(25)
+    assert told.since == record.time_label(float(record.time[row]))
+    other = arrays.model.extended({"cause": read_effect(always, "test")})
+    (told,) = groups(replace(arrays, extended=other, before=before), {"west": ["D1"]})
+    assert 0 < told.before_percent < 25
+    assert told.since is None
