@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from findings_invariants import check
 from rga import Findings, diagnose
-from safe_words import check
 from site_truss import LOADS, MEMBERS, NOISE, SPREAD, STEP, Array, Logged, Site, model
 
 SHORT = "too short to decide"
