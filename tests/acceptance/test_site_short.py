@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from findings_invariants import check
+from findings_invariants import check_invariants
 from rga import Findings, diagnose
 from site_truss import LOADS, MEMBERS, NOISE, SPREAD, STEP, Array, Logged, Site, model
 
@@ -35,13 +35,14 @@ def logged(seed: int, rows: int, loaded: Array, shift: float) -> Logged:
 
 def found(log: Logged) -> Findings:
     findings = diagnose(model(), log.record())
-    check(findings)
+    check_invariants(findings)
     return findings
 
 
+@pytest.mark.parametrize("shift", [1.4, 1.0])
 @seeds
-def test_a_record_that_is_too_short_says_so(seed: int) -> None:
-    findings = found(logged(seed, 12, LOADED, 1.4))
+def test_a_record_that_is_too_short_says_so(seed: int, shift: float) -> None:
+    findings = found(logged(seed, 12, LOADED, shift))
     said = findings.unexplained.looks_like.split("; ")
     assert said[0] == (
         f"the record is {SHORT}: the loads move the readings in 2 of its 12 rows, "
@@ -50,7 +51,6 @@ def test_a_record_that_is_too_short_says_so(seed: int) -> None:
     assert findings.verdict in ("unknown", "partial")
     if findings.verdict == "unknown":
         assert (said[1:], findings.misfits) == ([], [])
-    assert SHORT not in found(logged(seed, 12, LOADED, 1.0)).sentence()
 
 
 @seeds

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from findings_invariants import check
+from findings_invariants import check_invariants
 from rga import Findings, diagnose
 from rga.diagnosis.preparation.prepare import prepare
 from site_truss import MEMBERS, NOISE, ROWS, STEP, Array, Logged, Site, logged, model
@@ -22,7 +22,7 @@ seeds = pytest.mark.parametrize("seed", [1, 2])
 
 def found(log: Logged, zero: tuple[int, int] | None = None) -> Findings:
     findings = diagnose(model(), log.record(zero=zero))
-    check(findings)
+    check_invariants(findings)
     return findings
 
 

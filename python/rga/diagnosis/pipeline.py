@@ -145,8 +145,9 @@ def _diagnose(
         for name in prepared.apart
     ]
     reasons += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
+    short = too_short(whole.data, before, whole.deviation)
     structure = (
-        bool(reasons)
+        bool(reasons or short)
         or share > criteria.structure.share
         or bool(bends(found.problem) or curves(found.problem))
     )
@@ -158,11 +159,10 @@ def _diagnose(
         failed,
     )
     looks_like = [*reasons, pattern]
-    short = too_short(whole.data, before, whole.deviation)
     if short and said == "unknown":
         # What else is said of so few rows is chance.
         off, looks_like = [], [*prepared.doubts, short]
-    elif short and said == "partial":
+    elif short:
         looks_like = [short, *looks_like]
     findings = Findings(
         verdict=said,

@@ -38,7 +38,7 @@ class RecordCriteria(CriteriaGroup):
     loaded_rows: Count = criterion(
         10,
         "rows",
-        "rows under load below which an unknown record of few rows is called too short to decide",
+        "rows under load below which a record of few rows is too short to decide",
         "of ten rows two are held out and eight fitted; judgement: fewer confirm no cause",
     )
     unit_correlation: Share = criterion(
