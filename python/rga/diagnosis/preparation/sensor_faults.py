@@ -3,7 +3,8 @@
 A channel is rejected where it says what no structure under these loads says, alone among the
 channels, and far beyond its noise: whatever broke it. What an effect of the vocabulary could do to
 a channel is left to the search for causes: a jump, a slope, another response from some row on, or
-the time history of a bearing that sticks.
+the time history of a bearing that sticks. What goes with the square of its own reading is left to
+the curves among the residuals.
 """
 
 from collections.abc import Callable, Sequence
@@ -190,6 +191,10 @@ def _erratic(
         begun = change.row >= PARTS[0] * count
         row = int(np.flatnonzero(seen)[change.row]) if begun else None
         return BrokenChannel(sensor, "erratic", why, count - change.row, row)
+    left[seen, number] = change.straight
+    straight = replace(parts, left=left, own=beyond_others(left, observed))
+    if straight.size[number] <= criteria.own_part:
+        return None
     largest = criteria.own_part * usual
     far = np.abs(rest) > 2 * largest
     if far.mean() < criteria.spiking_share and robust_deviation(rest[~far]) < largest:
@@ -229,11 +234,14 @@ class _Change:
         row: number of the reading.
         jump: of the level there.
         rest: float[readings].
+        straight: the same beside the square of what the channel should read, float[readings]: a
+            gauge that works goes with it on a member that softens.
     """
 
     row: int
     jump: float
     rest: FloatArray
+    straight: FloatArray
 
 
 def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: bool) -> _Change:
@@ -247,25 +255,32 @@ def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: 
     courses = basis[:, : rows // ROWS_PER_COURSE]
     always = np.column_stack([np.ones(rows), clock / rows, courses])
     few = np.column_stack([simulated, basis[:, : rows // ROWS_PER_CHANGE]])
+    scaled = (simulated - simulated.mean()) / max(float(simulated.std()), 1e-300)
 
-    def at(row: int) -> _Change:
+    def design(row: int) -> FloatArray:
+        if not onsets:
+            return always
         slope = np.maximum(clock - row, 0) / rows
         later = (clock >= row)[:, None] * np.column_stack([np.ones(rows), slope, few])
-        design = np.hstack([always, later])
-        weights = np.linalg.lstsq(design, own, rcond=None)[0]
-        return _Change(row, float(weights[always.shape[1]]), own - design @ weights)
+        return np.hstack([always, later])
 
-    def left(change: _Change) -> float:
-        return float((change.rest**2).sum())
+    def fitted(row: int) -> tuple[FloatArray, FloatArray]:
+        weights = np.asarray(np.linalg.lstsq(design(row), own, rcond=None)[0], dtype=float)
+        return weights, own - design(row) @ weights
 
-    if not onsets:
-        weights = np.linalg.lstsq(always, own, rcond=None)[0]
-        return _Change(0, 0.0, own - always @ weights)
-    first, last = int(MARGIN * rows), int((1 - MARGIN) * rows)
-    step = max(1, (last - first) // MOMENTS)
-    best = min((at(row) for row in range(first, last + 1, step)), key=left)
-    near = range(max(first, best.row - step), min(last, best.row + step) + 1)
-    return min((at(row) for row in near), key=left)
+    def left(row: int) -> float:
+        return float((fitted(row)[1] ** 2).sum())
+
+    best = 0
+    if onsets:
+        first, last = int(MARGIN * rows), int((1 - MARGIN) * rows)
+        step = max(1, (last - first) // MOMENTS)
+        best = min(range(first, last + 1, step), key=left)
+        best = min(range(max(first, best - step), min(last, best + step) + 1), key=left)
+    weights, rest = fitted(best)
+    curved = np.column_stack([design(best), scaled**2])
+    straight = own - curved @ np.linalg.lstsq(curved, own, rcond=None)[0]
+    return _Change(best, float(weights[always.shape[1]]) if onsets else 0.0, rest, straight)
 
 
 def _lone(far: BoolArray, longest: int) -> BoolArray:

@@ -59,6 +59,15 @@ def test_a_channel_of_its_own_ways_is_erratic(posed: Problem, swing: np.ndarray)
     assert (found.sensor, found.mode, found.row) == ("D3", "erratic", None)
 
 
+def test_a_channel_on_a_member_that_softens_works(posed: Problem, swing: np.ndarray) -> None:
+    shown = posed.simulated[:, 2]
+    square = ((shown - shown.mean()) / shown.std()) ** 2
+    curve = np.abs(swing) * square / square.std()
+    assert broken(posed, with_own(posed, curve)) == []
+    shuffled = np.random.default_rng(4).permutation(curve)
+    assert [one.sensor for one in broken(posed, with_own(posed, shuffled))] == ["D3"]
+
+
 def test_a_channel_works_until_it_breaks(posed: Problem, swing: np.ndarray) -> None:
     swing[:70] = 0.0
     (found,) = broken(posed, with_own(posed, swing))
