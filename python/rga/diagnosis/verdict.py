@@ -14,6 +14,8 @@ from rga.findings.schema import Verdict
 
 #: misfits that are reported in words: a sentence of more is not read; all stand in the findings
 MOST_MISFITS = 5
+#: rows within which causes begin together: of a jump the onset is known to a few
+TOGETHER = 10
 
 
 def verdict(found: Found, faults: bool, structure: bool) -> Verdict:
@@ -80,6 +82,12 @@ def reasons_for_doubt(
             f"are off by {members:.1%} and gauges by {gains:.1%}, as they may be as built, would "
             "explain it, and so might something that no kind of effect says"
         )
+    together = _begun_together(found)
+    if together >= criteria.begun_together:
+        reasons.append(
+            f"{together} channels are off from about the same moment on: a logger that was started "
+            "or set to zero anew may show this as well"
+        )
     plausible = np.array(criteria.plausible)
     if (found.problem.levels > criteria.implausible * plausible).any():
         worst = int(np.argmax(found.problem.levels / plausible))
@@ -89,6 +97,14 @@ def reasons_for_doubt(
             f"{plausible[worst]:.0%} is plausible"
         )
     return reasons
+
+
+def _begun_together(found: Found) -> int:
+    """The largest number of causes at sensors that begin within some rows of each other."""
+    moments = [one.onset for one in found.fit.hypotheses if one.kind.on_sensors]
+    begun = np.array([moment for moment in moments if moment is not None])
+    rows = np.searchsorted(found.problem.data.time, begun)
+    return int((np.abs(rows[:, None] - rows) <= TOGETHER).sum(1).max(initial=0))
 
 
 def _named(one: Hypothesis, found: Found) -> bool:

@@ -56,5 +56,7 @@ class DiagnosisArrays:
             if name not in self.model.effects and not isinstance(effect, SensorFault)
         ]
         clock = self.record.origin + self.record.time
-        acts = np.array([effect.weight(clock) > 0 for effect in causes]).reshape(-1, len(clock))
+        acts = np.array([effect.weight(clock) > 0 for effect in causes]).reshape(
+            len(causes), len(clock)
+        )
         return int(np.argmax(acts.any(0))) if acts.any() else 0

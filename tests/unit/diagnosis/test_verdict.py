@@ -105,3 +105,17 @@ def test_scatter_beyond_what_is_plausible_is_a_warning(nothing: Found) -> None:
         wide = replace(nothing, problem=replace(nothing.problem, levels=levels))
         (words,) = reasons(wide)
         assert words.startswith(f"{of} would have to scatter by 20.0%")
+
+
+@pytest.mark.parametrize(("rows", "said"), [((40, 41, 44), 1), ((20, 41, 62), 0)])
+def test_channels_that_are_off_from_one_moment_on_are_a_warning(
+    noisy: Problem, rows: tuple[int, ...], said: int
+) -> None:
+    names = ("D1", "D2", "D3")
+    late = [
+        candidate(noisy, "sensor_bias", sensor=name).beginning(float(noisy.data.time[row]), "step")
+        for name, row in zip(names, rows, strict=True)
+    ]
+    found = found_with(noisy, late)
+    reasons = reasons_for_doubt(list(names), [], found, [], [], SOUND, None)
+    assert sum("same moment" in one for one in reasons) == said

@@ -3,8 +3,8 @@
 A channel is rejected where it says what no structure under these loads says, alone among the
 channels, and far beyond its noise: whatever broke it. What an effect of the vocabulary could do to
 a channel is left to the search for causes: a jump, a slope, another response from some row on, or
-the time history of a bearing that sticks. What goes with the square of its own reading is left to
-the curves among the residuals.
+the time history of a bearing that sticks. What goes with the square of its own reading, or lags
+behind it, is left to the curves among the residuals.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,6 +27,7 @@ from rga.diagnosis.preparation.single_channel import BrokenChannel, copied, dead
 from rga.findings.criteria.channels import ChannelCriteria
 from rga.model.effects.sensors.zero_offset import offset_scale
 from rga.model.schema import Model
+from rga.numerics.hysteresis import PLAY, play
 
 #: rows for each time history of the loads to which the response may change from a moment on
 ROWS_PER_CHANGE = 16
@@ -234,8 +235,9 @@ class _Change:
         row: number of the reading.
         jump: of the level there.
         rest: float[readings].
-        straight: the same beside the square of what the channel should read, float[readings]: a
-            gauge that works goes with it on a member that softens.
+        straight: the same beside the square of what the channel should read and what lags behind
+            it, float[readings]: a gauge that works goes with these on a member that softens, or
+            slips with friction.
     """
 
     row: int
@@ -278,7 +280,8 @@ def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: 
         best = min(range(first, last + 1, step), key=left)
         best = min(range(max(first, best - step), min(last, best + step) + 1), key=left)
     weights, rest = fitted(best)
-    curved = np.column_stack([design(best), scaled**2])
+    lagging = play(np.tile(scaled[:, None], len(PLAY)), np.array(PLAY))
+    curved = np.column_stack([design(best), scaled**2, lagging])
     straight = own - curved @ np.linalg.lstsq(curved, own, rcond=None)[0]
     return _Change(best, float(weights[always.shape[1]]) if onsets else 0.0, rest, straight)
 

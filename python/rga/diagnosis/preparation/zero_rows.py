@@ -17,6 +17,8 @@ from rga.diagnosis.preparation.levels import Compared, means_between
 ANYWHERE = (1, 2, 3, 5, 10, 20, 50)
 #: chance at which means of some rows of a record may lie so near to zero by themselves
 BY_CHANCE = 1e-6
+#: offset that counts where the rows surely are those of a zero, in deviations of the noise
+SEEN = 3.0
 #: share of all rows in which a channel must be off by what was taken off there: something that
 #: begins later moves the others, and rows in which a logger wrote zeros move none
 STANDS = 0.3
@@ -47,20 +49,24 @@ def zero_rows(compared: Compared) -> ZeroRows | None:
     shown = np.where(compared.data.observed, compared.simulated, np.nan)
     mean = means_between(compared.readings, first, end)
     should = means_between(shown, first, end)
-    telling = np.abs(np.where(compared.working, should, 0.0)) > criteria.offset * compared.noise
-    near = telling & (np.abs(mean) <= criteria.near_zero * compared.own)
-    found = telling.sum(1) >= compared.at_least(criteria.share_of_channels)
-    found &= near.sum(1) >= criteria.reading_zero * telling.sum(1)
-    squares = np.zeros(near.shape)
-    np.divide(mean, compared.own, out=squares, where=near)
+    should = np.where(compared.working, should, 0.0)
+    zero = compared.working & (np.abs(mean) <= criteria.near_zero * compared.own)
+    squares = np.zeros(zero.shape)
+    np.divide(mean, compared.own, out=squares, where=zero)
     # Of stretches that read zero as nearly, the longer one says more.
-    chance = chi2.cdf((squares**2).sum(1) * (end - first), np.maximum(near.sum(1), 1))
+    chance = chi2.cdf((squares**2).sum(1) * (end - first), np.maximum(zero.sum(1), 1))
+    surely = chance * len(first) < BY_CHANCE
+    surely &= zero.sum(1) >= criteria.reading_zero * compared.working.sum()
+    least = np.where(surely, SEEN, criteria.offset)[:, None] * compared.noise
+    telling = np.abs(should) > least
+    few = np.where(surely, 1, compared.at_least(criteria.share_of_channels))
+    found = telling.sum(1) >= few
+    found &= (telling & zero).sum(1) >= criteria.reading_zero * telling.sum(1)
     order = np.argsort(np.where(found, chance, np.inf), kind="stable")
     for best in order[: min(LOOKED_AT, found.sum())]:
         taken = np.where(telling[best], should[best], 0.0)
         if _stands(compared, taken):
-            surely = bool(chance[best] * len(first) < BY_CHANCE)
-            return ZeroRows(int(first[best]), int(end[best]) - 1, taken, surely)
+            return ZeroRows(int(first[best]), int(end[best]) - 1, taken, bool(surely[best]))
     return None
 
 

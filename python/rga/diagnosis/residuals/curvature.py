@@ -1,13 +1,15 @@
-"""Curves: readings that go with a square, of a measured context or of what they should be.
+"""Curves and loops: readings that go with a square, or lag behind what they should be.
 
 A linear structure shows combinations of the courses of its loads, whatever its stiffnesses. What
 the channels show along a square beyond such combinations was put there by no cause that acts in
 proportion: the specification test of Ramsey (1969, J. Royal Statistical Society B 31, 350). The
 square of a context is sought in all channels together, that of its own simulated reading in each
-as well: a member that softens bends the reading of its gauge. A cause that follows the linear part
-of such a response is none.
+as well: a member that softens bends the reading of its gauge. A joint that slips with friction lags
+behind its force, and others with it: a loop over what a channel should read is sought in all
+channels. A cause that follows the linear part of such a response is none.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,50 +19,68 @@ from rga.arrays import FloatArray
 from rga.diagnosis.residuals.slopes import STRAIGHT, linear_histories, squares, standardised
 from rga.diagnosis.search.linearised import Calibration, Problem, load_basis
 from rga.numerics.decompositions import thin_svd
+from rga.numerics.hysteresis import PLAY, loop
 
-#: share of the rows that the courses of the loads may take, and of a square that they must leave
+#: share of the rows that the courses of the loads may take, and of a curve that they must leave
 MOST_COURSES, LEFT = 1 / 12, 1e-3
+#: correlation from which on two readings drive the same loop
+ALIKE = 0.97
 
 
 @dataclass(frozen=True)
 class Curve:
-    """What the channels go with the square of.
+    """What the channels go with that is not in proportion.
 
     Attributes:
-        driver: name of a measured context, or `OWN_READING`.
+        words: what that is.
         linear: the driver of each channel about its mean, in its standard deviations, float[rows,
             sensors].
-        squared: the part of its square that no straight line has, float[rows, sensors].
+        shape: the curve or loop over it, float[rows, sensors].
         sizes: of that part in the readings, as far as scatter does not explain it, over the noise
             of the channel [-], float[sensors].
+        alone: each channel has a size of its own, that tells nothing of the others.
     """
 
-    driver: str
+    words: str
     linear: FloatArray
-    squared: FloatArray
+    shape: FloatArray
     sizes: FloatArray
+    alone: bool
 
 
-#: the driver of channels that each go with the square of their own simulated reading
-OWN_READING = "what they should be"
+@dataclass(frozen=True)
+class _Tried:
+    """A curve that may be in the readings.
+
+    Attributes:
+        words, linear, shape: of the curve.
+        alone: a single channel may have it, and be lost among many that have not.
+        among: number of curves of its sort that are tried.
+    """
+
+    words: str
+    linear: FloatArray
+    shape: FloatArray
+    alone: bool
+    among: int
 
 
 def curves(problem: Problem) -> list[Curve]:
-    """What the channels go with the square of, beyond chance."""
+    """What the channels go with that is not in proportion, beyond chance."""
     data, rows = problem.data, problem.covariance.rows
     sensors = len(data.sensors)
-    drivers = _drivers(problem)
+    tried = [*_over_contexts(problem), _over_own_readings(problem), *_loops(problem)]
     residual = problem.residual(problem.simulated)
     left = np.where(data.observed, residual - problem.explained_by_scatter(residual), 0.0)
     courses = _courses(load_basis(problem.simulator, data))
     known = courses.shape[1]
-    sizes, squared, count = np.zeros((3, sensors, len(drivers)))
+    sizes, squared, count = np.zeros((3, sensors, len(tried)))
     for sensor in range(sensors):
         free = int(data.observed[:, sensor].sum()) - known - 1
         if free < known:
             continue
-        curved = np.column_stack([square[:, sensor] for _, square in drivers.values()])
-        columns = np.column_stack([courses, curved, left[:, sensor]]).T[:, None]
+        shapes = np.column_stack([one.shape[:, sensor] for one in tried])
+        columns = np.column_stack([courses, shapes, left[:, sensor]]).T[:, None]
         white = rows.whiten(columns, np.full(len(columns), sensor)[:, None])[:, 0].T
         span, _ = np.linalg.qr(white[:, :known])
         rest = white[:, known:] - span @ (span.T @ white[:, known:])
@@ -72,21 +92,20 @@ def curves(problem: Problem) -> list[Curve]:
         squared[sensor, seen] = product**2 / size[seen] / ((reading**2).sum() / free)
         count[sensor, seen] = 1
     chance = chi2.sf(squared.sum(0), np.maximum(count.sum(0), 1))
-    # One channel of its own curve is lost among many straight ones.
-    alone = sensors * chi2.sf(squared[:, -1].max(initial=0.0), 1)
-    chance[-1] = 2 * min(chance[-1], alone)
-    contexts = len(drivers) - 1
-    beyond = [problem.criteria.structure.curve_chance / contexts] * contexts
-    beyond.append(problem.criteria.structure.curve_chance)
-    return [
-        Curve(driver, *drivers[driver], sizes[:, number])
-        for number, driver in enumerate(drivers)
-        if chance[number] < beyond[number]
-    ]
+    largest = sensors * chi2.sf(squared.max(0, initial=0.0), 1)
+    found: dict[str, tuple[float, Curve]] = {}
+    for number, one in enumerate(tried):
+        likely = 2 * min(chance[number], largest[number]) if one.alone else chance[number]
+        if likely < problem.criteria.structure.curve_chance / one.among:
+            curve = Curve(one.words, one.linear, one.shape, sizes[:, number], one.alone)
+            # One loop shows over many readings, and with other widths.
+            known = found.get(one.words)
+            found[one.words] = min(known or (likely, curve), (likely, curve), key=lambda at: at[0])
+    return [curve for _, curve in found.values()]
 
 
 def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
-    """Random effects by which every channel may follow a driver and its square.
+    """Random effects by which every channel may follow a driver and a curve over it.
 
     Args:
         problem: in which there are curves.
@@ -94,32 +113,66 @@ def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
     """
     free = []
     for curve in found:
-        size = STRAIGHT * float(np.sqrt((curve.sizes**2).mean()))
+        common = np.full(len(curve.sizes), np.sqrt((curve.sizes**2).mean()))
+        size = STRAIGHT * (np.abs(curve.sizes) if curve.alone else common)
         for sensor, one in enumerate(np.diag(problem.noise.sigma)):
-            if problem.data.observed[:, sensor].any():
-                both = (curve.linear[:, sensor], curve.squared[:, sensor])
-                free += [(np.outer(along, one), size) for along in both]
+            if problem.data.observed[:, sensor].any() and size[sensor] > 0:
+                both = (curve.linear[:, sensor], curve.shape[:, sensor])
+                free += [(np.outer(along, one), float(size[sensor])) for along in both]
     return free
 
 
-def _drivers(problem: Problem) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """What a square is sought of with that square, float[rows, sensors] each: own readings last."""
-    sensors = len(problem.data.sensors)
-    linear = linear_histories(problem)
-    drivers = {
-        name: (np.tile(linear[name][:, None], sensors), np.tile(square[:, None], sensors))
-        for name, square in squares(linear).items()
-        if name not in problem.data.belief.latent
-    }
-    own = dict(enumerate(problem.simulated.T))
-    straight = standardised(own)
-    curved = squares(straight)
-    nothing = np.zeros(len(problem.data.time))
-    drivers[OWN_READING] = (
-        np.column_stack([straight.get(sensor, nothing) for sensor in own]),
-        np.column_stack([curved.get(sensor, nothing) for sensor in own]),
-    )
-    return drivers
+def _over_contexts(problem: Problem) -> list[_Tried]:
+    """Squares of the measured contexts, the same in every channel."""
+    every = np.ones(len(problem.data.sensors))
+    linear, latent = linear_histories(problem), problem.data.belief.latent
+    curved = {name: one for name, one in squares(linear).items() if name not in latent}
+    return [
+        _Tried(
+            f"the readings go with the square of {name}",
+            np.outer(linear[name], every),
+            np.outer(square, every),
+            alone=False,
+            among=len(curved),
+        )
+        for name, square in curved.items()
+    ]
+
+
+def _over_own_readings(problem: Problem) -> _Tried:
+    """The square of what each channel should read."""
+    shown = problem.simulated
+    own = standardised(dict(enumerate(shown.T)))
+    nothing = np.zeros(len(shown))
+    curved = squares(own)
+    linear = np.column_stack([own.get(sensor, nothing) for sensor in range(shown.shape[1])])
+    square = np.column_stack([curved.get(sensor, nothing) for sensor in range(shown.shape[1])])
+    bent = "the readings go with the square of what the model says that they should be"
+    return _Tried(bent, linear, square, alone=True, among=1)
+
+
+def _loops(problem: Problem) -> list[_Tried]:
+    """Loops over what each channel should read, the same in every channel."""
+    words = "the readings lag behind what the model says, in a loop as of friction"
+    every = np.ones(len(problem.data.sensors))
+    drivers = _distinct(standardised(dict(enumerate(problem.simulated.T))).values())
+    if not drivers:
+        return []
+    together = np.repeat(np.column_stack(drivers), len(PLAY), axis=1)
+    loops = loop(together, np.tile(PLAY, len(drivers)))
+    return [
+        _Tried(words, np.outer(linear, every), np.outer(one, every), True, len(loops.T))
+        for linear, one in zip(together.T, loops.T, strict=True)
+    ]
+
+
+def _distinct(courses: Iterable[FloatArray]) -> list[FloatArray]:
+    """Standardised courses, less those that are much like another, or its mirror image."""
+    kept: list[FloatArray] = []
+    for one in courses:
+        if all(abs(one @ other) < ALIKE * len(one) for other in kept):
+            kept.append(one)
+    return kept
 
 
 def _courses(basis: FloatArray) -> FloatArray:

@@ -176,7 +176,7 @@ def in_words(problem: Problem, contexts: Values) -> str:
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
     chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
     curved = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
-    curved += [f"the readings go with the square of {one.driver}" for one in curves(problem)]
+    curved += dict.fromkeys(one.words for one in curves(problem))
     scatter = "; ".join([*curved, chance])
     if problem.factors.shape[1] == 0:
         return f"nothing that varies in common from row to row; {scatter}"

@@ -337,14 +337,22 @@ def _pruned(base: Simulator, problem: Problem, current: Fit) -> tuple[Problem, F
 
 
 def without_needless(problem: Problem, found: Found) -> Fit:
-    """The causes, less those that another problem on the same record speaks for much less."""
+    """The causes, less those that another problem on the same record speaks for much less.
+
+    A cause at a sensor stays where it is named there too: a channel that is far off is no less off
+    for a slope that may be free within the size of a curve.
+    """
     base, kept = found.base, list(range(len(found.fit.hypotheses)))
     least, share = problem.criteria.naming.log_odds, problem.criteria.naming.kept_with_free_slopes
+    needed = [
+        least if cause.kind.on_sensors else max(least, share * odds)
+        for cause, odds in zip(found.fit.hypotheses, found.log_odds, strict=True)
+    ]
     current = fit(problem, base, found.fit.hypotheses, found.fit.z)
     while kept:
         fits = [without_cause(problem, base, current, k) for k in range(len(kept))]
         over = [
-            current.log_evidence - one.log_evidence - max(least, share * found.log_odds[number])
+            current.log_evidence - one.log_evidence - needed[number]
             for one, number in zip(fits, kept, strict=True)
         ]
         weakest = int(np.argmin(over))

@@ -19,7 +19,7 @@ class FitCriteria(CriteriaGroup):
         0.05,
         "-",
         "plausible spread of EA of members",
-        f"{_JCSS}: modulus 3 % and area of a section 4 %, together 5 %",
+        f"{_JCSS}: modulus 3 %; with a judgement of 4 % for the area of a section, 5 %",
     )
     gains: Share = criterion(
         0.02,
@@ -59,6 +59,13 @@ class FitCriteria(CriteriaGroup):
         "on the record is not called explained",
         "judgement: a true cause brings it down or leaves it; causes that undo each other on the "
         "channels fitted raise it",
+    )
+    begun_together: Count = criterion(
+        3,
+        "channels",
+        "channels with a cause of their own that begins within ten rows of the others', from which "
+        "on a logger that was started anew is as likely",
+        "judgement: gauges that come loose do so one by one",
     )
     stated_noise: Multiple = criterion(
         4.0,

@@ -8,6 +8,7 @@ import pytest
 from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
 from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.linearised import Problem, load_basis
+from rga.numerics.hysteresis import play
 
 
 def broken(
@@ -59,10 +60,14 @@ def test_a_channel_of_its_own_ways_is_erratic(posed: Problem, swing: np.ndarray)
     assert (found.sensor, found.mode, found.row) == ("D3", "erratic", None)
 
 
-def test_a_channel_on_a_member_that_softens_works(posed: Problem, swing: np.ndarray) -> None:
+@pytest.mark.parametrize("lags", [False, True])
+def test_a_channel_on_a_member_that_softens_or_slips_works(
+    posed: Problem, swing: np.ndarray, lags: bool
+) -> None:
     shown = posed.simulated[:, 2]
-    square = ((shown - shown.mean()) / shown.std()) ** 2
-    curve = np.abs(swing) * square / square.std()
+    scaled = (shown - shown.mean()) / shown.std()
+    course = play(scaled[:, None], np.array([1.0]))[:, 0] if lags else scaled**2
+    curve = np.abs(swing) * course / course.std()
     assert broken(posed, with_own(posed, curve)) == []
     shuffled = np.random.default_rng(4).permutation(curve)
     assert [one.sensor for one in broken(posed, with_own(posed, shuffled))] == ["D3"]

@@ -8,9 +8,10 @@ import pytest
 
 import rga
 from rga.diagnosis.preparation.prepare import prepare
-from rga.diagnosis.residuals.curvature import OWN_READING, curves
+from rga.diagnosis.residuals.curvature import curves
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import settled
+from rga.numerics.hysteresis import loop, play
 from rga.simulation import Simulator
 from rga_bench.diagnosis.design import Draw
 
@@ -45,7 +46,7 @@ def with_response(healthy: Problem, power: int) -> Problem:
 
 def test_a_square_is_reported_whatever_its_pattern(healthy: Problem) -> None:
     (found,) = curves(with_response(healthy, 2))
-    assert found.driver == "air"
+    assert found.words.endswith("square of air")
     assert np.corrcoef(found.sizes, pattern(healthy))[0, 1] > 0.8
 
 
@@ -61,9 +62,32 @@ def test_one_channel_that_bends_with_its_own_reading(healthy: Problem, power: in
     readings = healthy.data.readings.copy()
     readings[:, 3] += 1.5 * healthy.noise.sigma[3] * course
     problem = settled(healthy.simulator, replace(healthy.data, readings=readings))
-    found = [curve for curve in curves(problem) if curve.driver == OWN_READING]
+    found = [curve for curve in curves(problem) if "should be" in curve.words]
     if power == 1:
         assert found == []
     else:
         (own,) = found
         assert np.abs(own.sizes).argmax() == 3
+
+
+@pytest.mark.parametrize("slips", [True, False])
+def test_a_joint_that_slips_lags_behind_its_force(healthy: Problem, slips: bool) -> None:
+    shown = healthy.simulated[:, [3]]
+    scaled = (shown - shown.mean()) / shown.std()
+    pushed = play(scaled, np.array([1.0])) if slips else scaled
+    readings = healthy.data.readings.copy()
+    readings[:, 3] += 2.5 * healthy.noise.sigma[3] * pushed[:, 0]
+    problem = settled(healthy.simulator, replace(healthy.data, readings=readings))
+    found = [curve for curve in curves(problem) if "lag" in curve.words]
+    assert len(found) == slips
+    assert all(np.abs(one.sizes).argmax() == 3 for one in found)
+
+
+def test_errors_of_a_context_are_no_loop() -> None:
+    """They are in the driver and in what is left: of a play they take part, of a loop none."""
+    draw = np.random.default_rng(5)
+    force, error = np.cumsum(draw.standard_normal(4000)), draw.standard_normal(4000)
+    driver = (force / force.std() + 0.3 * error)[:, None]
+    assert abs(np.corrcoef(loop(driver, np.array([0.4]))[:, 0], error)[0, 1]) < 0.05
+    behind = driver - play(driver, np.array([0.4]))
+    assert abs(np.corrcoef(behind[:, 0], error)[0, 1]) > 0.2
