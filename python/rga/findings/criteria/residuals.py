@@ -19,7 +19,7 @@ class FitCriteria(CriteriaGroup):
         0.05,
         "-",
         "plausible spread of EA of members",
-        f"{_JCSS}: modulus 3 %; with a judgement of 4 % for the area of a section, 5 %",
+        f"{_JCSS}: modulus 3 %; judgement: area of a section 4 %, together 5 %",
     )
     gains: Share = criterion(
         0.02,

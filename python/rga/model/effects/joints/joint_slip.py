@@ -30,7 +30,10 @@ class JointSlip(Effect):
             " loop"
         ),
     )
-    usual = f"slip {USUAL} m: holes are 1 to 3 mm wider than their bolts (EN 1090-2, 6.6)"
+    usual = (
+        f"slip {USUAL} m: a judgement; holes are 1 to 3 mm wider than their bolts (EN 1090-2, "
+        "table 11)"
+    )
     structural = True
     member: Members = None
     group: Groups = None

@@ -26,8 +26,8 @@ class ElasticModulus(Effect):
         test="{vehicle}: known weights separate the stiffness from the load",
     )
     usual = (
-        f"factor {USUAL}: a judgement between steel, whose modulus has a coefficient of variation "
-        "of 3 %, and concrete, with 15 % (JCSS Probabilistic Model Code, 3.2 and 3.1)"
+        f"factor {USUAL}: a judgement; the modulus of steel has a coefficient of variation of 3 % "
+        "(JCSS Probabilistic Model Code, 3.2), that of concrete a larger one"
     )
     structural = True
     material: Annotated[str | list[str], Place("material")]

@@ -43,8 +43,8 @@ class BearingFriction(Effect):
     )
     may_let_go = True
     usual = (
-        f"mu {MU}, from PTFE under its design pressure, 0.03 (EN 1337-2), to rusty steel on steel; "
-        f"permanent force {REACTION} N: judgements"
+        f"mu {MU}, from greased PTFE under 30 MPa, 0.03 (EN 1337-2, table 11), to rusty steel on "
+        f"steel; permanent force {REACTION} N: judgements"
     )
     structural = True
     remembers = True
