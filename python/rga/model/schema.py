@@ -16,7 +16,7 @@ from pydantic import (
 )
 
 from rga.errors import InputError
-from rga.model.effect import Effect, check_moment
+from rga.model.effect import Effect, check_moment, seconds
 from rga.model.parameter import Number, listed
 from rga.model.units import UNITS
 from rga.model.vocabulary import field_texts, kind_text
@@ -159,6 +159,8 @@ class Sensor(Part):
     ) -> tuple[float | str, float | str] | None:
         for moment in zero or ():
             check_moment(moment)
+        if zero and seconds(zero[1]) < seconds(zero[0]):
+            raise ValueError("the times run backwards: give [from, to]")
         return zero
 
     @model_validator(mode="after")

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.model.effect import seconds
 from rga.model.schema import Model
 from rga.records.record import Record
@@ -16,6 +17,10 @@ def zeros_of(model: Model, record: Record) -> list[Interval | None]:
     """The interval whose mean was taken off each sensor of a model; None where nothing was.
 
     That of the record goes before those that the model states, since it was taken off last.
+
+    Raises:
+        InputError: a channel of the record was zeroed outside the times of the record: what acted
+            there is not known.
     """
     if record.zero is not None:
         return [record.zero] * len(model.sensors)
@@ -26,7 +31,25 @@ def zeros_of(model: Model, record: Record) -> list[Interval | None]:
         else:
             first, last = (seconds(moment) - record.origin for moment in sensor.zero)
             found.append((first, last))
+    outside = [
+        name
+        for name, zero in zip(model.sensors, found, strict=True)
+        if name in record.sensors and lies_outside(record.time, zero)
+    ]
+    if outside:
+        raise _refused(model, record, outside)
     return found
+
+
+def lies_outside(time: FloatArray, interval: Interval | None) -> bool:
+    """Whether an interval has no moment between the first row and the last.
+
+    >>> [lies_outside(np.arange(4.0), one) for one in ((3.0, 9.0), (4.0, 9.0), None)]
+    [False, True, False]
+    """
+    if interval is None or not len(time):
+        return False
+    return bool(interval[1] < time[0] or interval[0] > time[-1])
 
 
 def rows_within(time: FloatArray, interval: Interval | None) -> NDArray[np.int64]:
@@ -42,3 +65,14 @@ def rows_within(time: FloatArray, interval: Interval | None) -> NDArray[np.int64
     if len(within):
         return within
     return np.array([np.abs(time - (first + end) / 2).argmin()], dtype=np.int64)
+
+
+def _refused(model: Model, record: Record, outside: list[str]) -> InputError:
+    name, more = outside[0], len(outside) - 1
+    stated = " to ".join(str(moment) for moment in model.sensors[name].zero or ())
+    start, end = (record.time_label(float(record.time[row])) for row in (0, -1))
+    return InputError(
+        f"the zero from {stated} lies outside the record, {start} to {end}",
+        f"sensor {name!r}{f' and {more} more' if more else ''} of model {model.name!r}",
+        'give "zero" in the times of the record, or leave it out where none was taken off',
+    )
