@@ -47,6 +47,15 @@ def place_words(places: Iterable[Any]) -> str:
     return ", ".join(_place(place) for place in places)
 
 
+def few_digits(value: float, digits: int = 2) -> str:
+    """A number of so many digits, without a power of ten.
+
+    >>> few_digits(932.4), few_digits(0.001), few_digits(1.26)
+    ('930', '0.001', '1.3')
+    """
+    return f"{float(f'{value:.{digits}g}'):.15g}"
+
+
 def verdict_sentence(findings: "Findings") -> str:
     """The verdict in a few sentences."""
     faults = [c.effect["sensor"] for c in findings.causes if is_fault(c.effect)]

@@ -8,6 +8,7 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.data.observations import Data
+from rga.diagnosis.preparation.suspicious import doubted_units
 from rga.diagnosis.search.hypothesis import hypotheses
 from rga.diagnosis.search.signatures import signatures
 from rga.model.schema import Model
@@ -26,6 +27,8 @@ class Compared:
         simulated: float[rows, sensors].
         noise: of the residual of each channel from row to row, float[sensors].
         own: noise of each sensor itself, float[sensors].
+        doubted: channels whose unit is in doubt, bool[sensors]: what they read next to nothing of,
+            or far too much, is no zero.
     """
 
     model: Model
@@ -34,6 +37,7 @@ class Compared:
     simulated: FloatArray
     noise: FloatArray
     own: FloatArray
+    doubted: BoolArray
 
     @classmethod
     def of(cls, model: Model, simulator: Simulator, data: Data) -> "Compared":
@@ -41,12 +45,13 @@ class Compared:
         simulated = data.predict(simulator)
         noise = noise_by_steps(np.where(data.observed, data.readings - simulated, np.nan))
         stated = np.array([model.sensors[name].noise or np.inf for name in data.sensors])
-        return cls(model, simulator, data, simulated, noise, np.minimum(stated, noise))
+        doubted = doubted_units(data, simulated)
+        return cls(model, simulator, data, simulated, noise, np.minimum(stated, noise), doubted)
 
     @property
     def working(self) -> BoolArray:
-        """Channels that do not stand still, bool[sensors]."""
-        return np.asarray(self.noise > 0)
+        """Channels that do not stand still, in units that are not doubted, bool[sensors]."""
+        return np.asarray((self.noise > 0) & ~self.doubted)
 
     def at_least(self, share: float) -> float:
         """Number of channels that must be off, for it to be no fault of their own.
@@ -72,7 +77,7 @@ class Compared:
         return list(changes(self.model, self.simulator, self.data))
 
     def over_noise(self, values: FloatArray) -> FloatArray:
-        """Values in units of the noise; zero of channels that stand still, or where missing."""
+        """Values in units of the noise; zero of channels that do not work, or where missing."""
         shown = np.nan_to_num(values) / np.where(self.working, self.noise, 1.0)
         return np.where(self.working, shown, 0.0)
 

@@ -12,6 +12,7 @@ from rga.diagnosis.preparation.bad_contexts import denied_rows, without_limits
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
 from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
 from rga.diagnosis.preparation.single_channel import BrokenChannel, lost_zeros, stuck_channels
+from rga.diagnosis.preparation.suspicious import suspicious_contexts, suspicious_units
 from rga.diagnosis.preparation.undeclared_zeros import with_own_zeros
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.linearised import load_basis
@@ -97,7 +98,11 @@ def prepare(
         data = _without(data, lost)
     chosen = _loaded_rows(simulator, data)
     data = guess_rows(simulator, data.rows(chosen))
-    suspicious = _suspicious(model, data, data.predict(simulator), record)
+    simulated = data.predict(simulator)
+    suspicious = [
+        *suspicious_units(data, simulated),
+        *suspicious_contexts(model, data, record),
+    ]
     for _ in range(GOES):
         broken = _broken(simulator, data, record)
         if not broken:
@@ -134,7 +139,7 @@ def prepare(
         spikes &= ~denied[:, None]
     if spikes.any():
         of = ", ".join(np.array(data.sensors)[spikes.any(0)])
-        warnings.append(f"{int(spikes.sum())} lone spikes of {of} were taken as missing readings")
+        warnings.append(_spike_words(int(spikes.sum()), of))
         data = replace(data, observed=data.observed & ~spikes)
     return PreparedRecord(
         data, record.rows(chosen), chosen, list(found.values()), warnings, zeros.doubts
@@ -193,47 +198,10 @@ def _beyond_loads(
     return found
 
 
-def _suspicious(model: Model, data: Data, simulated: FloatArray, record: Record) -> list[str]:
-    """What looks like a slip with units, or a context that is measured no more."""
-    warnings = []
-    limits = data.criteria.record
-    readings = np.where(data.observed, data.readings, np.nan)
-    factors = [
-        float(np.nanstd(own) / shown.std())
-        for own, shown in zip(readings.T, simulated.T, strict=True)
-        if shown.std() > 0 and abs(_correlation(own, shown, limits)) > limits.unit_correlation
-    ]
-    if len(factors) > data.readings.shape[1] / 2:
-        factor = float(np.median(factors))
-        if not 1 / limits.unit_factor < factor < limits.unit_factor:
-            warnings.append(
-                f"the readings go with the simulation and are about {factor:.2g} times as large: "
-                "check the units of record and model before any cause"
-            )
-    for name in data.belief.spread:
-        column = record.contexts.get(name)
-        if column is None:
-            continue
-        low, high = model.context[name].range
-        if ((column < low) | (column > high)).all():
-            warnings.append(
-                f"{name} lies outside its range {low:g}..{high:g} in every row: check its unit and "
-                "its zero before any cause"
-            )
-        last = int((column[::-1] == column[-1]).argmin() if (column != column[-1]).any() else 0)
-        if last > limits.still_share * len(column):
-            warnings.append(
-                f"{name} reads {column[-1]:g} exactly in the last {last} of {len(column)} rows: "
-                "check its sensor before any cause"
-            )
-    return warnings
-
-
-def _correlation(own: FloatArray, shown: FloatArray, limits: RecordCriteria) -> float:
-    seen = np.isfinite(own)
-    if seen.sum() < limits.least_rows or np.ptp(own[seen]) == 0 or np.ptp(shown[seen]) == 0:
-        return 0.0
-    return float(np.corrcoef(own[seen], shown[seen])[0, 1])
+def _spike_words(count: int, of: str) -> str:
+    if count == 1:
+        return f"a lone spike of {of} was taken as a missing reading"
+    return f"{count} lone spikes of {of} were taken as missing readings"
 
 
 def check_length(record: Record, criteria: RecordCriteria) -> None:

@@ -22,7 +22,7 @@ def zeroed_again(compared: Compared) -> int | None:
         shown = moving_means(compared.readings, taken)[rows]
         should = moving_means(expected, taken)[rows] + before
         far = np.maximum(criteria.far_from_zero * shift, criteria.offset * own)
-        telling = (np.abs(should) > far) & (noise > 0)
+        telling = (np.abs(should) > far) & compared.working
         zero = telling & (np.abs(shown) <= criteria.near_zero * own)
         missed = criteria.shift_share * np.abs(should) + criteria.shift_deviations * shift
         zero &= np.abs(after - before + should) <= missed
@@ -31,7 +31,7 @@ def zeroed_again(compared: Compared) -> int | None:
     if not found.any():
         return None
     # Rows beside it may read near zero too: where it happened the levels lie furthest apart.
-    apart = np.nansum(np.abs(after - before) / np.where(noise > 0, shift, np.inf), axis=1)
+    apart = np.nansum(np.abs(after - before) / np.where(compared.working, shift, np.inf), axis=1)
     row = int(rows[np.argmax(np.where(found, apart, -1.0))])
     return None if _one_cause(compared, row) else row
 

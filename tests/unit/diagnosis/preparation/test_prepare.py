@@ -62,7 +62,7 @@ def test_a_channel_can_be_left_out_later(model: Model, record: Record) -> None:
 
 def test_readings_in_another_unit_are_a_warning(model: Model, record: Record) -> None:
     found = ready(model, replace(record, readings=1000 * record.readings))
-    assert "about 1e+03 times as large" in " ".join(found.warnings)
+    assert "about 1000 times as large" in " ".join(found.warnings)
 
 
 def test_a_context_that_stands_still_or_is_out_of_range_is_a_warning(
@@ -84,3 +84,27 @@ def test_few_rows_are_a_warning_and_fewer_are_refused(model: Model, record: Reco
     assert "only 40 rows" in ready(model, record.rows(few)).warnings[0]
     with pytest.raises(InputError, match="the record has 5 rows"):
         ready(model, record.rows(np.arange(len(record)) < 5))
+
+
+def test_a_context_of_one_value_is_a_warning(model: Model, record: Record) -> None:
+    contexts = {**record.contexts, "temperature": np.full(len(record), 20.0)}
+    warnings = ready(model, replace(record, contexts=contexts)).warnings
+    assert [one for one in warnings if "temperature" in one] == [
+        "temperature has one value, 20, in all rows: what it does cannot be seen, and if it was "
+        "not measured leave it out of the record, so that it is inferred"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("channels", "words"),
+    [
+        ([0], "a lone spike of D1 was taken as a missing reading"),
+        ([0, 1], "2 lone spikes of D1, D2 were taken as missing readings"),
+    ],
+)
+def test_lone_spikes_are_counted(
+    model: Model, record: Record, channels: list[int], words: str
+) -> None:
+    readings = record.readings.copy()
+    readings[40, channels] += 1000 * (model.sensors["D1"].noise or 0.0)
+    assert ready(model, replace(record, readings=readings)).warnings == [words]

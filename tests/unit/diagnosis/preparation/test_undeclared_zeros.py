@@ -132,3 +132,28 @@ def test_a_logger_that_is_zeroed_again_keeps_its_longer_part(
     missing = np.isnan(record.readings).all(1)
     assert missing[:25].all()
     assert not missing[35:].any()
+
+
+@pytest.mark.parametrize(("doubted", "warnings"), [(True, 0), (False, 1)])
+def test_channels_in_another_unit_say_nothing_of_a_zero(
+    model: Model,
+    prepared: PreparedRecord,
+    measured_record: Callable[..., Record],
+    monkeypatch: pytest.MonkeyPatch,
+    doubted: bool,
+    warnings: int,
+) -> None:
+    """They read next to nothing of a load that comes, as if they had been set to zero there."""
+    monkeypatch.setattr("rga.diagnosis.preparation.levels.hypotheses", lambda *of: [])
+    if not doubted:
+        none = np.zeros(len(model.sensors), dtype=bool)
+        monkeypatch.setattr("rga.diagnosis.preparation.levels.doubted_units", lambda *of: none)
+    simulator, rows = Simulator(model), len(prepared.data.readings)
+    load = np.where(np.arange(rows) < 40, 0.0, 100.0) + np.random.default_rng(6).normal(0, 3, rows)
+    still = {name: np.full(rows, 20.0) for name in model.context} | {"west load": load}
+    data = replace(prepared.data, belief=prepared.data.belief.with_values(still))
+    noise = prepared.data.readings - prepared.data.predict(simulator)
+    readings = 1e-3 * (data.predict(simulator) + noise)
+    record = replace(measured_record(model), readings=readings)
+    found = with_own_zeros(model, simulator, record, replace(data, readings=readings))
+    assert sum("zeroed anew" in one for one in found.warnings) == warnings
