@@ -10,6 +10,7 @@ from rga.diagnosis.data.observations import Data, first_belief
 from rga.diagnosis.data.tare import Tare
 from rga.diagnosis.preparation.bad_contexts import denied_rows, without_limits
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
+from rga.diagnosis.preparation.missing_codes import missing_codes
 from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
 from rga.diagnosis.preparation.single_channel import BrokenChannel, lost_zeros, stuck_channels
 from rga.diagnosis.preparation.suspicious import suspicious_contexts, suspicious_units
@@ -82,6 +83,7 @@ def prepare(
     criteria = criteria or Criteria()
     check_length(record, criteria.record)
     record, limits = without_limits(record, criteria.record)
+    as_measured = record
     simulator = Simulator(model.without_zeros())
     given = _data(model, record, criteria)
     zeros = with_own_zeros(model, simulator, record, given)
@@ -102,6 +104,7 @@ def prepare(
     suspicious = [
         *suspicious_units(data, simulated),
         *suspicious_contexts(model, data, record),
+        *missing_codes(as_measured.channels(data.sensors), simulated),
     ]
     for _ in range(GOES):
         broken = _broken(simulator, data, record)
