@@ -194,7 +194,8 @@ def _erratic(
         return BrokenChannel(sensor, "erratic", why, count - change.row, row)
     left[seen, number] = change.straight
     straight = replace(parts, left=left, own=beyond_others(left, observed))
-    if straight.size[number] <= criteria.own_part:
+    kept = float((change.straight**2).sum()) / float((change.rest**2).sum())
+    if straight.size[number] <= criteria.own_part and kept < 1 - criteria.explained:
         return None
     largest = criteria.own_part * usual
     far = np.abs(rest) > 2 * largest
@@ -270,6 +271,10 @@ def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: 
         weights = np.asarray(np.linalg.lstsq(design(row), own, rcond=None)[0], dtype=float)
         return weights, own - design(row) @ weights
 
+    def beside(row: int, curve: FloatArray) -> FloatArray:
+        known = np.hstack([design(row), curve])
+        return np.asarray(own - known @ np.linalg.lstsq(known, own, rcond=None)[0])
+
     def left(row: int) -> float:
         return float((fitted(row)[1] ** 2).sum())
 
@@ -281,8 +286,8 @@ def _changed(own: FloatArray, basis: FloatArray, simulated: FloatArray, onsets: 
         best = min(range(max(first, best - step), min(last, best + step) + 1), key=left)
     weights, rest = fitted(best)
     lagging = play(np.tile(scaled[:, None], len(PLAY)), np.array(PLAY))
-    curved = np.column_stack([design(best), scaled**2, lagging])
-    straight = own - curved @ np.linalg.lstsq(curved, own, rcond=None)[0]
+    curves = [np.column_stack([scaled**2, one]) for one in lagging.T]
+    straight = min((beside(best, curve) for curve in curves), key=lambda one: float(one @ one))
     return _Change(best, float(weights[always.shape[1]]) if onsets else 0.0, rest, straight)
 
 
