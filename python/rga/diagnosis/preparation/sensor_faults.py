@@ -23,7 +23,14 @@ from rga.diagnosis.preparation.channel_prediction import (
     robust_fit,
     root_mean_square,
 )
-from rga.diagnosis.preparation.single_channel import BrokenChannel, copied, dead, scaled, silent
+from rga.diagnosis.preparation.single_channel import (
+    ENOUGH,
+    BrokenChannel,
+    copied,
+    dead,
+    scaled,
+    silent,
+)
 from rga.findings.criteria.channels import ChannelCriteria
 from rga.model.effects.sensors.zero_offset import offset_scale
 from rga.model.schema import Model
@@ -69,7 +76,8 @@ def broken_channels(
     suspects = [
         number
         for number in range(len(sensors))
-        if observed[:, number].sum() > 3 and _too_large(parts, readings, observed, number, criteria)
+        if observed[:, number].sum() >= _fewest(basis)
+        and _too_large(parts, readings, observed, number, criteria)
     ]
     possible = effects() if suspects else []
     faults = []
@@ -101,6 +109,14 @@ def broken_channels(
         )
         faults = [_begun(one, int(until[one.sensor])) for one in faults]
     return faults
+
+
+def _fewest(basis: FloatArray) -> int:
+    """Readings below which nothing is said of a channel's own ways.
+
+    With fewer not all time histories of the loads are fitted, and what is left is theirs.
+    """
+    return min(ROWS_PER_COURSE * (1 + int(basis.shape[1])), ENOUGH)
 
 
 def _begun(fault: BrokenChannel, row: int) -> BrokenChannel:

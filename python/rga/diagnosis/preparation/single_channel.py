@@ -11,6 +11,9 @@ from rga.model.schema import Model
 
 #: relative rounding of readings that are the same
 ROUNDING = 1e-9
+#: readings that are enough to judge a channel by the share that repeats; of fewer, coarse ones
+#: repeat by chance: so many standard deviations of a share of one half are allowed them
+ENOUGH, BY_CHANCE = 60, 3.0
 
 Mode = Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
 
@@ -52,10 +55,19 @@ def stuck_channels(
     for number, sensor in enumerate(sensors):
         column = readings[observed[:, number], number]
         repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
-        if repeats > criteria.repeats:
+        if repeats > criteria.repeats + _by_chance(len(column)):
             why = f"{repeats:.0%} of its readings repeat the one before exactly"
             faults.append(BrokenChannel(sensor, "stuck", why, int(repeats * len(column))))
     return faults
+
+
+def _by_chance(readings: int) -> float:
+    """Share of repeats that so many coarse readings may have by chance beyond what is usual.
+
+    >>> _by_chance(12) > 0.4, _by_chance(60)
+    (True, 0.0)
+    """
+    return BY_CHANCE * 0.5 / float(np.sqrt(readings)) if readings < ENOUGH else 0.0
 
 
 def lost_zeros(

@@ -24,10 +24,11 @@ def suspicious_units(data: Data, simulated: FloatArray) -> list[str]:
     factor = float(np.median(known))
     if not _of_a_unit(factor, data.criteria.record):
         return []
-    return [
+    words = (
         f"the readings go with the simulation and are about {few_digits(factor)} times as large: "
         "check the units of record and model before any cause"
-    ]
+    )
+    return [words]
 
 
 def doubted_units(data: Data, simulated: FloatArray) -> BoolArray:

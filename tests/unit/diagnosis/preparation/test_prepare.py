@@ -89,10 +89,11 @@ def test_few_rows_are_a_warning_and_fewer_are_refused(model: Model, record: Reco
 def test_a_context_of_one_value_is_a_warning(model: Model, record: Record) -> None:
     contexts = {**record.contexts, "temperature": np.full(len(record), 20.0)}
     warnings = ready(model, replace(record, contexts=contexts)).warnings
-    assert [one for one in warnings if "temperature" in one] == [
+    (words,) = (one for one in warnings if "temperature" in one)
+    assert words == (
         "temperature has one value, 20, in all rows: what it does cannot be seen, and if it was "
         "not measured leave it out of the record, so that it is inferred"
-    ]
+    )
 
 
 @pytest.mark.parametrize(

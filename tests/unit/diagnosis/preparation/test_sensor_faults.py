@@ -1,6 +1,7 @@
 """Channels that do not work, by loads and other channels; what a cause could do is left alone."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,6 +59,16 @@ def test_sound_channels_work(posed: Problem) -> None:
 def test_a_channel_of_its_own_ways_is_erratic(posed: Problem, swing: np.ndarray) -> None:
     (found,) = broken(posed, with_own(posed, swing))
     assert (found.sensor, found.mode, found.row) == ("D3", "erratic", None)
+
+
+@pytest.mark.parametrize(("rows", "found"), [(24, []), (70, ["D3"])])
+def test_few_rows_say_nothing_of_a_channel_of_its_own_ways(
+    posed: Problem, swing: np.ndarray, rows: int, found: list[str]
+) -> None:
+    chosen = np.arange(len(posed.simulated)) < rows
+    readings = with_own(posed, swing)[chosen]
+    few = replace(posed, data=posed.data.rows(chosen), simulated=posed.simulated[chosen])
+    assert [one.sensor for one in broken(few, readings)] == found
 
 
 @pytest.mark.parametrize("lags", [False, True])

@@ -66,6 +66,15 @@ def test_a_channel_that_mostly_repeats_itself_is_stuck(share: float, found: bool
         assert f"{(still - 1) / (ROWS - 1):.0%}" in faults[0].why
 
 
+def test_few_coarse_readings_repeat_by_chance() -> None:
+    coarse = np.array([0.0, 0, 0, 1, 1, 1, 1, 0, 0, 0, -1, -1])
+    assert (np.diff(coarse) == 0).mean() > CRITERIA.repeats
+    seen = np.ones((len(coarse), 1), dtype=bool)
+    assert stuck_channels(("A",), coarse[:, None], seen, CRITERIA) == []
+    (found,) = stuck_channels(("A",), np.ones((len(coarse), 1)), seen, CRITERIA)
+    assert found.mode == "stuck"
+
+
 @pytest.mark.parametrize(("value", "mode"), [(0.0, "dead"), (1.3, "stuck")])
 def test_a_channel_that_falls_silent_is_reported_from_its_row(value: float, mode: str) -> None:
     column = SOUND.copy()
