@@ -129,6 +129,15 @@ def _least_words(one: Least, cause: Cause, model: Model) -> str:
     unit = Effect.vocabulary[cause.effect["kind"]].unit(name, cause.effect)
     shown = quantity(one.value, own_unit(unit, cause.effect, model))
     return (
-        f"At a {plain(name)} of {shown} its effect would be {share} as large, and would not have "
-        "been named."
+        f"At {_one(plain(name))} of {shown} its effect would be {share} as large, and would "
+        "not have been named."
     )
+
+
+def _one(words: str) -> str:
+    """Words behind their article.
+
+    >>> _one("offset"), _one("factor")
+    ('an offset', 'a factor')
+    """
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"

@@ -24,6 +24,8 @@ SCALES: dict[str, list[tuple[float, float, str]]] = {
     "-": [(0, 1, "")],
 }
 PRETTY = {"degC": "°C", "m3": "m³", "m4": "m⁴", "kg/m3": "kg/m³"}
+#: percents beyond which nobody reads them as such
+TIMES = 1000
 NARROW, DASH, MINUS, MIDDLE_DOT = "\u202f", "\u2013", "\u2212", "\u00b7"
 SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
@@ -71,13 +73,16 @@ def fixed(value: float, decimals: int, sign: bool = False) -> str:
 
 
 def percent(value: float, sign: bool = True) -> str:
-    """Percent: one decimal below ten.
+    """Percent: one decimal below ten; how many times as large where that says more.
 
-    >>> percent(-31.4), percent(2.04)
-    ('\u221231\xa0%', '+2.0\xa0%')
+    >>> percent(-31.4), percent(2.04), percent(99113.0)
+    ('\u221231\xa0%', '+2.0\xa0%', '992\xa0times')
     """
     if not math.isfinite(value):
         return DASH
+    if value > TIMES:
+        # A signed one says by how much something is larger, one without a sign is a share of it.
+        return fixed(value / 100 + sign, 0) + "\u00a0times"
     return fixed(value, 1 if abs(value) < 9.95 else 0, sign) + "\u00a0%"
 
 
