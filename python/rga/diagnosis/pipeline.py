@@ -146,15 +146,14 @@ def _diagnose(
     ]
     reasons += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
     short = too_short(whole.data, before, whole.deviation)
-    structure = (
-        bool(reasons or short)
-        or share > criteria.structure.share
-        or bool(bends(found.problem) or curves(found.problem))
-    )
+    curved = patterns.nonlinear(found.problem)
+    structure = bool(reasons or short or curved) or share > criteria.structure.share
     said = verdict(found, bool(prepared.faults), structure)
     pattern = spared(
         "what the structure that is left goes with",
-        lambda: patterns.in_words(found.problem, patterns.known_contexts(found.problem, measured)),
+        lambda: patterns.in_words(
+            found.problem, patterns.known_contexts(found.problem, measured), curved
+        ),
         "not known",
         failed,
     )

@@ -28,34 +28,17 @@ ALIKE = 0.97
 
 
 @dataclass(frozen=True)
-class Curve:
-    """What the channels go with that is not in proportion.
+class _Shape:
+    """A curve or loop that the readings may go with.
 
     Attributes:
-        words: what that is.
+        words: what that would be.
         linear: the driver of each channel about its mean, in its standard deviations, float[rows,
             sensors].
         shape: the curve or loop over it, float[rows, sensors].
-        sizes: of that part in the readings, as far as scatter does not explain it, over the noise
-            of the channel [-], float[sensors].
-        alone: each channel has a size of its own, that tells nothing of the others.
-    """
-
-    words: str
-    linear: FloatArray
-    shape: FloatArray
-    sizes: FloatArray
-    alone: bool
-
-
-@dataclass(frozen=True)
-class _Tried:
-    """A curve that may be in the readings.
-
-    Attributes:
-        words, linear, shape: of the curve.
-        alone: a single channel may have it, and be lost among many that have not.
-        among: number of curves of its sort that are tried.
+        alone: each channel has a size of its own, that tells nothing of the others: a single one
+            may have it, and be lost among many that have not.
+        among: number of shapes of its sort that are tried.
     """
 
     words: str
@@ -63,6 +46,18 @@ class _Tried:
     shape: FloatArray
     alone: bool
     among: int
+
+
+@dataclass(frozen=True)
+class Curve(_Shape):
+    """What the channels go with that is not in proportion.
+
+    Attributes:
+        sizes: of the shape in the readings, as far as scatter does not explain it, over the noise
+            of the channel [-], float[sensors].
+    """
+
+    sizes: FloatArray
 
 
 def curves(problem: Problem) -> list[Curve]:
@@ -97,7 +92,7 @@ def curves(problem: Problem) -> list[Curve]:
     for number, one in enumerate(tried):
         likely = 2 * min(chance[number], largest[number]) if one.alone else chance[number]
         if likely < problem.criteria.structure.curve_chance / one.among:
-            curve = Curve(one.words, one.linear, one.shape, sizes[:, number], one.alone)
+            curve = Curve(**vars(one), sizes=sizes[:, number])
             # One loop shows over many readings, and with other widths.
             known = found.get(one.words)
             found[one.words] = min(known or (likely, curve), (likely, curve), key=lambda at: at[0])
@@ -122,16 +117,16 @@ def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
     return free
 
 
-def _over_contexts(problem: Problem) -> list[_Tried]:
+def _over_contexts(problem: Problem) -> list[_Shape]:
     """Squares of the measured contexts, the same in every channel."""
-    every = np.ones(len(problem.data.sensors))
     linear, latent = linear_histories(problem), problem.data.belief.latent
+    sensors = len(problem.data.sensors)
     curved = {name: one for name, one in squares(linear).items() if name not in latent}
     return [
-        _Tried(
+        _Shape(
             f"the readings go with the square of {name}",
-            np.outer(linear[name], every),
-            np.outer(square, every),
+            _in_all(linear[name], sensors),
+            _in_all(square, sensors),
             alone=False,
             among=len(curved),
         )
@@ -139,7 +134,7 @@ def _over_contexts(problem: Problem) -> list[_Tried]:
     ]
 
 
-def _over_own_readings(problem: Problem) -> _Tried:
+def _over_own_readings(problem: Problem) -> _Shape:
     """The square of what each channel should read."""
     shown = problem.simulated
     own = standardised(dict(enumerate(shown.T)))
@@ -148,22 +143,27 @@ def _over_own_readings(problem: Problem) -> _Tried:
     linear = np.column_stack([own.get(sensor, nothing) for sensor in range(shown.shape[1])])
     square = np.column_stack([curved.get(sensor, nothing) for sensor in range(shown.shape[1])])
     bent = "the readings go with the square of what the model says that they should be"
-    return _Tried(bent, linear, square, alone=True, among=1)
+    return _Shape(bent, linear, square, alone=True, among=1)
 
 
-def _loops(problem: Problem) -> list[_Tried]:
+def _loops(problem: Problem) -> list[_Shape]:
     """Loops over what each channel should read, the same in every channel."""
     words = "the readings lag behind what the model says, in a loop as of friction"
-    every = np.ones(len(problem.data.sensors))
+    sensors = len(problem.data.sensors)
     drivers = _distinct(standardised(dict(enumerate(problem.simulated.T))).values())
     if not drivers:
         return []
     together = np.repeat(np.column_stack(drivers), len(PLAY), axis=1)
     loops = loop(together, np.tile(PLAY, len(drivers)))
     return [
-        _Tried(words, np.outer(linear, every), np.outer(one, every), True, len(loops.T))
+        _Shape(words, _in_all(linear, sensors), _in_all(one, sensors), True, len(loops.T))
         for linear, one in zip(together.T, loops.T, strict=True)
     ]
+
+
+def _in_all(course: FloatArray, sensors: int) -> FloatArray:
+    """The same course in every channel, float[rows, sensors]."""
+    return np.broadcast_to(course[:, None], (len(course), sensors))
 
 
 def _distinct(courses: Iterable[FloatArray]) -> list[FloatArray]:

@@ -5,7 +5,7 @@ their innovations. The largest eigenvalue of that correlation is compared with w
 independent noise give (Marchenko and Pastur 1967 for its edge, a margin for its scatter).
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -171,12 +171,22 @@ def leftovers(problem: Problem, contexts: Values) -> list[Leftover]:
     return found
 
 
-def in_words(problem: Problem, contexts: Values) -> str:
-    """What is left: patterns with what they follow, and the scatter that had to be assumed."""
+def nonlinear(problem: Problem) -> list[str]:
+    """In words: responses that are not in proportion."""
+    curved = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
+    return [*curved, *(one.words for one in curves(problem))]
+
+
+def in_words(problem: Problem, contexts: Values, curved: Sequence[str] = ()) -> str:
+    """What is left: patterns with what they follow, and the scatter that had to be assumed.
+
+    Args:
+        problem: at the end of a diagnosis.
+        contexts: that a pattern may follow, float[rows] each.
+        curved: responses that are not in proportion, in words.
+    """
     members, gains = 100 * problem.levels[0], 100 * problem.levels[1]
     chance = f"single members and channels are off by chance ({members:.1f} % and {gains:.1f} %)"
-    curved = [f"the response to {one.context} bends with {one.by}" for one in bends(problem)]
-    curved += dict.fromkeys(one.words for one in curves(problem))
     scatter = "; ".join([*curved, chance])
     if problem.factors.shape[1] == 0:
         return f"nothing that varies in common from row to row; {scatter}"
