@@ -15,6 +15,9 @@ from rga.arrays import FloatArray
 from rga.diagnosis.noise.random_effects import MEDIANS, lines
 from rga.diagnosis.search.linearised import Problem
 
+#: percents beyond which nobody reads them as such
+TIMES = 1000.0
+
 
 @dataclass(frozen=True)
 class Misfit:
@@ -41,8 +44,11 @@ class Misfit:
     def words(self) -> str:
         """What is off and by how much."""
         what = "channel" if self.alone else "group"
+        off = f"{self.percent:+.0f} % against the model"
+        if self.percent > TIMES:
+            off = f"{1 + self.percent / 100:.0f} times what the model says"
         return (
-            f"{what} {self.group} reads {self.percent:+.0f} % against the model, "
+            f"{what} {self.group} reads {off}, "
             f"{abs(self.deviations):.1f} times what noise and a plausible scatter of members and "
             "gauges allow"
         )

@@ -9,6 +9,7 @@ noise, and only the stated one says that it is none.
 from collections.abc import Collection
 
 from rga.diagnosis.search.linearised import Problem
+from rga.findings.phrases import few_digits
 
 #: channels that are reported by name
 MOST_NAMED = 5
@@ -28,9 +29,10 @@ def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
         if name in told_already or stated is None:
             continue
         if deviation > problem.criteria.fit.stated_noise * stated:
+            size = f"{few_digits(deviation)} {model.sensors[name].unit}"
             found.append(
-                f"channel {name} varies by {deviation:.2g} {model.sensors[name].unit} that no load "
-                f"explains, {deviation / stated:.2g} times its stated noise"
+                f"channel {name} varies by {size} that no load explains, "
+                f"{few_digits(deviation / stated)} times its stated noise"
             )
     more = len(found) - MOST_NAMED
     return found if more <= 0 else [*found[:MOST_NAMED], f"{more} more channels vary as much"]
