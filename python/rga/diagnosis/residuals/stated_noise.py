@@ -13,6 +13,8 @@ from rga.findings.phrases import few_digits
 
 #: channels that are reported by name
 MOST_NAMED = 5
+#: correlation from one row to the next from which on noise wanders
+WANDERS = 0.8
 
 
 def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
@@ -22,13 +24,15 @@ def beyond_stated(problem: Problem, told_already: Collection[str]) -> list[str]:
         problem: the end of the search.
         told_already: channels that do not work for a part of the record, left out here.
     """
-    model, sensors = problem.simulator.model, problem.data.sensors
+    model, sensors, noise = problem.simulator.model, problem.data.sensors, problem.noise
+    criteria = problem.criteria.fit
     found = []
-    for name, deviation in zip(sensors, problem.noise.deviation, strict=True):
+    for name, deviation, memory in zip(sensors, noise.deviation, noise.phi, strict=True):
+        most = criteria.wandering_noise if memory > WANDERS else criteria.stated_noise
         stated = model.sensors[name].noise
         if name in told_already or stated is None:
             continue
-        if deviation > problem.criteria.fit.stated_noise * stated:
+        if deviation > most * stated:
             size = f"{few_digits(deviation)} {model.sensors[name].unit}"
             found.append(
                 f"channel {name} varies by {size} that no load explains, "

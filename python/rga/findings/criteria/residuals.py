@@ -73,6 +73,12 @@ class FitCriteria(CriteriaGroup):
         "times its stated noise from which on a channel varies by what no load explains",
         "measured: sound records of blind cases reach 2, rarely 3",
     )
+    wandering_noise: Multiple = criterion(
+        2.5,
+        "-",
+        "the same of a channel that remembers more than 0.8 from one row to the next",
+        "judgement: noise of an amplifier does not wander; sound channels reach 1.6",
+    )
     broken_share: Share = criterion(
         0.5,
         "-",

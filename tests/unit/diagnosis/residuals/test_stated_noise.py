@@ -25,6 +25,15 @@ def test_only_noise_far_beyond_the_stated_is_a_warning(
         assert "8 times its stated noise" in found[0]
 
 
+@pytest.mark.parametrize(("memory", "words"), [(0.5, 0), (0.9, 1)])
+def test_noise_that_wanders_is_a_warning_sooner(noisy: Problem, memory: float, words: int) -> None:
+    loud = louder(noisy, 3.0)
+    phi = loud.noise.phi.copy()
+    phi[0] = memory
+    wandering = replace(loud, noise=replace(loud.noise, phi=phi))
+    assert len(beyond_stated(wandering, ())) == words
+
+
 def test_what_was_reported_before_is_not_repeated(noisy: Problem) -> None:
     assert beyond_stated(louder(noisy, 8.0), {"D1"}) == []
 
