@@ -10,7 +10,7 @@ channels. A cause that follows the linear part of such a response is none.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
@@ -93,6 +93,9 @@ def curves(problem: Problem) -> list[Curve]:
         likely = 2 * min(chance[number], largest[number]) if one.alone else chance[number]
         if likely < problem.criteria.structure.curve_chance / one.among:
             curve = Curve(**vars(one), sizes=sizes[:, number])
+            if one.alone:
+                most = data.sensors[int(np.abs(curve.sizes).argmax())]
+                curve = replace(curve, words=f"{one.words}, most of all channel {most}")
             # One loop shows over many readings, and with other widths.
             known = found.get(one.words)
             found[one.words] = min(known or (likely, curve), (likely, curve), key=lambda at: at[0])
