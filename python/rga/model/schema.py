@@ -1,5 +1,6 @@
 """The model file: the structure as data, its contexts, its effects and its sensors."""
 
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union
@@ -333,12 +334,16 @@ class Model(Part):
 
     def extended(self, effects: dict[str, Effect]) -> "Model":
         """The same model with more effects; refuses those that do not fit it."""
+        self.check_effects(effects)
+        return self.model_copy(update={"effects": {**self.effects, **effects}})
+
+    def check_effects(self, effects: Mapping[str, Effect]) -> None:
+        """Refuse effects that do not fit the model (InputError)."""
         for name, effect in effects.items():
             try:
                 self.check_effect(effect, f"effects.{name}")
             except ValueError as error:
                 raise InputError(str(error), f"model {self.name!r}", "name a part it has") from None
-        return self.model_copy(update={"effects": {**self.effects, **effects}})
 
 
 def read_effect(effect: Any, name: str) -> Effect:

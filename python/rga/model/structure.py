@@ -155,7 +155,7 @@ class Structure:
         return found
 
     def copy(self) -> "Structure":
-        """An independent copy: effects change copies only."""
+        """A copy for effects to change; this structure is not to be changed any more."""
         return Structure(
             self.nodes,
             self.members,
@@ -163,8 +163,8 @@ class Structure:
             self.sensors,
             self.groups,
             self.materials,
-            cast(StructureArrays, _copied(self.arrays)),
-            cast(OutputArrays, _copied(self.outputs)),
+            cast(StructureArrays, _CopiedWhenRead(by_name(self.arrays))),
+            cast(OutputArrays, _CopiedWhenRead(by_name(self.outputs))),
             self.per_si,
             self.alpha.copy(),
             self.host.copy(),
@@ -224,8 +224,24 @@ class Structure:
         arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], np.full(more, stiffness))
 
 
-def _copied(arrays: StructureArrays | OutputArrays) -> dict[str, NDArray[Any]]:
-    return {name: array.copy() for name, array in by_name(arrays).items()}
+class _CopiedWhenRead(dict[str, NDArray[Any]]):
+    """Arrays of another structure, each copied when it is first read: an effect needs few of them.
+
+    What is not read the core knows to be the same.
+    """
+
+    def __init__(self, arrays: dict[str, NDArray[Any]]) -> None:
+        super().__init__(arrays)
+        self._shared = set(arrays)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        if name in self._shared:
+            self[name] = super().__getitem__(name).copy()
+        return super().__getitem__(name)
+
+    def __setitem__(self, name: str, array: NDArray[Any]) -> None:
+        self._shared.discard(name)
+        super().__setitem__(name, array)
 
 
 def check_direction(direction: Vector) -> None:

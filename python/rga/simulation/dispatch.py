@@ -219,7 +219,7 @@ def _each_state(request: Request) -> FloatArray:
         if structure.nonlinear:
             parts.append(respond_deformed(structure, loads, chosen))
         elif structure.laws:
-            parts.append(with_laws(request, structure, loads))
+            parts.append(with_laws(request.prepared, structure, loads))
         elif structure.bearings and changes >= APART:
             # Friction starts anew with each structure, and would never come to hold.
             raise InputError(
@@ -238,14 +238,16 @@ def _each_state(request: Request) -> FloatArray:
     return out
 
 
-def with_laws(request: Request, structure: Structure, loads: list[Load]) -> FloatArray:
+def with_laws(
+    prepared: list[CondensedPaths], structure: Structure, loads: list[Load]
+) -> FloatArray:
     """A structure with play or slack under loads, float[rows, sensors] in SI units."""
     if structure.bearings:
         raise InputError(
             "friction and slack are not simulated together", "effects", "leave out one of them"
         )
     members, springs = terms_of(structure)
-    linear = condensed(request.prepared, structure, loads, members, springs, axial=True)
+    linear = condensed(prepared, structure, loads, members, springs, axial=True)
     return respond_with_laws(structure, linear, coefficients(loads))
 
 

@@ -49,17 +49,23 @@ class Simulator:
 
     Args:
         model: the structure with its effects and sensors.
+
+    Attributes:
+        model: itself.
+        prepared: what was condensed for earlier contexts.
     """
 
     def __init__(self, model: Model, _structure: Structure | None = None) -> None:
         self.model = model
         self._structure = build_structure(model) if _structure is None else _structure
-        self._prepared: list[CondensedPaths] = []
+        self.prepared: list[CondensedPaths] = []
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects; what is condensed serves both."""
+        if not effects:
+            return self
         found = Simulator(self.model.extended(dict(effects)), self._structure)
-        found._prepared = self._prepared
+        found.prepared = self.prepared
         return found
 
     def calm(self, values: dict[str, Values]) -> "Simulator":
@@ -130,15 +136,16 @@ class Simulator:
         """The path that `predict` takes for these contexts: the cheapest exact one."""
         return self.respond(contexts).plan
 
-    def read(self, response: Response) -> FloatArray:
+    def read(self, response: Response, more: Mapping[str, Effect] | None = None) -> FloatArray:
         """What the sensors show of a response, float[rows, sensors] in their units.
 
         Args:
             response: of this model, or of the same model with other effects on its sensors.
+            more: effects that the model does not have.
         """
-        return self.zeroed(self.shown(response))
+        return self.zeroed(self.shown(response, more))
 
-    def shown(self, response: Response) -> Readings:
+    def shown(self, response: Response, more: Mapping[str, Effect] | None = None) -> Readings:
         """What the sensors show, before the logger's zero is taken off (`zeroed`)."""
         time, values = response.contexts["time"], response.values
         rows = len(time)
@@ -150,7 +157,7 @@ class Simulator:
                 (v["delta"] for v in values.values() if "delta" in v), np.zeros(rows)
             ),
         )
-        for name, effect in self.model.effects.items():
+        for name, effect in {**self.model.effects, **(more or {})}.items():
             own = values[name] if name in values else effect.values(response.contexts, rows)
             effect.change_readings(readings, own)
         return readings
@@ -340,7 +347,7 @@ class Simulator:
             effect.loads_by_geometry or type(effect).loads is Effect.loads
             for effect in effects.values()
         )
-        return Request(states, state_of_row.ravel(), change, loads, fixed, self._prepared)
+        return Request(states, state_of_row.ravel(), change, loads, fixed, self.prepared)
 
     def _loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
         effects = self.model.effects

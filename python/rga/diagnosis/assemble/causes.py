@@ -9,8 +9,8 @@ from rga.diagnosis.assemble.effects import content, estimated_effects, last_effe
 from rga.diagnosis.fallback import spared
 from rga.diagnosis.preparation.single_channel import BrokenChannel
 from rga.diagnosis.search.change_point import beginnings
-from rga.diagnosis.search.laplace import extended
-from rga.diagnosis.search.stepwise import Alternative, Found
+from rga.diagnosis.search.laplace import Alternative, extended
+from rga.diagnosis.search.stepwise import Found
 from rga.experiments.explanation import explanation
 from rga.findings.phrases import effect_words
 from rga.findings.schema import (

@@ -13,9 +13,9 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
-from rga.diagnosis.search.laplace import Fit, fit, refit
+from rga.diagnosis.search.laplace import Alternative, Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
-from rga.diagnosis.search.stepwise import Alternative, Found, without_cause
+from rga.diagnosis.search.stepwise import Found, without_cause
 from rga.simulation import Simulator
 
 #: channels that favour a cause most, which are left out one after the other

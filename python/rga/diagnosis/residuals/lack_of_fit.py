@@ -102,11 +102,13 @@ def _variance(problem: Problem, weight: FloatArray, columns: list[int]) -> float
         for number, name in enumerate(problem.data.belief.spread)
         if name not in problem.data.belief.latent
     ]
-    along = np.einsum("tc,tcj->tj", weight, rows.context_jacobian[:, columns][:, :, measured])
-    of_contexts = float(((along * noise.context_sigma[measured]) ** 2).sum())
+    derivatives = rows.context_jacobian[:, columns][:, :, measured]
+    of_rows = np.einsum("tc,tcj->tj", weight, derivatives)
+    of_contexts = float(((of_rows * noise.context_sigma[measured]) ** 2).sum())
     effects, plausible = problem.covariance.scatter, problem.criteria.fit.plausible
     spread = problem.scatter.spread(np.clip(problem.levels, MEDIANS, plausible))
     # Where a train stands was fitted with the rest: its prior is no uncertainty any more.
     spread[len(spread) - len(lines(problem.data)) :] = 0.0
-    shares = np.einsum("tc,tp,kcp->k", weight, effects.courses, effects.shares[:, columns])
+    along = weight.T @ effects.courses
+    shares = np.tensordot(effects.shares[:, columns], along, 2)
     return own + of_contexts + float(((shares * spread) ** 2).sum())

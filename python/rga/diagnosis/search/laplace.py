@@ -31,11 +31,12 @@ CORRECTED = 3
 FARTHEST, LONGEST, SHORTENED, ENOUGH = 8.0, 2.0, 6, 1e-3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fit:
     """Hypotheses fitted together.
 
     Attributes:
+        problem: that they were fitted to.
         hypotheses: those fitted.
         z: standard normal coordinates of all parameters, in their order, float[parameters].
         simulated: float[rows, sensors].
@@ -43,8 +44,13 @@ class Fit:
         information: I + S' C^-1 S, float[parameters, parameters].
         log_evidence: against no effect at all.
         exact: False where the simulation leaves out what effects do to each other.
+        without: fits of some of the hypotheses, once known, by problem, simulator and numbers of
+            those left out.
+        alternatives: what could stand in the place of each, once known, by problem, screening and
+            number.
     """
 
+    problem: Problem
     hypotheses: tuple[Hypothesis, ...]
     z: FloatArray
     simulated: FloatArray
@@ -52,9 +58,13 @@ class Fit:
     information: FloatArray
     log_evidence: float
     exact: bool = True
-    _simulators: dict[Simulator, Simulator] = field(
-        default_factory=dict, init=False, compare=False, repr=False
+    without: "dict[tuple[Problem, Simulator, tuple[int, ...]], Fit]" = field(
+        default_factory=dict, init=False, repr=False
     )
+    alternatives: "dict[tuple[Problem, object, int], list[Alternative]]" = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _simulators: dict[Simulator, Simulator] = field(default_factory=dict, init=False, repr=False)
 
     def slices(self) -> list[slice]:
         """The parameters of each hypothesis in z."""
@@ -72,6 +82,21 @@ class Fit:
         return (
             np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information)))) if len(self.z) else self.z
         )
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A hypothesis that could stand in the place of a cause, fitted beside the other causes.
+
+    Attributes:
+        hypothesis: itself.
+        fit: the other causes and the hypothesis.
+        behind: log-odds of the causes against it.
+    """
+
+    hypothesis: Hypothesis
+    fit: Fit
+    behind: float
 
 
 def effects_at(
@@ -168,8 +193,9 @@ def fit(
         if gained < ENOUGH:
             break
     known_exactly = exact or exactly
-    found = Fit(tuple(hypotheses), here.z, here.simulated, columns, information, 0.0, known_exactly)
-    return _weighed(problem, base, found, here.loss)
+    fitted, simulated = tuple(hypotheses), here.simulated
+    found = Fit(problem, fitted, here.z, simulated, columns, information, 0.0, known_exactly)
+    return _weighed(base, found, here.loss)
 
 
 @dataclass(frozen=True)
@@ -243,10 +269,10 @@ def refit(problem: Problem, base: Simulator, one: Fit) -> Fit:
         base: the simulator without the hypotheses.
         one: as it was fitted.
     """
-    covariance = problem.covariance
+    covariance, one = problem.covariance, replace(one, problem=problem)
     residual = covariance.reduce(problem.residual(one.simulated).T[None])
     if not len(one.z):
-        return _weighed(problem, base, one, float(covariance.squares(residual)[0]))
+        return _weighed(base, one, float(covariance.squares(residual)[0]))
     reduced = covariance.reduce(one.signatures)
     information = covariance.product(reduced, reduced) + np.eye(len(one.z))
     along = covariance.product(reduced, residual)[:, 0]
@@ -257,11 +283,12 @@ def refit(problem: Problem, base: Simulator, one: Fit) -> Fit:
     loss += float(move @ (information - np.eye(len(z))) @ move)
     simulated = one.simulated + np.tensordot(move, one.signatures, 1).T
     moved = replace(one, z=z, simulated=simulated, information=information)
-    return _weighed(problem, base, moved, loss)
+    return _weighed(base, moved, loss)
 
 
-def _weighed(problem: Problem, base: Simulator, one: Fit, loss: float) -> Fit:
+def _weighed(base: Simulator, one: Fit, loss: float) -> Fit:
     """The fit with its log evidence, its loss known."""
+    problem = one.problem
     if base not in problem.at_nothing:
         nothing = problem.residual(problem.data.predict(base)).T[None]
         squares = problem.covariance.squares(problem.covariance.reduce(nothing))
@@ -299,4 +326,5 @@ def _signatures(
 
 def _impossible(problem: Problem, hypotheses: Sequence[Hypothesis], z: FloatArray) -> Fit:
     signatures = np.zeros((len(z), *problem.simulated.T.shape))
-    return Fit(tuple(hypotheses), z, problem.simulated, signatures, np.eye(len(z)), -np.inf)
+    nowhere = problem.simulated
+    return Fit(problem, tuple(hypotheses), z, nowhere, signatures, np.eye(len(z)), -np.inf)

@@ -38,7 +38,7 @@ FOLLOWED = 1e-6
 Calibration = tuple[FloatArray, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """A record about a simulation.
 
@@ -73,10 +73,8 @@ class Problem:
     scatter: Scatter
     levels: FloatArray
     factors: FloatArray
-    at_nothing: dict[Simulator, float] = field(default_factory=dict, init=False, compare=False)
-    hiding: dict[tuple[str, ...], "Problem"] = field(
-        default_factory=dict, init=False, compare=False, repr=False
-    )
+    at_nothing: dict[Simulator, float] = field(default_factory=dict, init=False)
+    hiding: dict[tuple[str, ...], "Problem"] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def criteria(self) -> Criteria:

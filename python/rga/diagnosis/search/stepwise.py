@@ -10,7 +10,7 @@ from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.random_effects import MEDIANS, level_evidence
 from rga.diagnosis.search.change_point import beginnings
 from rga.diagnosis.search.hypothesis import Hypothesis
-from rga.diagnosis.search.laplace import Fit, fit
+from rga.diagnosis.search.laplace import Alternative, Fit, fit
 from rga.diagnosis.search.linearised import Problem, pose, relaxed, resimulated
 from rga.diagnosis.search.screening import Prospect, Screening
 from rga.errors import InputError
@@ -37,21 +37,6 @@ UNMOVED = 2e-4
 #: rounds of posing and fitting, and the change of z below which the second is left out
 SETTLED, STILL = 2, 0.05
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True)
-class Alternative:
-    """A hypothesis that could stand in the place of a cause, fitted beside the other causes.
-
-    Attributes:
-        hypothesis: itself.
-        fit: the other causes and the hypothesis.
-        behind: log-odds of the causes against it.
-    """
-
-    hypothesis: Hypothesis
-    fit: Fit
-    behind: float
 
 
 @dataclass(frozen=True)
@@ -126,7 +111,8 @@ def weighed(
 
     A cause for which something likelier is found, now that others stand beside it, is exchanged.
     """
-    current = fit(problem, base, current.hypotheses, current.z)
+    if current.problem is not problem:
+        current = fit(problem, base, current.hypotheses, current.z)
     for number in range(len(current.hypotheses)):
         current = with_moment(problem, base, current, number)
     for _ in range(EXCHANGES):
@@ -136,9 +122,7 @@ def weighed(
             progress("weighing rivals", number / len(current.hypotheses))
             without = without_cause(problem, base, current, number)
             odds.append(current.log_evidence - without.log_evidence)
-            alternatives.append(
-                tuple(_alternatives(problem, base, current, without, number, screening))
-            )
+            alternatives.append(tuple(_alternatives(problem, base, current, number, screening)))
         found = Found(problem, current, base, tuple(alternatives), tuple(odds))
         likelier = [one[0].fit for one in alternatives if one and one[0].behind < 0]
         ahead = sorted(likelier, key=evidence, reverse=True)
@@ -233,8 +217,7 @@ def _swapped(
     that scatter may be far apart without it.
     """
     last = len(current.hypotheses) - 1
-    without = without_cause(problem, base, current, last)
-    for one in _alternatives(problem, base, current, without, last, screening)[:1]:
+    for one in _alternatives(problem, base, current, last, screening)[:1]:
         if one.fit.log_evidence > current.log_evidence + WORTH_EXCHANGE:
             better = with_moment(problem, base, one.fit, last)
             return settled_with(base, problem, better)
@@ -364,22 +347,37 @@ def without_needless(problem: Problem, found: Found) -> Fit:
 
 
 def without_cause(problem: Problem, base: Simulator, current: Fit, *numbers: int) -> Fit:
-    """The fit anew without some of its hypotheses."""
-    others = [one for k, one in enumerate(current.hypotheses) if k not in numbers]
-    parts = [np.arange(len(current.z))[part] for part in current.slices()]
-    gone = np.concatenate([parts[number] for number in numbers])
-    return fit(problem, base, others, np.delete(current.z, gone))
+    """The fit anew without some of its hypotheses; it is kept."""
+    key = problem, base, numbers
+    if key not in current.without:
+        others = [one for k, one in enumerate(current.hypotheses) if k not in numbers]
+        parts = [np.arange(len(current.z))[part] for part in current.slices()]
+        gone = np.concatenate([parts[number] for number in numbers])
+        current.without[key] = fit(problem, base, others, np.delete(current.z, gone))
+    return current.without[key]
 
 
 def _alternatives(
     problem: Problem,
     base: Simulator,
     current: Fit,
-    without: Fit,
     number: int,
     screening: Screening,
 ) -> list[Alternative]:
-    """Other hypotheses in the place of a cause, fitted beside the others, the best first."""
+    """Other hypotheses in the place of a cause, fitted beside the others, the best first.
+
+    They are kept.
+    """
+    key = problem, screening, number
+    if key not in current.alternatives:
+        current.alternatives[key] = _fitted_alternatives(problem, base, current, number, screening)
+    return current.alternatives[key]
+
+
+def _fitted_alternatives(
+    problem: Problem, base: Simulator, current: Fit, number: int, screening: Screening
+) -> list[Alternative]:
+    without = without_cause(problem, base, current, number)
     cause = current.hypotheses[number]
     beginning = None if cause.onset is None else cause
     simulator = without.simulator(base)

@@ -65,6 +65,11 @@ class Vicinity:
         for effect in effects:
             effect.change_contexts(self._true, effect.values(self.response.contexts, self._rows))
         self._settled = not any(_overrides(effect, "change_values") for effect in effects)
+        self._of_geometry = all(
+            (one.loads_by_geometry or not _overrides(one, "loads"))
+            and not _overrides(one, "change_loads")
+            for one in effects
+        )
         self._centres: list[Centre] = []
         self._of_row = np.zeros(self._rows, np.int64)
         self._find_centres()
@@ -116,7 +121,7 @@ class Vicinity:
             InputError, UnstableStructureError: as `Simulator.respond`.
         """
         trial = self.simulator.extended(effects)
-        near = self._near(trial, effects)
+        near = self._near(effects)
         return trial, trial.respond(self.contexts) if near is None else near
 
     def nearly(self, effects: Mapping[str, Effect]) -> tuple[FloatArray, bool]:
@@ -134,12 +139,12 @@ class Vicinity:
         """
         if not effects:
             return self.read, True
-        trial = self.simulator.extended(effects)
-        near = self._near(trial, effects)
+        self.simulator.model.check_effects(effects)
+        near = self._near(effects)
         if near is None and not self._calm._centres:
-            near = trial.respond(self.contexts)
+            near = self.simulator.extended(effects).respond(self.contexts)
         if near is not None:
-            return trial.read(near), True
+            return self.simulator.read(near, effects), True
         read = self.read.copy()
         time = self.response.contexts["time"]
         for name, effect in effects.items():
@@ -159,19 +164,47 @@ class Vicinity:
         calm = self.simulator.calm(self.response.values)
         return self if calm is self.simulator else Vicinity(calm, self.contexts)
 
-    def _near(self, trial: "Simulator", effects: Mapping[str, Effect]) -> "Response | None":
-        """The response of a trial out of what is known; None where it takes other solves."""
+    def _near(self, effects: Mapping[str, Effect]) -> "Response | None":
+        """The response with more effects out of what is known; None where it takes other solves."""
         if not self._centres:
             return None
         if all(effect.on_sensors for effect in effects.values()):
             return self.response
         apart = self._settled and not any(map(_meddles, effects.values()))
-        if apart:
-            more = {name: one.values(self._true, self._rows) for name, one in effects.items()}
-            values = {**self.response.values, **more}
-        else:
-            values = trial.resolve(self.response.contexts)
+        if not apart:
+            return self._elsewhere(effects, None)
+        more = {name: one.values(self._true, self._rows) for name, one in effects.items()}
+        values = {**self.response.values, **more}
+        states = {name: _state(more[name]) for name, one in effects.items() if one.structural}
+        if None in states.values():
+            return self._elsewhere(effects, values)
+        parts = []
+        for centre in self._centres:
+            structure = centre.near.structure
+            if states:
+                structure = structure.copy()
+            for name, state in states.items():
+                effects[name].change_structure(structure, state or {})
+            part = self._quantities(structure, {**self.simulator.model.effects, **effects}, values)
+            if part is None:
+                return None
+            parts.append(part)
+        quantities = self._joined(parts, self._of_row)
+        return replace(self.response, values=values, quantities=quantities)
+
+    def _elsewhere(
+        self, effects: Mapping[str, Effect], known: dict[str, Values] | None
+    ) -> "Response | None":
+        """The same where effects reach others' parameters or the structure of single rows.
+
+        Args:
+            effects: as for `trial`.
+            known: parameters of all effects; None where those of others may have changed too.
+        """
+        trial = self.simulator.extended(effects)
+        values = trial.resolve(self.response.contexts) if known is None else known
         request = trial.request(values, self._rows)
+        apart = known is not None
         if len(request.states) > APART:
             quantities = self._along_line(trial, request, values, apart)
             if quantities is None:
@@ -179,7 +212,7 @@ class Vicinity:
             return replace(self.response, values=values, quantities=quantities)
         parts = []
         for state in request.states:
-            part = self._quantities(trial, request, state, values, apart)
+            part = self._quantities(request.change(state), trial.model.effects, values, apart)
             if part is None:
                 return None
             parts.append(part)
@@ -215,25 +248,30 @@ class Vicinity:
 
     def _quantities(
         self,
-        trial: "Simulator",
-        request: Request,
-        state: FloatArray,
+        structure: Structure,
+        effects: Mapping[str, Effect],
         values: dict[str, Values],
-        apart: bool,
+        apart: bool = True,
     ) -> FloatArray | None:
         """What the sensors are to read of a structure under all rows, in SI units.
 
         None where the structure has bearings or large displacements.
+
+        Args:
+            structure: with all effects.
+            effects: all of them.
+            values: of their parameters.
+            apart: those of the simulation have the values that they had there.
         """
-        structure = request.change(state)
         if structure.bearings or structure.nonlinear:
             return None
         centre, where = self._nearest(structure)
-        known = _known(centre, trial.model.effects, structure, where is not None) if apart else {}
-        loads = _loads(trial, structure, values, known)
+        loads = self._loads(centre, structure, effects, values, where is not None, apart)
         if structure.laws:
             near = None if where is None else _with_laws(centre, structure, loads, where)
-            return with_laws(request, structure, loads) if near is None else near
+            if near is not None:
+                return near
+            return with_laws(self.simulator.prepared, structure, loads)
         if where is None:
             few = _together(loads)
             return coefficients(few) @ respond(structure, few, structure.outputs)
@@ -247,9 +285,8 @@ class Vicinity:
 
         def solve(structure: Structure) -> tuple[FloatArray, FloatArray]:
             centre, where = self._nearest(structure)
-            near = where is not None
-            known = _known(centre, trial.model.effects, structure, near) if apart else {}
-            loads = _loads(trial, structure, values, known)
+            near, effects = where is not None, trial.model.effects
+            loads = self._loads(centre, structure, effects, values, near, apart)
             if where is None:
                 return coefficients(loads), respond(structure, loads, structure.outputs)
             q, loaded = _under(centre, loads)
@@ -266,20 +303,35 @@ class Vicinity:
                 return centre, where
         return self._centres[0], None
 
+    def _loads(
+        self,
+        centre: Centre,
+        structure: Structure,
+        effects: Mapping[str, Effect],
+        values: dict[str, Values],
+        near: bool,
+        apart: bool,
+    ) -> list[Load]:
+        """Loads of all effects on a structure; those that are what they are on a centre are known.
 
-def _loads(
-    trial: "Simulator",
-    structure: Structure,
-    values: dict[str, Values],
-    known: Mapping[str, list[Load]],
-) -> list[Load]:
-    """Loads of all effects of a trial on a structure, some of them known."""
-    effects = trial.model.effects
-    own = {
-        name: known[name] if name in known else effect.loads(structure, values[name], values)
-        for name, effect in effects.items()
-    }
-    return _changed(effects, own, structure, values)
+        Args:
+            centre: that the structure is near, or any.
+            structure: itself.
+            effects: those of the simulation, then others.
+            values: of their parameters.
+            near: it differs from the centre in stiffnesses alone.
+            apart: effects of the simulation have the values that they had there.
+        """
+        warms = near and np.array_equal(centre.near.structure.alpha, structure.alpha)
+        more = list(effects.values())[len(centre.own) :]
+        if apart and warms and self._of_geometry and not any(map(_loading, more)):
+            return centre.loads
+        known = _known(centre, effects, structure, warms) if apart else {}
+        own = {
+            name: known[name] if name in known else effect.loads(structure, values[name], values)
+            for name, effect in effects.items()
+        }
+        return _changed(effects, own, structure, values)
 
 
 def _with_laws(
@@ -294,14 +346,20 @@ def _with_laws(
 
 
 def _known(
-    centre: Centre, effects: Mapping[str, Effect], structure: Structure, near: bool
+    centre: Centre, effects: Mapping[str, Effect], structure: Structure, warms: bool
 ) -> dict[str, list[Load]]:
-    """Loads that are on a structure what they are on a centre, by effect."""
+    """Loads that are on a structure what they are on a centre, by effect.
+
+    Args:
+        centre: with its loads.
+        effects: of the structure.
+        structure: itself.
+        warms: its members are those of the centre, and grow as much when it is warm.
+    """
     first = centre.near.structure
     points = first.arrays["coordinates"]
     if not np.array_equal(points, structure.arrays["coordinates"][: len(points)]):
         return {}
-    warms = near and np.array_equal(first.alpha, structure.alpha)
     return {
         name: loads
         for name, loads in centre.own.items()
@@ -311,6 +369,8 @@ def _known(
 
 def _under(centre: Centre, loads: list[Load]) -> tuple[FloatArray, Loaded]:
     """Coefficients of loads, and the centre under them; it knows most of them."""
+    if loads is centre.loads:
+        return centre.coefficients, centre.loaded
     place = {id(load): number for number, load in enumerate(centre.loads)}
     new = [load for load in loads if id(load) not in place]
     if not new and len(loads) == len(place):
@@ -331,6 +391,18 @@ def _changed(
     for name, effect in effects.items():
         effect.change_loads(loads, structure, values[name])
     return [load for of_effect in loads.values() for load in of_effect]
+
+
+def _loading(effect: Effect) -> bool:
+    """True where an effect may have loads, or change others'."""
+    return _overrides(effect, "loads") or _overrides(effect, "change_loads")
+
+
+def _state(values: Values) -> dict[str, float] | None:
+    """Parameters that are the same in every row; None where one varies."""
+    if any((column != column[0]).any() for column in values.values()):
+        return None
+    return {name: float(column[0]) for name, column in values.items()}
 
 
 def _meddles(effect: Effect) -> bool:
