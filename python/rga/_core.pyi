@@ -152,6 +152,14 @@ class Condensation:
     ) -> NDArray[np.float64]:
         """Outputs [n, o] of n samples."""
 
+    def pseudo_forces(
+        self,
+        coefficients: NDArray[np.float64],
+        size: NDArray[np.float64],
+        rod: NDArray[np.bool_],
+    ) -> NDArray[np.float64]:
+        """Beside terms with play or slack [n, r]."""
+
     def differentiate(
         self,
         coefficients: NDArray[np.float64],

@@ -8,7 +8,7 @@
 //! - `sparse`: symmetric matrices and their factors; knows nothing of structures.
 //! - `fe`: finite elements, from the arrays to a balanced state and its outputs.
 //! - `validate`: checks of the arrays, before any step uses them.
-//! - `paths`: the analyses: linear, condensed, batch, nonlinear, and friction.
+//! - `paths`: the analyses: linear, condensed, batch, nonlinear, unilateral, and friction.
 //!
 //! SIMD lanes and the view of arrays are those of `rga_simd`.
 
@@ -34,5 +34,6 @@ pub use paths::linear::respond;
 pub use paths::nonlinear::respond_nonlinear;
 pub use paths::rank_one::{Varied, count_terms};
 pub use paths::reanalysis::{Loaded, Reanalysis, StiffnessDifference};
+pub use paths::unilateral::{Law, pseudo_forces};
 pub use sparse::lower_triangle::LowerTriangle;
 pub use sparse::ordering::fill_reducing;

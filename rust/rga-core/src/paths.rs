@@ -6,6 +6,7 @@
 //! - `reanalysis`: structures near one that is solved.
 //! - `batch`: many samples of which every stiffness may vary.
 //! - `nonlinear`: many samples, each in the equilibrium of the deformed structure.
+//! - `unilateral`: members and springs with slack, play or a stop.
 //! - `friction`: bearings that stick and slide, through time.
 //!
 //! Stiffnesses that vary are terms of rank one (`rank_one`). Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
@@ -20,3 +21,4 @@ pub(crate) mod nonlinear;
 mod parallel;
 pub(crate) mod rank_one;
 pub(crate) mod reanalysis;
+pub(crate) mod unilateral;

@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rga_core::{Array, Condensed, UnitResponses, Varied};
+use rga_core::{Array, Condensed, Law, UnitResponses, Varied, pseudo_forces};
 
 use crate::arrays::{Held, directions, numbers};
 use crate::exceptions::{InvalidInput, to_python};
@@ -154,6 +154,42 @@ impl Condensation {
             .map_err(|error| to_python(py, error))?;
         drop(held);
         Ok(shown)
+    }
+
+    /// Pseudo-forces beside the terms where each has a law: members and springs with play or
+    /// slack. Elongations follow from `stretched` and `unit`, outputs from `loaded` and `influence`.
+    ///
+    /// Parameters
+    /// ----------
+    /// coefficients : f64[n, p], of the loads
+    /// size : f64[r], a term carries nothing up to this elongation, a play down to its negative
+    /// rod : bool[r], a term carries tension alone
+    ///
+    /// Returns
+    /// -------
+    /// f64[n, r]
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput; UnstableSample, with the row that nothing holds
+    fn pseudo_forces<'py>(
+        &self,
+        py: Python<'py>,
+        coefficients: &Bound<'py, PyAny>,
+        size: &Bound<'py, PyAny>,
+        rod: &Bound<'py, PyAny>,
+    ) -> PyResult<Matrix<'py>> {
+        let coefficients = Held::<f64>::new(coefficients, "coefficients")?;
+        let size = Held::<f64>::new(size, "size")?;
+        let rod = Held::<bool>::new(rod, "rod")?;
+        let q = coefficients.view();
+        let [rows, _] = pair(q, "coefficients")?;
+        let of_terms = size.view().values.iter().zip(rod.view().values);
+        let laws: Vec<Law> = of_terms.map(|(&size, &rod)| Law { size, rod }).collect();
+        let found = py
+            .detach(|| pseudo_forces(self.responses(), q.values, &laws))
+            .map_err(|error| to_python(py, error))?;
+        matrix(py, &found, rows, laws.len())
     }
 
     /// Derivatives of samples along directions.
