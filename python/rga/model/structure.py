@@ -138,7 +138,12 @@ class Structure:
     @property
     def linear(self) -> bool:
         """True where loads that add up make responses that add up."""
-        return not (self.bearings or self.laws or self.nonlinear)
+        return not self.bearings and self.linear_but_friction
+
+    @property
+    def linear_but_friction(self) -> bool:
+        """The same without regard to friction."""
+        return not (self.laws or self.nonlinear)
 
     def once(self, build: Callable[[], T], *of: object) -> T:
         """What `build` makes of some objects and this structure, built at the first call.

@@ -15,20 +15,44 @@ UP = (0.0, 0.0, 1.0)
 def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray:
     """Sensors under loads that follow each other in time, float[rows, sensors] in SI units.
 
-    The friction force of each bearing is bounded by mu times the vertical reaction plus the
-    permanent force; both follow from the response to unit forces at the bearings. The first row
-    is without friction: what is locked in before it is not known.
+    The first row is without friction: what is locked in before it is not known.
     """
-    bearings = structure.bearings
-    unit = [
-        Load(np.zeros(0), forces={bearing.node: np.eye(6)[bearing.dof]}) for bearing in bearings
-    ]
-    count = len(structure.outputs["kind"])
-    outputs = _with_bearings(structure)
-    response = respond(structure, [*loads, *unit], outputs)
     coefficients = np.column_stack([load.coefficient for load in loads])
-    free = coefficients @ response[: len(loads)]
-    influence = response[len(loads) :]
+    return slid(structure, coefficients, frictionless(structure, loads))
+
+
+def frictionless(structure: Structure, loads: list[Load]) -> FloatArray:
+    """The structure under loads, then under unit forces at its bearings.
+
+    Returns:
+        float[loads + bearings, sensors + 2 bearings] in SI units: behind the sensors the motion of
+        each bearing, then its vertical reaction.
+    """
+    unit = [
+        Load(np.zeros(0), forces={bearing.node: np.eye(6)[bearing.dof]})
+        for bearing in structure.bearings
+    ]
+    return respond(structure, [*loads, *unit], _with_bearings(structure))
+
+
+def slid(structure: Structure, coefficients: FloatArray, response: FloatArray) -> FloatArray:
+    """Sensors as friction makes them, row after row, float[rows, sensors] in SI units.
+
+    The friction force of each bearing is bounded by mu times the vertical reaction plus the
+    permanent force; both follow from the response to unit forces at the bearings.
+
+    Args:
+        structure: with its bearings.
+        coefficients: of the load patterns, float[rows, patterns].
+        response: without friction, as `frictionless` has it.
+
+    Raises:
+        InputError: friction forces do not settle.
+    """
+    bearings, patterns = structure.bearings, coefficients.shape[1]
+    free = coefficients @ response[:patterns]
+    influence = response[patterns:]
+    count = len(structure.outputs["kind"])
     slide, normal = count, count + len(bearings)
     permanent = np.array([bearing.permanent_force for bearing in bearings])
     try:

@@ -1,7 +1,7 @@
 """A simulation at given contexts, and what more effects make of it: many trials about one point."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ from rga.arrays import FloatArray, IntArray
 from rga.model.effect import Effect, Values
 from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import APART, Request, coefficients, with_laws
+from rga.simulation.paths.friction import frictionless, slid
 from rga.simulation.paths.response import respond
 from rga.simulation.paths.unilateral import respond_with_laws, terms_of
 from rga.simulation.perturbation.chebyshev import along_line
@@ -32,6 +33,8 @@ class Centre:
         loads: all of them, changed.
         loaded: the structure under `loads`.
         coefficients: of `loads`, float[rows, patterns].
+        frictionless: the structure under `loads` and under unit forces at bearings, once known, by
+            their nodes and directions.
     """
 
     near: Reanalysis
@@ -39,6 +42,7 @@ class Centre:
     loads: list[Load]
     loaded: Loaded
     coefficients: FloatArray
+    frictionless: dict[tuple[tuple[int, int], ...], FloatArray] = field(default_factory=dict)
 
 
 class Vicinity:
@@ -185,7 +189,11 @@ class Vicinity:
                 structure = structure.copy()
             for name, state in states.items():
                 effects[name].change_structure(structure, state or {})
-            part = self._quantities(structure, {**self.simulator.model.effects, **effects}, values)
+            all_effects = {**self.simulator.model.effects, **effects}
+            if structure.bearings:
+                part = self._sliding(centre, structure, all_effects, values)
+            else:
+                part = self._quantities(structure, all_effects, values)
             if part is None:
                 return None
             parts.append(part)
@@ -204,7 +212,7 @@ class Vicinity:
         trial = self.simulator.extended(effects)
         values = trial.resolve(self.response.contexts) if known is None else known
         request = trial.request(values, self._rows)
-        apart = known is not None
+        apart = known is not None or self._has(values)
         if len(request.states) > APART:
             quantities = self._along_line(trial, request, values, apart)
             if quantities is None:
@@ -277,6 +285,36 @@ class Vicinity:
             return coefficients(few) @ respond(structure, few, structure.outputs)
         q, loaded = _under(centre, loads)
         return q @ centre.near.changed(loaded, structure, where)
+
+    def _has(self, values: dict[str, Values]) -> bool:
+        """Whether these are the parameters of the simulation's own effects."""
+        return all(
+            own.keys() == values[name].keys()
+            and all(np.array_equal(column, values[name][key]) for key, column in own.items())
+            for name, own in self.response.values.items()
+        )
+
+    def _sliding(
+        self,
+        centre: Centre,
+        structure: Structure,
+        effects: Mapping[str, Effect],
+        values: dict[str, Values],
+    ) -> FloatArray | None:
+        """What the sensors are to read where a centre has bearings with friction, in SI units.
+
+        None where more than that differs, or rows have structures of their own: friction remembers.
+        """
+        where = centre.near.differing(structure)
+        steady = len(self._centres) == 1 and structure.linear_but_friction
+        if where is None or where or not steady:
+            return None
+        if self._loads(centre, structure, effects, values, True, True) is not centre.loads:
+            return None
+        places = tuple((bearing.node, bearing.dof) for bearing in structure.bearings)
+        if places not in centre.frictionless:
+            centre.frictionless[places] = frictionless(structure, centre.loads)
+        return slid(structure, centre.coefficients, centre.frictionless[places])
 
     def _along_line(
         self, trial: "Simulator", request: Request, values: dict[str, Values], apart: bool
