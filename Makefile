@@ -5,7 +5,7 @@ DEV := .venv-dev/bin
 INSTALL := -m pip install --quiet --no-compile
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick test crates package clean wheel
+.PHONY: help run dev quick test crates package clean wheel installed
 
 # Every core has its process of the tests: products in several threads would wait for each other.
 quick package: export OMP_NUM_THREADS = 1
@@ -30,7 +30,9 @@ quick:  ## lint, types and unit tests in the environment of `make dev`, within a
 	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
 
 test: fresh = .venv-test
-test: wheel crates package  ## build and install rga in a fresh environment, and run every check
+test:  ## build and install rga in a fresh environment, and run every check
+	$(MAKE) --jobs 2 fresh=$(fresh) crates installed
+	$(MAKE) fresh=$(fresh) package
 
 crates: export PYO3_PYTHON = $(PYTHON)
 crates:  ## every check of the Rust code
@@ -38,8 +40,10 @@ crates:  ## every check of the Rust code
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 
-package:  ## every check of the Python package; fresh=DIR is the environment
+installed: wheel
 	$(fresh)/bin/python $(INSTALL) "$$(echo dist/rga-*.whl)[test]"
+
+package:  ## every check of the Python package, installed in the environment fresh=DIR
 	$(fresh)/bin/ruff check
 	$(fresh)/bin/ruff format --check
 	$(fresh)/bin/mypy --strict python tests/typing

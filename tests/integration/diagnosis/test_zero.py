@@ -14,6 +14,7 @@ from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.prepare import prepare
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
+from rga.diagnosis.search.late_shares import OneBeginning
 from rga.diagnosis.search.linearised import pose
 from rga.diagnosis.search.screening import RankedSignatures
 from rga.diagnosis.search.signatures import Block, signature
@@ -284,7 +285,7 @@ def test_the_size_of_a_late_beginning(
     weighted = problem.covariance.inverse_times(problem.residual(problem.simulated))
     along = np.stack([judged.block.along(weighted), judged.block.zero_along(weighted)])
     for row in (30, 60, 90):
-        weight = (np.arange(ROWS) >= row).astype(float)[None]
+        weight = OneBeginning((np.arange(ROWS) >= row).astype(float))
         (sums,), (sizes,) = judged.begun(along, weight, np.zeros(1))
         late = signature(data, data.about(base), 0, one.beginning(float(data.time[row])), z)
         assert late is not None

@@ -249,14 +249,18 @@ def _descended(
         information = covariance.product(reduced, reduced) + np.eye(count)
         if step == STEPS:
             break
-        along = covariance.product(reduced, here.residual)[:, 0]
-        move = np.linalg.solve(information, along - here.z)
+        slope = covariance.product(reduced, here.residual)[:, 0] - here.z
+        move = np.linalg.solve(information, slope)
+        promised = float(move @ slope)
+        if promised < ENOUGH:
+            break
         length = min(1.0, LONGEST / max(np.abs(move).max(), 1e-12))
         lower = _lower(here, np.asarray(length * move), point, SHORTENED)
         if lower is None:
             break
         gained, here = here.loss - lower.loss, lower
-        if gained < ENOUGH:
+        # A whole step that gains what it promised has met no curvature: it leads to the end.
+        if gained < ENOUGH or (length == 1.0 and abs(gained - promised) < ENOUGH):
             break
     return here, signatures, information
 

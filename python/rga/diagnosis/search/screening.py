@@ -10,6 +10,7 @@ from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.noise.covariance import Covariance
 from rga.diagnosis.search.hypothesis import LATE, Hypothesis, Profile
+from rga.diagnosis.search.late_shares import EveryBeginning, LateShares, OneBeginning
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.signatures import Block, chunks, signature, signatures
 from rga.simulation import Simulator
@@ -98,29 +99,33 @@ class RankedSignatures:
         )
 
     def begun(
-        self, along: FloatArray, weight: FloatArray, at_zero: FloatArray
+        self, along: FloatArray, weights: LateShares, at_zero: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Sums with a residual and sizes of the signatures that begin late.
 
         Args:
             along: products with the residual, as `Block.along` and `Block.zero_along` have them,
                 float[2, k, rows].
-            weight: share of the effect in each row, float[beginnings, rows].
+            weights: shares of the effect in the rows.
             at_zero: mean of that share over the zero rows, float[beginnings].
 
         Returns:
             float[k, beginnings] each.
         """
-        rest, mean = weight - at_zero[:, None], at_zero[:, None]
         by_row = self.by_row.astype(float)
-        sums = along.sum(0) @ rest.T + along[0].sum(1)[:, None] * at_zero
-        sizes = by_row @ (rest**2).T
+        whole, all_rows = along.sum(0), by_row.sum(1)[:, None]
+        untouched = along[0].sum(1) - whole.sum(1)
+        sums = weights.sums(whole) + untouched[:, None] * at_zero
+        sizes = weights.squares(by_row)
         if at_zero.any():
             across = self.by_row if self.across is None else self.across
-            sizes += 2 * across.astype(float) @ (rest * mean).T + self.white[:, None] * at_zero**2
+            crossed = across.astype(float)
+            sizes += 2 * at_zero * (weights.sums(crossed) - weights.sums(by_row))
+            constant = all_rows - 2 * crossed.sum(1)[:, None] + self.white[:, None]
+            sizes += at_zero**2 * constant
         sizes = np.maximum(sizes, 0.0)
         # Scatter is the same in all rows. Of some rows it takes that part of what it takes of all.
-        total = np.maximum(by_row.sum(1), 1e-300)[:, None]
+        total = np.maximum(all_rows, 1e-300)
         taken = self.open_share[:, None] - self.whole_size[:, None] / total
         shares = self.open_share[:, None] - np.minimum(sizes / total, 1.0) * taken
         return sums, sizes * np.maximum(shares, 0.0)
@@ -166,6 +171,7 @@ class Screening:
         progress: Callable[[float], None] = lambda done: None,
     ) -> None:
         data, covariance = problem.data, problem.covariance
+        self._about = problem, simulator
         self._judged: list[RankedSignatures] = []
         done = 0
         for block in chunks(signatures(data, data.about(simulator), candidates)):
@@ -216,7 +222,16 @@ class Screening:
             if not any(one.hypothesis.same_place(other) for other in taken)
         ]
         kept.sort(key=_rank)
-        kept = [*judged_anew(problem, simulator, kept[:JUDGED], weighted), *kept[JUDGED:]]
+        # About the simulation of the screening nothing is new but what onsets make of signatures.
+        here = self._about == (problem, simulator)
+        known = [here and one.hypothesis.onset is None for one in kept[:JUDGED]]
+        nearest = list(zip(kept[:JUDGED], known, strict=True))
+        anew = [one for one, judged in nearest if not judged]
+        kept = [
+            *judged_anew(problem, simulator, anew, weighted),
+            *(one for one, judged in nearest if judged),
+            *kept[JUDGED:],
+        ]
         first: dict[int, Prospect] = {}
         for one in sorted(kept, key=_rank):
             first.setdefault(one.number, one)
@@ -274,7 +289,7 @@ def _promises(
     if beginning is not None and beginning.onset is not None:
         weight, weight_at_zero = data.weights(beginning.effect([0.0] * len(beginning.priors)))
         at_zero = tare.mean_weight(weight_at_zero[None])
-        sums, sizes = judged.begun(along, weight[None], at_zero)
+        sums, sizes = judged.begun(along, OneBeginning(weight), at_zero)
         options.append(_scored(block, sums[:, 0], sizes[:, 0], later))
         moments.append((np.full(len(members), beginning.onset), beginning.profile))
     if beginning is None and onsets:
@@ -282,9 +297,9 @@ def _promises(
         inner = slice(margin, len(time) - margin)
         every = np.arange(len(members))
         for profile in PROFILES:
-            weight = _weights(time[inner], time, profile, time[-1])
-            at_zero = tare.mean_weight(_weights(time[inner], tare.time, profile, time[-1]))
-            sums, sizes = judged.begun(along, weight, at_zero)
+            weights = EveryBeginning(time, time[inner], profile)
+            at_zero = tare.mean_weight(weights.at(tare.time))
+            sums, sizes = judged.begun(along, weights, at_zero)
             row = np.argmax(_gained(sums, sizes), axis=1)
             options.append(_scored(block, sums[every, row], sizes[every, row], later))
             moments.append((time[inner][row], profile))
@@ -299,22 +314,6 @@ def _promises(
             always, late = map(float, largest[:, k])
             found.append(Prospect(number, one, start_z, float(score[k]), always, late, z))
     return found
-
-
-def _weights(beginnings: FloatArray, time: FloatArray, profile: Profile, end: float) -> FloatArray:
-    """Shares at times of effects that begin at moments, float[beginnings, times].
-
-    Args:
-        beginnings: moments [s], float[beginnings].
-        time: times [s], float[times].
-        profile: of the effects.
-        end: when a ramp is full [s].
-    """
-    later = time >= beginnings[:, None]
-    if profile == "step":
-        return later.astype(float)
-    left = np.maximum(end - beginnings[:, None], 1e-12)
-    return np.where(later, (time - beginnings[:, None]) / left, 0.0)
 
 
 def _gained(along: FloatArray, size: FloatArray) -> FloatArray:
