@@ -5,12 +5,13 @@ moment, nor a drift from one on. So an effect that is hidden in the record does 
 as long as it leaves the structure linear; one that changes with time may pass for a little of it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lstsq
 
-from rga.arrays import BoolArray, FloatArray
+from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.numerics.decompositions import thin_svd
 
 #: a step: a jump from one row to the next of so many robust deviations of such jumps, by which the
@@ -52,15 +53,16 @@ def unexplainable(
     span = _orthonormal(basis, max(1, len(residual) // 12))
     own = residual - context_error
     left = _left(own, observed, span)
+    wandering = _wandering(left, observed, span)
     moment = _jump(left, observed, span)
     if moment is None:
-        moment = _shift(left, observed, span)
+        moment = _shift(wandering)
     if moment is not None:
         # A step would else pass for noise with a long memory, the better the larger it is.
         step = (np.arange(len(residual)) >= moment).astype(float)
         span = np.column_stack([span, step])
-        left = _left(own, observed, span)
-    begun = _growth(left, observed, span)
+        wandering = _wandering(_left(own, observed, span), observed, span)
+    begun = _growth(wandering)
     if begun is not None:
         clock = np.arange(len(residual)) / len(residual)
         later = np.maximum(clock - clock[begun], 0.0)
@@ -69,16 +71,25 @@ def unexplainable(
 
 
 def _left(residual: FloatArray, observed: BoolArray, span: FloatArray) -> FloatArray:
-    left = np.zeros_like(residual)
-    for sensor in range(residual.shape[1]):
-        seen = observed[:, sensor]
-        if seen.sum() > 2 * span.shape[1]:
-            weights = lstsq(span[seen], residual[seen, sensor])[0]
-            rest = residual[seen, sensor] - span[seen] @ weights
-            left[seen, sensor] = rest * np.sqrt(seen.sum() / (seen.sum() - span.shape[1]))
-        else:
-            left[seen, sensor] = residual[seen, sensor]
+    left = np.where(observed, residual, 0.0)
+    for rows, sensors in _seen_together(observed):
+        if len(rows) > 2 * span.shape[1]:
+            place = np.ix_(rows, sensors)
+            weights = lstsq(span[rows], residual[place])[0]
+            rest = residual[place] - span[rows] @ weights
+            left[place] = rest * np.sqrt(len(rows) / (len(rows) - span.shape[1]))
     return left
+
+
+def _seen_together(observed: BoolArray) -> list[tuple[IntArray, IntArray]]:
+    """Rows with the numbers of the sensors that were read in just these."""
+    together: dict[bytes, list[int]] = {}
+    for sensor, column in enumerate(observed.T):
+        together.setdefault(column.tobytes(), []).append(sensor)
+    return [
+        (np.flatnonzero(observed[:, sensors[0]]), np.array(sensors))
+        for sensors in together.values()
+    ]
 
 
 def _jump(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
@@ -90,9 +101,14 @@ def _jump(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None
         span: of the fit, float[rows, k].
     """
     best: tuple[float, int] | None = None
-    for sensor in range(left.shape[1]):
-        rows = np.flatnonzero(observed[:, sensor])
-        column, rest = _with_whole_step(left[rows, sensor], span[rows])
+    bases = [
+        (rows, sensor, basis)
+        for rows, sensors in _seen_together(observed)
+        for basis in [np.linalg.qr(span[rows])[0]]
+        for sensor in sensors
+    ]
+    for rows, sensor, basis in bases:
+        column, rest = _with_whole_step(left[rows, sensor], basis)
         jumps = np.abs(np.diff(column))
         scale = 1.4826 * float(np.median(np.abs(np.diff(rest)))) if len(jumps) else 0.0
         for place in np.flatnonzero(jumps > JUMP * scale) + 1 if scale > 0 else ():
@@ -110,64 +126,84 @@ class _Wandering:
     """A channel whose reading is predicted by the one before and by the loads of both.
 
     Attributes:
+        rows: that were read, int[readings].
         reading: each but the first, float[readings - 1].
-        predictors: of it, float[readings - 1, k]; the second is the reading before.
+        predictors: of it, float[readings - 1, k]; the last is the reading before.
         known: their orthonormal basis, float[readings - 1, at most k].
         unpredicted: the part of the readings that they leave, float[readings - 1].
     """
 
+    rows: IntArray
     reading: FloatArray
     predictors: FloatArray
     known: FloatArray
     unpredicted: FloatArray
 
     @classmethod
-    def of(cls, column: FloatArray, loads: FloatArray) -> "_Wandering | None":
-        """None where the readings are too few to tell.
+    def of(
+        cls, rows: IntArray, column: FloatArray, loads: FloatArray, known: FloatArray
+    ) -> "_Wandering":
+        """One channel.
 
         Args:
-            column: float[readings].
-            loads: float[readings, patterns]. They fit a large change in part, so that they are
-                fitted anew beside it.
+            rows: that were read, int[readings].
+            column: its readings there, float[readings].
+            loads: of each but the first and of the one before, and a constant, float[readings - 1,
+                k]. They fit a large change in part, so that they are fitted anew beside it.
+            known: their orthonormal basis.
         """
-        reading = column[1:]
-        predictors = np.column_stack([np.ones(len(reading)), column[:-1], loads[1:], loads[:-1]])
-        if len(reading) - predictors.shape[1] <= 4 * BESIDE:
-            return None
-        known, strength, _ = thin_svd(predictors)
-        known = known[:, strength > 1e-12 * strength[0]]
-        return cls(reading, predictors, known, reading - known @ (known.T @ reading))
+        reading, before = column[1:], column[:-1]
+        own = before - known @ (known.T @ before)
+        own -= known @ (known.T @ own)
+        size = float(np.linalg.norm(own))
+        if size > 1e-12 * float(np.linalg.norm(before)):
+            known = np.column_stack([known, own / size])
+        unpredicted = reading - known @ (known.T @ reading)
+        return cls(rows, reading, np.column_stack([loads, before]), known, unpredicted)
 
     @property
     def freedom(self) -> int:
         readings, predictors = self.predictors.shape
         return int(readings - predictors)
 
-    def loss(self, *more: FloatArray) -> tuple[float, FloatArray]:
-        """Minus the greatest log likelihood with more predictors, and their weights."""
+    def loss(self, *more: FloatArray) -> tuple[float, float]:
+        """Minus the greatest log likelihood with more predictors, and the weight of the reading
+        before."""
         predictors = np.column_stack([self.predictors, *more])
         weights = lstsq(predictors, self.reading)[0]
         rest = self.reading - predictors @ weights
-        return self.freedom / 2 * float(np.log(max(float(rest @ rest), TINY))), weights
+        memory = float(weights[self.predictors.shape[1] - 1])
+        return self.freedom / 2 * float(np.log(max(float(rest @ rest), TINY))), memory
 
 
-def _shift(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
-    """The row from which on a channel keeps to another level, if any does.
-
-    At that row it jumps, and ever after it comes back to the new level as it did to the old. The
-    jump alone says nothing: an outlier has it as well.
+def _wandering(left: FloatArray, observed: BoolArray, span: FloatArray) -> list[_Wandering]:
+    """The channels of which enough was read to tell.
 
     Args:
         left: what a fit by the span leaves, float[rows, sensors].
         observed: bool[rows, sensors].
         span: of the fit, float[rows, k].
     """
-    best: tuple[float, int] | None = None
-    for sensor in range(left.shape[1]):
-        rows = np.flatnonzero(observed[:, sensor])
-        wandering = _Wandering.of(left[rows, sensor], span[rows])
-        if wandering is None:
+    found = []
+    for rows, sensors in _seen_together(observed):
+        loads = np.column_stack([np.ones(len(rows)), span[rows]])
+        loads = np.column_stack([loads[1:], loads[:-1, 1:]])
+        if len(loads) - loads.shape[1] - 1 <= 4 * BESIDE:
             continue
+        known, strength, _ = thin_svd(loads)
+        known = known[:, strength > 1e-12 * strength[0]]
+        found += [_Wandering.of(rows, left[rows, sensor], loads, known) for sensor in sensors]
+    return found
+
+
+def _shift(channels: Sequence[_Wandering]) -> int | None:
+    """The row from which on a channel keeps to another level, if any does.
+
+    At that row it jumps, and ever after it comes back to the new level as it did to the old. The
+    jump alone says nothing: an outlier has it as well.
+    """
+    best: tuple[float, int] | None = None
+    for wandering in channels:
         known, unpredicted = wandering.known, wandering.unpredicted
         # Moments of the jump, and of all readings after it, with what the predictors leave.
         jump = np.arange(BESIDE, len(unpredicted) - BESIDE)
@@ -185,31 +221,22 @@ def _shift(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | Non
             continue
         at = (np.arange(len(unpredicted)) == jump[place]).astype(float)
         since = (np.arange(len(unpredicted)) > jump[place]).astype(float)
-        free, weights = wandering.loss(at, since)
-        of_one_size, _ = wandering.loss(at + (1 - weights[1]) * since)
+        free, memory = wandering.loss(at, since)
+        of_one_size, _ = wandering.loss(at + (1 - memory) * since)
         if of_one_size - free < AGREES:
-            best = (float(gained[place]), int(rows[jump[place] + 1]))
+            best = (float(gained[place]), int(wandering.rows[jump[place] + 1]))
     return None if best is None else best[1]
 
 
-def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | None:
+def _growth(channels: Sequence[_Wandering]) -> int | None:
     """The row from which on a channel drifts in another way than before, if any does.
 
     A reading is predicted by the one before, with a line that bends at a row or without: what only
     wanders needs no such line.
-
-    Args:
-        left: what a fit by the span leaves, float[rows, sensors].
-        observed: bool[rows, sensors].
-        span: of the fit, float[rows, k].
     """
     best: tuple[float, int] | None = None
-    for sensor in range(left.shape[1]):
-        rows = np.flatnonzero(observed[:, sensor])
-        wandering = _Wandering.of(left[rows, sensor], span[rows])
-        if wandering is None:
-            continue
-        known, unpredicted = wandering.known, wandering.unpredicted
+    for wandering in channels:
+        rows, known, unpredicted = wandering.rows, wandering.known, wandering.unpredicted
         clock = np.arange(len(unpredicted)) / len(rows)
         places = np.linspace(BESIDE, len(rows) - BESIDE, MOMENTS).astype(int)
         bends = np.maximum(clock[:, None] - clock[places - 1], 0.0)
@@ -231,19 +258,18 @@ def _growth(left: FloatArray, observed: BoolArray, span: FloatArray) -> int | No
     return None if best is None else best[1]
 
 
-def _with_whole_step(left: FloatArray, span: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _with_whole_step(left: FloatArray, basis: FloatArray) -> tuple[FloatArray, FloatArray]:
     """What a fit leaves, given back what it took of the likeliest step; and less that step.
 
     The loads fit a large step in part, and what they put there hides it among jumps of their own.
 
     Args:
         left: float[readings].
-        span: of the fit, float[readings, k].
+        basis: orthonormal, of the span of the fit, float[readings, k].
     """
     readings = len(left)
-    if readings <= max(2 * BESIDE, 2 * span.shape[1]):
+    if readings <= max(2 * BESIDE, 2 * basis.shape[1]):
         return left, left
-    basis, _ = np.linalg.qr(span)
     later = np.cumsum(basis[::-1], axis=0)[::-1]
     along = np.cumsum(left[::-1])[::-1]
     own = np.arange(readings, 0, -1) - (later**2).sum(1)
