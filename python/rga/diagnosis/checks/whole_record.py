@@ -1,7 +1,7 @@
 """A record with the rows that no step of a diagnosis sees, and what a cause gains on them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -31,6 +31,7 @@ class WholeRecord:
     held_out: BoolArray
     noise: FloatArray
     deviation: FloatArray
+    _believed: dict[Problem, Data] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def of(cls, data: Data, held_out: BoolArray, problem: Problem) -> "WholeRecord":
@@ -42,11 +43,16 @@ class WholeRecord:
         return cls(data, held_out, noise, problem.noise.deviation)
 
     def believed(self, part: Problem) -> Data:
-        """All rows with their latent contexts, as a problem on the other rows has them.
+        """All rows with their latent contexts, as a problem on the other rows has them; kept.
 
         Lines are prolonged. What is latent row by row can only come from the readings of the row:
         on held-out rows the model infers it as it would in use.
         """
+        if part not in self._believed:
+            self._believed[part] = self._inferred(part)
+        return self._believed[part]
+
+    def _inferred(self, part: Problem) -> Data:
         changes = {}
         belief = part.data.belief
         clock = part.data.time - part.data.time[0]

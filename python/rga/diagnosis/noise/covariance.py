@@ -180,8 +180,9 @@ class Covariance:
         """
         logdet = 2 * np.log(np.diag(self._factor)).sum() + 2 * np.log(self.spread).sum()
         mean = self._solved(score)
-        inverse, _ = lapack.dpotri(self._factor, lower=1)
-        moment = mean**2 + np.diag(inverse)
+        half, _ = lapack.dtrtri(self._factor, lower=1)
+        variances = np.square(np.tril(half), order="F").sum(0)
+        moment = mean**2 + variances
         return float(0.5 * score @ mean - 0.5 * logdet), moment / self.spread**2 - 1.0
 
     def _solved(self, right: FloatArray) -> FloatArray:

@@ -92,10 +92,11 @@ class _Expected:
         jacobian, sigma = rows.context_jacobian, rows.noise.context_sigma
         error = rows.context_error(left - tails)
         # The posterior variance of a context in its own row, neighbours left out.
-        precise = np.einsum("ts,tsi,tsj->tij", rows.weight.T**2, jacobian, jacobian)
+        weighted = jacobian * (rows.weight.T**2)[:, :, None]
+        precise = np.matmul(weighted.transpose(0, 2, 1), jacobian)
         variance = np.linalg.inv(precise + np.diag(sigma**-2.0))
         rest = np.where(rows.observed, left - np.einsum("tsi,ti->ts", jacobian, error), 0.0)
-        hidden = np.einsum("tsi,tij,tsj->ts", jacobian, variance, jacobian)
+        hidden = (np.matmul(jacobian, variance) * jacobian).sum(2)
         context = np.sqrt((error**2 + np.einsum("tii->ti", variance)).mean(0))
         return cls(
             rows,
