@@ -83,6 +83,7 @@ Foreign = Annotated[
 CrossingModel = Annotated[
     Path, typer.Option("--crossing", metavar="MODEL", help="Model file of the crossing in --data.")
 ]
+Small = Annotated[bool, typer.Option("--quick", help="100 rows of 12 sensors only.")]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 
@@ -133,7 +134,7 @@ def _experiment(*shared: Parameter) -> Callable[[Build], Build]:
         # From these typer reads the options.
         command.__signature__ = Signature(list(parameters.values()))  # type: ignore[attr-defined]
         command.__annotations__ = {one.name: one.annotation for one in parameters.values()}
-        benchmark.command(build.__name__, help=build.__doc__)(command)
+        benchmark.command(build.__name__.replace("_", "-"), help=build.__doc__)(command)
         return build
 
     return added
@@ -206,6 +207,14 @@ def _write_case(name: str, output: Path | None) -> None:
     with whole_directory(output) as draft:
         drawn.case().write(draft)
     typer.echo(f"{name} is in {output}.")
+
+
+@_experiment(WRITTEN)
+def diagnosis_speed(quick: Small = False, seed: Seed = 0) -> Experiment[Any]:
+    """What a diagnosis costs, by rows, sensors and members, and which stage takes it."""
+    from rga_bench.speed.experiment import SpeedExperiment
+
+    return SpeedExperiment.of(seed, quick=quick)
 
 
 @_experiment(WRITTEN)

@@ -89,6 +89,7 @@ def _diagnose(
         progress("reading the contexts", done)
 
     prepared = prepare(model, record, read, criteria)
+    read(1.0)
     held_out = held_out_rows(len(prepared.data.time))
     # What a logger took off is a part of the data: a late effect shows whole all the same.
     base = Simulator(model.without_zeros())
@@ -98,6 +99,7 @@ def _diagnose(
         data = prepared.data.rows(~held_out)
         candidates = hypotheses(base.model, data.sensors, measured)
         start = settled(base, data)
+        progress("estimating the noise", 1.0)
         screening = Screening(start, base, candidates, lambda x: progress("screening", x))
         return start, screening, search(start, base, candidates, screening, progress)
 

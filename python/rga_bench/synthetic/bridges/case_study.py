@@ -24,7 +24,7 @@ def case_study_bridge() -> Bridge:
     """The twin's model of the bridge; the same every time."""
     draft = drafted("case study footbridge")
     steelwork(draft, _PANELS)
-    _contexts(draft)
+    contexts(draft)
     actions(draft, _PANELS)
     for side in SIDES:
         _sensors(draft, side)
@@ -113,7 +113,8 @@ def _deck(draft: Draft, panels: int) -> None:
             draft.member(ends, "rod", ["bracing"], name=f"brace {i} {one}")
 
 
-def _contexts(draft: Draft) -> None:
+def contexts(draft: Draft) -> None:
+    """Temperature, sunshine, crowd and wind, with their ranges."""
     draft.context("temperature", "K", -30.0, 30.0)
     draft.model["context"]["temperature"]["noise"] = 0.3
     draft.context("gradient", "K", -5.0, 15.0)

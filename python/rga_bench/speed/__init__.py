@@ -1,0 +1,1 @@
+"""What a diagnosis costs, by rows, sensors and members, and which of its stages take it."""
