@@ -67,7 +67,8 @@ class Effect(BaseModel):
     structural: ClassVar[bool] = False
     #: True where the effect changes nothing but what sensors show.
     on_sensors: ClassVar[bool] = False
-    #: True where the loads follow from the geometry and alpha alone, whatever the stiffnesses.
+    #: True where loads, and what is done to those of others, follow from the geometry and alpha
+    #: alone, whatever the stiffnesses.
     loads_by_geometry: ClassVar[bool] = False
     #: True where a row depends on the rows before it.
     remembers: ClassVar[bool] = False

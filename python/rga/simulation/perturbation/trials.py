@@ -69,11 +69,7 @@ class Vicinity:
         for effect in effects:
             effect.change_contexts(self._true, effect.values(self.response.contexts, self._rows))
         self._settled = not any(_overrides(effect, "change_values") for effect in effects)
-        self._of_geometry = all(
-            (one.loads_by_geometry or not _overrides(one, "loads"))
-            and not _overrides(one, "change_loads")
-            for one in effects
-        )
+        self._of_geometry = all(one.loads_by_geometry or not _loading(one) for one in effects)
         self._centres: list[Centre] = []
         self._of_row = np.zeros(self._rows, np.int64)
         self._find_centres()

@@ -31,6 +31,7 @@ class Creep(Effect):
     )
     usual = f"amplitude {USUAL}: a judgement"
     remembers = True
+    loads_by_geometry = True
     amplitude: Annotated[Value, Parameter("-", 0.0)] = 0.0
 
     @classmethod

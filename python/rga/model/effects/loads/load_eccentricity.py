@@ -30,6 +30,7 @@ class LoadEccentricity(Effect):
         test="the same vehicle on either side",
     )
     usual = f"share {USUAL}: a judgement"
+    loads_by_geometry = True
     effect: Effects
     share: Annotated[Value, Parameter("-", 0.0)] = 0.0
 
