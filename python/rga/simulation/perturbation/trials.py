@@ -1,48 +1,24 @@
 """A simulation at given contexts, and what more effects make of it: many trials about one point."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rga._core import Loaded, StiffnessDifference
+from rga._core import StiffnessDifference
 from rga.arrays import FloatArray, IntArray
 from rga.model.effect import Effect, Values
 from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import APART, Request, coefficients, with_laws
-from rga.simulation.paths.friction import frictionless, slid
 from rga.simulation.paths.response import respond
-from rga.simulation.paths.unilateral import respond_with_laws, terms_of
+from rga.simulation.perturbation.centre import Centre, overrides
 from rga.simulation.perturbation.chebyshev import along_line
-from rga.simulation.perturbation.reanalysis import Reanalysis
 
 if TYPE_CHECKING:
     from rga.simulation.simulator import Response, Simulator
-
-
-@dataclass(frozen=True)
-class Centre:
-    """One of the structures of a simulation.
-
-    Attributes:
-        near: that structure and those near it.
-        own: loads of every effect on it, before any other effect changes them.
-        loads: all of them, changed.
-        loaded: the structure under `loads`.
-        coefficients: of `loads`, float[rows, patterns].
-        frictionless: the structure under `loads` and under unit forces at bearings, once known, by
-            their nodes and directions.
-    """
-
-    near: Reanalysis
-    own: dict[str, list[Load]]
-    loads: list[Load]
-    loaded: Loaded
-    coefficients: FloatArray
-    frictionless: dict[tuple[tuple[int, int], ...], FloatArray] = field(default_factory=dict)
 
 
 class Vicinity:
@@ -68,8 +44,7 @@ class Vicinity:
         self._true = dict(self.response.contexts)
         for effect in effects:
             effect.change_contexts(self._true, effect.values(self.response.contexts, self._rows))
-        self._settled = not any(_overrides(effect, "change_values") for effect in effects)
-        self._of_geometry = all(one.loads_by_geometry or not _loading(one) for one in effects)
+        self._settled = not any(overrides(effect, "change_values") for effect in effects)
         self._centres: list[Centre] = []
         self._of_row = np.zeros(self._rows, np.int64)
         self._find_centres()
@@ -89,19 +64,12 @@ class Vicinity:
         if not all(structure.linear for structure in structures):
             return
         self._of_row = request.state_of_row
-        effects = self.simulator.model.effects
         for structure in structures:
-            own = {
-                name: effect.loads(structure, values[name], values)
-                for name, effect in effects.items()
-            }
-            loads = _changed(effects, own, structure, values)
-            if not loads:
+            centre = Centre.of(structure, self.simulator.model.effects, values)
+            if centre is None:
                 self._centres.clear()
                 return
-            near = Reanalysis(structure)
-            found = Centre(near, own, loads, near.under(loads), coefficients(loads))
-            self._centres.append(found)
+            self._centres.append(centre)
         parts = [one.coefficients @ one.loaded.outputs for one in self._centres]
         self.response = replace(self.response, quantities=self._joined(parts, self._of_row))
 
@@ -186,10 +154,13 @@ class Vicinity:
             for name, state in states.items():
                 effects[name].change_structure(structure, state or {})
             all_effects = {**self.simulator.model.effects, **effects}
-            if structure.bearings:
-                part = self._sliding(centre, structure, all_effects, values)
-            else:
+            if not structure.bearings:
                 part = self._quantities(structure, all_effects, values)
+            elif len(self._centres) == 1:
+                part = centre.with_friction(structure, all_effects, values)
+            else:
+                # Friction remembers, and these rows have structures of their own.
+                part = None
             if part is None:
                 return None
             parts.append(part)
@@ -270,16 +241,16 @@ class Vicinity:
         if structure.bearings or structure.nonlinear:
             return None
         centre, where = self._nearest(structure)
-        loads = self._loads(centre, structure, effects, values, where is not None, apart)
+        loads = centre.loads_on(structure, effects, values, where is not None, apart)
         if structure.laws:
-            near = None if where is None else _with_laws(centre, structure, loads, where)
+            near = centre.with_laws(structure, loads, where)
             if near is not None:
                 return near
             return with_laws(self.simulator.prepared, structure, loads)
         if where is None:
             few = _together(loads)
             return coefficients(few) @ respond(structure, few, structure.outputs)
-        q, loaded = _under(centre, loads)
+        q, loaded = centre.under(loads)
         return q @ centre.near.changed(loaded, structure, where)
 
     def _has(self, values: dict[str, Values]) -> bool:
@@ -290,28 +261,6 @@ class Vicinity:
             for name, own in self.response.values.items()
         )
 
-    def _sliding(
-        self,
-        centre: Centre,
-        structure: Structure,
-        effects: Mapping[str, Effect],
-        values: dict[str, Values],
-    ) -> FloatArray | None:
-        """What the sensors are to read where a centre has bearings with friction, in SI units.
-
-        None where more than that differs, or rows have structures of their own: friction remembers.
-        """
-        where = centre.near.differing(structure)
-        steady = len(self._centres) == 1 and structure.linear_but_friction
-        if where is None or where or not steady:
-            return None
-        if self._loads(centre, structure, effects, values, True, True) is not centre.loads:
-            return None
-        places = tuple((bearing.node, bearing.dof) for bearing in structure.bearings)
-        if places not in centre.frictionless:
-            centre.frictionless[places] = frictionless(structure, centre.loads)
-        return slid(structure, centre.coefficients, centre.frictionless[places])
-
     def _along_line(
         self, trial: "Simulator", request: Request, values: dict[str, Values], apart: bool
     ) -> FloatArray | None:
@@ -320,10 +269,10 @@ class Vicinity:
         def solve(structure: Structure) -> tuple[FloatArray, FloatArray]:
             centre, where = self._nearest(structure)
             near, effects = where is not None, trial.model.effects
-            loads = self._loads(centre, structure, effects, values, near, apart)
+            loads = centre.loads_on(structure, effects, values, near, apart)
             if where is None:
                 return coefficients(loads), respond(structure, loads, structure.outputs)
-            q, loaded = _under(centre, loads)
+            q, loaded = centre.under(loads)
             return q, centre.near.changed(loaded, structure, where)
 
         quantities = along_line(request, solve)
@@ -337,100 +286,6 @@ class Vicinity:
                 return centre, where
         return self._centres[0], None
 
-    def _loads(
-        self,
-        centre: Centre,
-        structure: Structure,
-        effects: Mapping[str, Effect],
-        values: dict[str, Values],
-        near: bool,
-        apart: bool,
-    ) -> list[Load]:
-        """Loads of all effects on a structure; those that are what they are on a centre are known.
-
-        Args:
-            centre: that the structure is near, or any.
-            structure: itself.
-            effects: those of the simulation, then others.
-            values: of their parameters.
-            near: it differs from the centre in stiffnesses alone.
-            apart: effects of the simulation have the values that they had there.
-        """
-        warms = near and np.array_equal(centre.near.structure.alpha, structure.alpha)
-        more = list(effects.values())[len(centre.own) :]
-        if apart and warms and self._of_geometry and not any(map(_loading, more)):
-            return centre.loads
-        known = _known(centre, effects, structure, warms) if apart else {}
-        own = {
-            name: known[name] if name in known else effect.loads(structure, values[name], values)
-            for name, effect in effects.items()
-        }
-        return _changed(effects, own, structure, values)
-
-
-def _with_laws(
-    centre: Centre, structure: Structure, loads: list[Load], where: StiffnessDifference
-) -> FloatArray | None:
-    """A structure that differs from a centre by play or slack alone; None for any other."""
-    if where:
-        return None
-    q, loaded = _under(centre, loads)
-    linear = centre.near.onto(loaded, *terms_of(structure))
-    return None if linear is None else respond_with_laws(structure, linear, q)
-
-
-def _known(
-    centre: Centre, effects: Mapping[str, Effect], structure: Structure, warms: bool
-) -> dict[str, list[Load]]:
-    """Loads that are on a structure what they are on a centre, by effect.
-
-    Args:
-        centre: with its loads.
-        effects: of the structure.
-        structure: itself.
-        warms: its members are those of the centre, and grow as much when it is warm.
-    """
-    first = centre.near.structure
-    points = first.arrays["coordinates"]
-    if not np.array_equal(points, structure.arrays["coordinates"][: len(points)]):
-        return {}
-    return {
-        name: loads
-        for name, loads in centre.own.items()
-        if effects[name].loads_by_geometry and (warms or all(load.strain is None for load in loads))
-    }
-
-
-def _under(centre: Centre, loads: list[Load]) -> tuple[FloatArray, Loaded]:
-    """Coefficients of loads, and the centre under them; it knows most of them."""
-    if loads is centre.loads:
-        return centre.coefficients, centre.loaded
-    place = {id(load): number for number, load in enumerate(centre.loads)}
-    new = [load for load in loads if id(load) not in place]
-    if not new and len(loads) == len(place):
-        return centre.coefficients, centre.loaded
-    place |= {id(load): len(centre.loads) + number for number, load in enumerate(new)}
-    more = centre.near.under(new) if new else None
-    return coefficients(loads), centre.loaded.choose(more, [place[id(load)] for load in loads])
-
-
-def _changed(
-    effects: Mapping[str, Effect],
-    own: Mapping[str, list[Load]],
-    structure: Structure,
-    values: dict[str, Values],
-) -> list[Load]:
-    """Loads of all effects, as other effects change them."""
-    loads = dict(own)
-    for name, effect in effects.items():
-        effect.change_loads(loads, structure, values[name])
-    return [load for of_effect in loads.values() for load in of_effect]
-
-
-def _loading(effect: Effect) -> bool:
-    """True where an effect may have loads, or change others'."""
-    return _overrides(effect, "loads") or _overrides(effect, "change_loads")
-
 
 def _state(values: Values) -> dict[str, float] | None:
     """Parameters that are the same in every row; None where one varies."""
@@ -441,7 +296,7 @@ def _state(values: Values) -> dict[str, float] | None:
 
 def _meddles(effect: Effect) -> bool:
     """True where an effect may change contexts, or parameters of other effects."""
-    return _overrides(effect, "change_contexts") or _overrides(effect, "change_values")
+    return overrides(effect, "change_contexts") or overrides(effect, "change_values")
 
 
 def _together(loads: list[Load]) -> list[Load]:
@@ -461,7 +316,3 @@ def _together(loads: list[Load]) -> list[Load]:
         for node, force in load.forces.items():
             forces[node] = forces[node] + force if node in forces else force
     return found
-
-
-def _overrides(effect: Effect, method: str) -> bool:
-    return getattr(type(effect), method) is not getattr(Effect, method)

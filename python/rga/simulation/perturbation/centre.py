@@ -1,0 +1,172 @@
+"""A structure of a simulation under its loads, and what structures near it make of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+
+from rga._core import Loaded, StiffnessDifference
+from rga.arrays import FloatArray
+from rga.model.effect import Effect, Values
+from rga.model.structure import Load, Structure
+from rga.simulation.dispatch import coefficients
+from rga.simulation.paths.friction import frictionless, slid
+from rga.simulation.paths.unilateral import respond_with_laws, terms_of
+from rga.simulation.perturbation.reanalysis import Reanalysis
+
+
+@dataclass(frozen=True)
+class Centre:
+    """One of the structures of a simulation.
+
+    Attributes:
+        near: that structure and those near it.
+        own: loads of every effect on it, before any other effect changes them.
+        loads: all of them, changed.
+        loaded: the structure under `loads`.
+        coefficients: of `loads`, float[rows, patterns].
+        of_geometry: its loads follow from the geometry and alpha alone.
+        frictionless: the structure under `loads` and under unit forces at bearings, once known, by
+            their nodes and directions.
+    """
+
+    near: Reanalysis
+    own: dict[str, list[Load]]
+    loads: list[Load]
+    loaded: Loaded
+    coefficients: FloatArray
+    of_geometry: bool
+    frictionless: dict[tuple[tuple[int, int], ...], FloatArray] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls, structure: Structure, effects: Mapping[str, Effect], values: dict[str, Values]
+    ) -> Self | None:
+        """That of a structure under the loads of effects; None where there is no load."""
+        own = {name: one.loads(structure, values[name], values) for name, one in effects.items()}
+        loads = _changed(effects, own, structure, values)
+        if not loads:
+            return None
+        near = Reanalysis(structure)
+        of_geometry = all(one.loads_by_geometry or not loading(one) for one in effects.values())
+        return cls(near, own, loads, near.under(loads), coefficients(loads), of_geometry)
+
+    def loads_on(
+        self,
+        structure: Structure,
+        effects: Mapping[str, Effect],
+        values: dict[str, Values],
+        near: bool,
+        apart: bool,
+    ) -> list[Load]:
+        """Loads of all effects on a structure; those that are what they are here are known.
+
+        Args:
+            structure: with all effects.
+            effects: those of the simulation, then others.
+            values: of their parameters.
+            near: the structure differs from this in stiffnesses alone.
+            apart: effects of the simulation have the values that they had here.
+        """
+        warms = near and np.array_equal(self.near.structure.alpha, structure.alpha)
+        more = list(effects.values())[len(self.own) :]
+        if apart and warms and self.of_geometry and not any(map(loading, more)):
+            return self.loads
+        known = self._known(effects, structure, warms) if apart else {}
+        own = {
+            name: known[name] if name in known else effect.loads(structure, values[name], values)
+            for name, effect in effects.items()
+        }
+        return _changed(effects, own, structure, values)
+
+    def under(self, loads: list[Load]) -> tuple[FloatArray, Loaded]:
+        """Coefficients of loads, and this structure under them; it knows most of them."""
+        if loads is self.loads:
+            return self.coefficients, self.loaded
+        place = {id(load): number for number, load in enumerate(self.loads)}
+        new = [load for load in loads if id(load) not in place]
+        if not new and len(loads) == len(place):
+            return self.coefficients, self.loaded
+        place |= {id(load): len(self.loads) + number for number, load in enumerate(new)}
+        more = self.near.under(new) if new else None
+        return coefficients(loads), self.loaded.choose(more, [place[id(load)] for load in loads])
+
+    def with_laws(
+        self, structure: Structure, loads: list[Load], where: StiffnessDifference | None
+    ) -> FloatArray | None:
+        """A structure that differs by play or slack alone, float[rows, sensors] in SI units.
+
+        None for any other.
+        """
+        if where is None or where:
+            return None
+        q, loaded = self.under(loads)
+        linear = self.near.onto(loaded, *terms_of(structure))
+        return None if linear is None else respond_with_laws(structure, linear, q)
+
+    def with_friction(
+        self, structure: Structure, effects: Mapping[str, Effect], values: dict[str, Values]
+    ) -> FloatArray | None:
+        """A structure that differs by friction in its bearings alone, float[rows, sensors] in SI.
+
+        None for any other.
+
+        Args:
+            structure: itself.
+            effects: as for `loads_on`; those of the simulation have the values that they had here.
+            values: of their parameters.
+        """
+        where = self.near.differing(structure)
+        if where is None or where or not structure.linear_but_friction:
+            return None
+        if self.loads_on(structure, effects, values, near=True, apart=True) is not self.loads:
+            return None
+        places = tuple((bearing.node, bearing.dof) for bearing in structure.bearings)
+        if places not in self.frictionless:
+            self.frictionless[places] = frictionless(structure, self.loads)
+        return slid(structure, self.coefficients, self.frictionless[places])
+
+    def _known(
+        self, effects: Mapping[str, Effect], structure: Structure, warms: bool
+    ) -> dict[str, list[Load]]:
+        """Loads that are on a structure what they are on this, by effect.
+
+        Args:
+            effects: of the structure.
+            structure: itself.
+            warms: its members are those of this one, and grow as much when it is warm.
+        """
+        first = self.near.structure
+        points = first.arrays["coordinates"]
+        if not np.array_equal(points, structure.arrays["coordinates"][: len(points)]):
+            return {}
+        return {
+            name: loads
+            for name, loads in self.own.items()
+            if effects[name].loads_by_geometry
+            and (warms or all(load.strain is None for load in loads))
+        }
+
+
+def loading(effect: Effect) -> bool:
+    """True where an effect may have loads, or change others'."""
+    return overrides(effect, "loads") or overrides(effect, "change_loads")
+
+
+def overrides(effect: Effect, method: str) -> bool:
+    """True where a kind has a method of its own."""
+    return getattr(type(effect), method) is not getattr(Effect, method)
+
+
+def _changed(
+    effects: Mapping[str, Effect],
+    own: Mapping[str, list[Load]],
+    structure: Structure,
+    values: dict[str, Values],
+) -> list[Load]:
+    """Loads of all effects, as other effects change them."""
+    loads = dict(own)
+    for name, effect in effects.items():
+        effect.change_loads(loads, structure, values[name])
+    return [load for of_effect in loads.values() for load in of_effect]
