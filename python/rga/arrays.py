@@ -74,4 +74,4 @@ class OutputArrays(TypedDict):
 
 def by_name(arrays: StructureArrays | LoadArrays | OutputArrays) -> dict[str, NDArray[Any]]:
     """The same arrays, where all are treated alike."""
-    return cast(dict[str, NDArray[Any]], arrays)
+    return cast("dict[str, NDArray[Any]]", arrays)

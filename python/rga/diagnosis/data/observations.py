@@ -190,7 +190,11 @@ class Data:
         touched = (changed != about.read).any(0)[self.columns]
         channels = np.flatnonzero(touched)
         columns = [self.columns[channel] for channel in channels]
-        zero, rows = self._parted(_finite(changed[:, columns]) - _finite(about.read[:, columns]))
+        now, before = changed[:, columns], about.read[:, columns]
+        difference = now - before
+        if not np.isfinite(difference).all():
+            difference = np.nan_to_num(now) - np.nan_to_num(before)
+        zero, rows = self._parted(difference)
         return channels, rows, zero
 
     def weights(self, effect: Effect) -> tuple[FloatArray, FloatArray]:

@@ -64,7 +64,11 @@ class RowCovariance:
         self._passing = self.weight * memory
         self._memory, self._spread = memory, spread
         self._by_sensor = np.ascontiguousarray(context_jacobian.transpose(1, 0, 2))
-        self._by_row = np.ascontiguousarray(context_jacobian.transpose(0, 2, 1))
+        # W of the derivatives: what an innovation and the one after it have of a context's error.
+        now = self.weight[:, :, None] * self._by_sensor
+        before = self._passing[:, 1:, None] * self._by_sensor[:, :-1]
+        whitened = np.concatenate([now, np.pad(before, ((0, 0), (1, 0), (0, 0)))], axis=2)
+        self._whitened = np.ascontiguousarray(whitened.transpose(1, 2, 0))
         self._factor = self._context_factor()
 
     def _context_factor(self) -> FloatArray:
@@ -116,14 +120,15 @@ class RowCovariance:
 
     def project(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
         """Whitened columns on the contexts' errors, float[rows * contexts, k]."""
-        back = self.unwhiten(white, channels)
         _, rows, contexts = self._by_sensor.shape
         if channels is None:
-            along = np.matmul(self._by_row, back.transpose(2, 1, 0)).reshape(-1, len(white))
-        else:
-            found = np.einsum("kct,kctj->ktj", back, self._by_sensor[channels])
-            along = found.reshape(len(white), rows * contexts).T
-        return self.solve_contexts(along)
+            both = np.matmul(self._whitened, white.transpose(2, 1, 0))
+            own = both[:, :contexts]
+            own[:-1] -= both[1:, contexts:]
+            return self.solve_contexts(own.reshape(rows * contexts, len(white)))
+        back = self.unwhiten(white, channels)
+        found = np.einsum("kct,kctj->ktj", back, self._by_sensor[channels])
+        return self.solve_contexts(found.reshape(len(white), rows * contexts).T)
 
     def solve_contexts(self, right: FloatArray) -> FloatArray:
         """The contexts' factor solved for right sides, float[rows * contexts, k]."""

@@ -26,6 +26,7 @@ from rga.diagnosis.preparation.channel_prediction import (
 from rga.diagnosis.preparation.single_channel import (
     ENOUGH,
     BrokenChannel,
+    answers,
     copied,
     dead,
     scaled,
@@ -80,6 +81,7 @@ def broken_channels(
         and _too_large(parts, readings, observed, number, criteria)
     ]
     possible = effects() if suspects else []
+    of_channels = answers(readings, observed, simulated, criteria)
     faults = []
     for number, sensor in enumerate(sensors):
         seen = observed[:, number]
@@ -88,7 +90,7 @@ def broken_channels(
         found = (
             silent(sensor, readings[:, number], seen, simulated[:, number], criteria)
             or copied(sensors, readings, observed, simulated, number, criteria)
-            or scaled(model, sensors, readings, observed, simulated, number, criteria)
+            or scaled(model, sensors, of_channels, number, criteria)
             or dead(sensor, readings[seen, number], simulated[seen, number], criteria)
         )
         if found is None and number in suspects:

@@ -144,22 +144,23 @@ def copied(
     criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
     """A channel that holds the readings of another, and not its own."""
-    for other in range(len(sensors)):
-        both = observed[:, number] & observed[:, other]
-        if other == number or both.sum() <= 3:
-            continue
-        rows = np.flatnonzero(both)
-        # A zero that was taken off each by itself leaves them a constant apart.
-        apart = readings[rows, number] - readings[rows, other]
-        rounding = ROUNDING * np.abs(readings[rows, other]).max()
-        same = np.abs(apart - np.median(apart)) <= rounding
-        first, end = _longest(same)
+    both = observed[:, [number]] & observed
+    # A zero that was taken off each by itself leaves them a constant apart.
+    apart = np.where(both, readings[:, [number]] - readings, np.nan)
+    rounding = ROUNDING * np.where(both, np.abs(readings), 0.0).max(0)
+    enough = both.sum(0) > 3
+    enough[number] = False
+    apart[:, ~enough] = 0.0
+    same = np.abs(apart - np.nanmedian(apart, axis=0)) <= rounding
+    for other in np.flatnonzero(enough & (same.sum(0) >= criteria.still_rows)):
+        rows = np.flatnonzero(both[:, other])
+        first, end = _longest(same[rows, other])
         copied = rows[first:end]
         if end - first < criteria.still_rows or np.ptp(readings[copied, other]) == 0:
             continue
         own, theirs = (_misfit(readings[copied, k], simulated[copied, k]) for k in (number, other))
         if own > theirs:
-            row = int(rows[first]) if end == len(same) and first > 0 else None
+            row = int(rows[first]) if end == len(rows) and first > 0 else None
             why = f"{end - first} readings in a row are exactly those of {sensors[other]}"
             return BrokenChannel(sensors[number], "copy", why, end - first, row)
     return None
@@ -181,40 +182,77 @@ def _misfit(column: FloatArray, simulated: FloatArray) -> float:
     return float((off**2).sum()) / max(power, 1e-300)
 
 
+@dataclass(frozen=True)
+class Answer:
+    """How a channel goes with its simulation.
+
+    Attributes:
+        size: standard deviation of the simulation [its unit].
+        slope: of the readings against it [-]; None where they do not go with it.
+        readings: how many there are.
+    """
+
+    size: float
+    slope: float | None
+    readings: int
+
+
+def answers(
+    readings: FloatArray, observed: BoolArray, simulated: FloatArray, criteria: ChannelCriteria
+) -> list[Answer | None]:
+    """That of every channel; None where the readings are few, or nothing moves."""
+    found: list[Answer | None] = []
+    for seen, column, expected in zip(observed.T, readings.T, simulated.T, strict=True):
+        own, should = column[seen], expected[seen]
+        if len(own) <= 3 or should.std() == 0 or own.std() == 0:
+            found.append(None)
+            continue
+        (_, between), (_, variance) = np.cov(own, should)
+        goes = abs(float(np.corrcoef(own, should)[0, 1])) > criteria.scale_correlation
+        slope = float(between / variance) if goes else None
+        found.append(Answer(float(should.std()), slope, len(own)))
+    return found
+
+
 def scaled(
     model: Model,
     sensors: tuple[str, ...],
-    readings: FloatArray,
-    observed: BoolArray,
-    simulated: FloatArray,
+    of_channels: list[Answer | None],
     number: int,
     criteria: ChannelCriteria,
 ) -> BrokenChannel | None:
-    """A channel that answers as it should, many times too much or too little."""
-    kind = model.sensors[sensors[number]].kind
-    like = [k for k, name in enumerate(sensors) if model.sensors[name].kind == kind]
-    slopes, sizes = {}, {}
-    for k in like:
-        seen = observed[:, k]
-        expected = simulated[seen, k]
-        if seen.sum() <= 3 or expected.std() == 0 or readings[seen, k].std() == 0:
-            continue
-        sizes[k] = float(expected.std())
-        correlation = float(np.corrcoef(readings[seen, k], expected)[0, 1])
-        if abs(correlation) > criteria.scale_correlation:
-            slopes[k] = float(np.cov(readings[seen, k], expected)[0, 1] / expected.var(ddof=1))
-    if number not in slopes or len(slopes) < 3:
+    """A channel that answers as it should, many times too much or too little.
+
+    Args:
+        model: tells which sensors are of a kind.
+        sensors: names.
+        of_channels: how each answers.
+        number: of the channel.
+        criteria: when it is broken.
+    """
+    own, kind = of_channels[number], model.sensors[sensors[number]].kind
+    if own is None or own.slope is None:
         return None
-    usual = float(np.median([abs(one) for k, one in slopes.items() if k != number]))
-    least = criteria.scale_variation * float(np.median(list(sizes.values())))
-    if sizes[number] < least or usual == 0:
+    like = [
+        one
+        for one, name in zip(of_channels, sensors, strict=True)
+        if one is not None and model.sensors[name].kind == kind
+    ]
+    others = [
+        (abs(one.slope), one.size) for one in like if one is not own and one.slope is not None
+    ]
+    if len(others) < 2:
         return None
-    factor = slopes[number] / usual
-    largest = max(abs(slopes[k]) * sizes[k] for k in slopes if k != number)
-    beyond = abs(slopes[number]) * sizes[number] > criteria.scale * largest
+    usual = float(np.median([slope for slope, _ in others]))
+    least = criteria.scale_variation * float(np.median([one.size for one in like]))
+    if own.size < least or usual == 0:
+        return None
+    factor = own.slope / usual
+    largest = max(slope * size for slope, size in others)
+    beyond = abs(own.slope) * own.size > criteria.scale * largest
     if (abs(factor) > criteria.scale and beyond) or abs(factor) < 1 / criteria.scale**2:
         why = f"it answers {factor:.3g} times as much as its like: check its unit and its range"
-        return BrokenChannel(sensors[number], "scale", why, int(observed[:, number].sum()))
+        return BrokenChannel(sensors[number], "scale", why, own.readings)
     return None
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from rga.diagnosis.preparation.single_channel import (
     BrokenChannel,
+    answers,
     copied,
     dead,
     lost_zeros,
@@ -50,7 +51,8 @@ def of_scaled(model: Model, readings: np.ndarray, simulated: np.ndarray) -> list
     sensors = ("S L0-L1", "S L2-L3", "S U1-U2", "S U2-U3")
     seen = np.ones(readings.shape, dtype=bool)
     every = (
-        scaled(model, sensors, readings, seen, simulated, number, CRITERIA) for number in range(4)
+        scaled(model, sensors, answers(readings, seen, simulated, CRITERIA), number, CRITERIA)
+        for number in range(4)
     )
     return [one.sensor for one in every if one is not None]
 

@@ -49,18 +49,16 @@ class ThermalLag(Effect):
 
 def lagged(driver: FloatArray, time: FloatArray, time_constant: FloatArray) -> FloatArray:
     """First-order lag of a driver that is linear between rows; it starts in equilibrium."""
-    state = driver.copy()
-    for row in range(1, len(driver)):
-        step = time[row] - time[row - 1]
-        if time_constant[row] <= 0:
-            continue
-        if step <= 0:
-            # The same moment twice: nothing follows at once.
-            state[row] = state[row - 1]
-            continue
-        ratio = step / time_constant[row]
-        decay = np.exp(-ratio)
-        slope = (driver[row] - driver[row - 1]) / ratio
-        late = driver[row] - slope
-        state[row] = late + decay * (state[row - 1] - driver[row - 1] + slope)
-    return state
+    step, constant = np.diff(time), time_constant[1:]
+    lags, later = constant > 0, step > 0
+    ratio = np.where(lags & later, step, 1.0) / np.where(lags, constant, 1.0)
+    decay = np.exp(-ratio)
+    slope = np.diff(driver) / ratio
+    added = driver[1:] - slope - decay * (driver[:-1] - slope)
+    # The same moment twice: nothing follows at once.
+    decay = np.where(lags, np.where(later, decay, 1.0), 0.0)
+    added = np.where(lags, np.where(later, added, 0.0), driver[1:])
+    state = [float(driver[0])]
+    for kept, more in zip(decay.tolist(), added.tolist(), strict=True):
+        state.append(kept * state[-1] + more)
+    return np.array(state)
