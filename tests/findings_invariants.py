@@ -1,7 +1,7 @@
 """What must hold of any findings, however broken the record: see `check_invariants`."""
 
 from rga import Findings
-from rga.diagnosis.checks.support import unseen_gaps, worsens
+from rga.diagnosis.checks.support import gaps_left_out, worsens
 from rga.diagnosis.search.stepwise import without_cause
 from rga.model.effect import Effect
 
@@ -21,7 +21,7 @@ def check_invariants(findings: Findings) -> None:
         assert held.after < held.before
         assert held.after <= NEAR_ONE
         found = findings.account.found
-        unseen = None if found is None else unseen_gaps(found)
+        unseen = None if found is None else gaps_left_out(found)
         assert unseen is None or unseen[1] <= 1.5 * unseen[0]
     if findings.verdict in ("nothing_wrong", "unknown"):
         assert not kinds

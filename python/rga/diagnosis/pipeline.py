@@ -20,7 +20,7 @@ from rga.diagnosis.checks.robustness import (
     without_unhelpful,
 )
 from rga.diagnosis.checks.short_record import too_short
-from rga.diagnosis.checks.support import supported, unseen_gaps
+from rga.diagnosis.checks.support import gaps_left_out, supported
 from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.data.observations import Data
@@ -136,7 +136,7 @@ def _diagnose(
     share = patterns.share_left(found.problem)
     grouped = sensor_groups(model, found.problem.data.sensors)
     off = misfits(found.problem, found.fit.simulated, grouped)
-    unseen = unseen_gaps(found)
+    unseen = gaps_left_out(found)
     reasons = reasons_for_doubt(
         record.sensors, prepared.faults, found, dropped, off, gained, unseen
     )

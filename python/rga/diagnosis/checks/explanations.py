@@ -85,7 +85,7 @@ def compare(
             ([*causes.hypotheses, p.hypothesis], [*causes.z, *p.z]) for p in partners[:PARTNERS]
         ]
         chosen += _off_axis(problem, base, best)
-    tried = []
+    fits = []
     for number, (together, start) in enumerate(_each_once(chosen)):
         first = together[: len(causes.hypotheses)]
         more = len(together) > len(first) and first == list(causes.hypotheses)
@@ -94,14 +94,12 @@ def compare(
             # The signature of a kind that slips or opens misleads: begin from every trial value.
             trials = product(*(prior.trials for prior in together[0].priors.values()))
             one = max((fit(problem, base, together, z) for z in trials), key=evidence)
-        tried.append(
-            Tried(
-                one,
-                _gap(problem, one.simulated),
-                unseen_gap(problem, base, one),
-            )
-        )
+        fits.append(one)
         progress((number + 1) / len(chosen))
+    unseen = unseen_gaps(problem, base, fits)
+    tried = [
+        Tried(one, _gap(problem, one.simulated), gap) for one, gap in zip(fits, unseen, strict=True)
+    ]
     gained = _free_gains(problem, tried[0])
     return [*tried, Tried(None, _gap(problem, gained), tried[0].gap_unseen)]
 
@@ -157,24 +155,26 @@ def _gap(problem: Problem, simulated: FloatArray) -> float:
     return float(square[problem.data.observed].mean())
 
 
-def unseen_gap(problem: Problem, base: Simulator, one: Fit) -> float:
-    """Gap on groups of channels, each left out of the fit in turn; nan where there is one group.
+def unseen_gaps(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> list[float]:
+    """Gaps on groups of channels, each left out of the fit in turn; nan where there is one group.
 
     Args:
         problem: with all channels.
         base: the simulator without causes.
-        one: the explanation, as fitted to all channels.
+        fits: the explanations, as fitted to all channels.
     """
     groups = sensor_groups(base.model, problem.data.sensors)
     if len(groups) < 2:
-        return float("nan")
-    squares = []
+        return [float("nan")] * len(fits)
+    squares: list[list[FloatArray]] = [[] for _ in fits]
+    spread = variance(problem)
     for names in groups.values():
         columns = [problem.data.sensors.index(name) for name in names]
-        part = refit(hiding(problem, names), base, one)
-        square = problem.whole_residual(part.simulated) ** 2 / variance(problem)
-        squares.append(square[:, columns][problem.data.observed[:, columns]])
-    return float(np.concatenate(squares).mean())
+        seen = problem.data.observed[:, columns]
+        for own, part in zip(squares, refit(hiding(problem, names), base, fits), strict=True):
+            square = problem.whole_residual(part.simulated) ** 2 / spread
+            own.append(square[:, columns][seen])
+    return [float(np.concatenate(own).mean()) for own in squares]
 
 
 def _free_gains(problem: Problem, nothing: Tried) -> FloatArray:

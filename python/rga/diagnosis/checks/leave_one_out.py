@@ -110,7 +110,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
     spread = variance(problem)
     words = []
     for word, names in groups.items():
-        blind = refit(hiding(problem, names), base, causes)
+        (blind,) = refit(hiding(problem, names), base, [causes])
         columns = [problem.data.sensors.index(name) for name in names]
         seen = problem.data.observed[:, columns]
         if not seen.any():
@@ -154,9 +154,10 @@ def hold(found: Found, number: int) -> Hold | None:
         if sensor in own:
             continue
         part = hiding(problem, [sensor])
-        again = refit(part, base, causes).log_evidence
-        for other in (nothing, nearest)[: 1 if nearest is nothing else 2]:
-            left = again - refit(part, base, other).log_evidence
+        others = [nothing] if nearest is nothing else [nothing, nearest]
+        again, *against = refit(part, base, [causes, *others])
+        for other, one in zip(others, against, strict=True):
+            left = again.log_evidence - one.log_evidence
             holds.append(Hold(sensor, left, other is nothing))
     return min(holds, key=lambda one: one.left, default=None)
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
+from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gaps
 from rga.diagnosis.search.laplace import Alternative, Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found, without_cause
@@ -31,13 +31,12 @@ def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
     if len(groups) < 2:
         return current
     while len(current.hypotheses) > 1:
-        whole = unseen_gap(problem, base, current)
         fewer = [
             without_cause(problem, base, current, number)
             for number, one in enumerate(current.hypotheses)
             if not one.kind.at_sensors()
         ]
-        gaps = [unseen_gap(problem, base, one) for one in fewer]
+        whole, *gaps = unseen_gaps(problem, base, [current, *fewer])
         if not gaps or min(gaps) >= whole:
             break
         current = fewer[int(np.argmin(gaps))]
@@ -59,9 +58,9 @@ def with_hanging_leads(found: Found, progress: Callable[[float], None]) -> Found
     favourable = _favourable(found, close.values())
     for step, sensor in enumerate(favourable):
         part = hiding(problem, [sensor])
-        causes = refit(part, found.base, found.fit)
-        for key, one in close.items():
-            other = refit(part, found.base, one.fit)
+        refitted = refit(part, found.base, [found.fit, *(one.fit for one in close.values())])
+        causes = refitted[0]
+        for key, other in zip(close, refitted[1:], strict=True):
             nearest[key] = min(nearest[key], causes.log_evidence - other.log_evidence)
         progress((step + 1) / len(favourable))
     return replace(
@@ -98,11 +97,11 @@ def with_better_prediction(found: Found) -> Found:
     ]
     if not rivals or len(sensor_groups(base.model, problem.data.sensors)) < 2:
         return found
-    whole = unseen_gap(problem, base, found.fit)
+    whole, *gaps = unseen_gaps(problem, base, [found.fit, *(one.fit for _, one in rivals)])
     better = [
         (gap, number, one)
-        for number, one in rivals
-        if (gap := unseen_gap(problem, base, one.fit)) < criteria.predicts_better * whole
+        for (number, one), gap in zip(rivals, gaps, strict=True)
+        if gap < criteria.predicts_better * whole
     ]
     if not better:
         return found

@@ -11,7 +11,7 @@ and they do not surely get worse.
 
 from collections.abc import Callable
 
-from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gap
+from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gaps
 from rga.diagnosis.checks.whole_record import WholeRecord, about
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Fit, refit
@@ -84,7 +84,7 @@ def _least_supported(found: Found, start: Problem, whole: WholeRecord, seed: int
     return min(gains, key=lambda number: gains[number]) if gains else None
 
 
-def unseen_gaps(found: Found) -> tuple[float, float] | None:
+def gaps_left_out(found: Found) -> tuple[float, float] | None:
     """Gap of channels left out of the fit, without the causes of the structure and with them.
 
     None where nothing can be left out, or no cause is one of the structure.
@@ -95,8 +95,8 @@ def unseen_gaps(found: Found) -> tuple[float, float] | None:
     if not numbers or len(groups) < 2:
         return None
     without = without_cause(found.problem, found.base, found.fit, *numbers)
-    before = unseen_gap(found.problem, found.base, without)
-    return before, unseen_gap(found.problem, found.base, found.fit)
+    before, after = unseen_gaps(found.problem, found.base, [without, found.fit])
+    return before, after
 
 
 def worsens(found: Found, without: Fit) -> bool:
@@ -114,13 +114,13 @@ def worsens(found: Found, without: Fit) -> bool:
     groups = sensor_groups(base.model, problem.data.sensors)
     if len(groups) < 2:
         return False
-    bare = unseen_gap(problem, base, without)
-    if unseen_gap(problem, base, causes) <= criteria.worse_gap * bare:
+    bare, gap = unseen_gaps(problem, base, [without, causes])
+    if gap <= criteria.worse_gap * bare:
         return False
     lead = causes.log_evidence - without.log_evidence
     against = []
     for names in groups.values():
         part = hiding(problem, names)
-        others = (refit(part, base, one).log_evidence for one in (causes, without))
-        against.append(next(others) - next(others) - lead)
+        beside, alone = refit(part, base, [causes, without])
+        against.append(beside.log_evidence - alone.log_evidence - lead)
     return max(against) > criteria.group_against

@@ -29,6 +29,8 @@ STEPS = 12
 CORRECTED = 3
 #: bounds of z, of a step in z, of how often a step is shortened, and of the loss worth a step
 FARTHEST, LONGEST, SHORTENED, ENOUGH = 8.0, 2.0, 6, 1e-3
+#: numbers in the simulations of fits that are moved together
+REFITTED = 1 << 18
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,29 +267,44 @@ def _descended(
     return here, signatures, information
 
 
-def refit(problem: Problem, base: Simulator, one: Fit) -> Fit:
-    """A fit moved to where another covariance of the same record puts it, along its signatures.
+def refit(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> list[Fit]:
+    """Fits moved to where another covariance of the same record puts them, along their signatures.
 
     Args:
         problem: the same data and simulation, channels or noise taken otherwise.
         base: the simulator without the hypotheses.
-        one: as it was fitted.
+        fits: as they were fitted.
     """
-    covariance, one = problem.covariance, replace(one, problem=problem)
-    residual = covariance.reduce(problem.residual(one.simulated).T[None])
-    if not len(one.z):
-        return _weighed(base, one, float(covariance.squares(residual)[0]))
-    reduced = covariance.reduce(one.signatures)
-    information = covariance.product(reduced, reduced) + np.eye(len(one.z))
-    along = covariance.product(reduced, residual)[:, 0]
-    move = np.linalg.solve(information, along - one.z)
-    move *= min(1.0, LONGEST / max(np.abs(move).max(initial=0.0), 1e-12))
-    z = one.z + move
-    loss = float(covariance.squares(residual)[0] + z @ z - 2 * move @ along)
-    loss += float(move @ (information - np.eye(len(z))) @ move)
-    simulated = one.simulated + np.tensordot(move, one.signatures, 1).T
-    moved = replace(one, z=z, simulated=simulated, information=information)
-    return _weighed(base, moved, loss)
+    together = max(1, REFITTED // problem.data.readings.size)
+    found: list[Fit] = []
+    for first in range(0, len(fits), together):
+        found += _refitted(problem, base, fits[first : first + together])
+    return found
+
+
+def _refitted(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> list[Fit]:
+    residuals = np.stack([problem.residual(one.simulated).T for one in fits])
+    columns = np.concatenate([residuals, *(one.signatures for one in fits)])
+    reduced = problem.covariance.reduce(columns)
+    products = problem.covariance.product(reduced, reduced)
+    found, first = [], len(fits)
+    for number, one in enumerate(fits):
+        own = slice(first, first + len(one.z))
+        first += len(one.z)
+        along = products[own, number] - one.z
+        information = products[own, own] + np.eye(len(one.z))
+        move = np.linalg.solve(information, along)
+        move *= min(1.0, LONGEST / max(np.abs(move).max(initial=0.0), 1e-12))
+        loss = float(products[number, number] + one.z @ one.z)
+        loss += float(move @ information @ move - 2 * move @ along)
+        simulated = one.simulated
+        if len(move):
+            simulated = simulated + np.tensordot(move, one.signatures, 1).T
+        moved = replace(
+            one, problem=problem, z=one.z + move, simulated=simulated, information=information
+        )
+        found.append(_weighed(base, moved, loss))
+    return found
 
 
 def _weighed(base: Simulator, one: Fit, loss: float) -> Fit:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from known_problem import candidate, candidates, change_of, found_with, with_white_noise
-from rga.diagnosis.checks.explanations import compare, hiding, sensor_groups, unseen_gap, variance
+from rga.diagnosis.checks.explanations import compare, hiding, sensor_groups, unseen_gaps, variance
 from rga.diagnosis.search.laplace import fit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.screening import Screening
@@ -47,7 +47,7 @@ def test_the_gap_on_what_was_not_fitted(noisy: Problem) -> None:
     base = noisy.simulator
     nothing = fit(noisy, base, [], [])
     residual = noisy.residual(noisy.simulated) / noisy.noise.sigma
-    assert unseen_gap(noisy, base, nothing) == pytest.approx((residual**2).mean())
+    assert unseen_gaps(noisy, base, [nothing])[0] == pytest.approx((residual**2).mean())
     sunk = candidate(noisy, "support_settlement", support="east", dof="uz")
     off = noisy.residual(noisy.simulated)
     change = change_of(noisy, sunk, 0.2)
@@ -64,8 +64,8 @@ def test_the_gap_on_what_was_not_fitted(noisy: Problem) -> None:
     grouped = type(base)(base.model.model_copy(update={"sensors": sensors}))
     for problem, most in ((true, 1.2), (false, np.inf)):
         found = fit(problem, grouped, [sunk], [0.1])
-        gap = unseen_gap(problem, grouped, found)
-        bare = unseen_gap(problem, grouped, fit(problem, grouped, [], []))
+        gap = unseen_gaps(problem, grouped, [found])[0]
+        bare = unseen_gaps(problem, grouped, [fit(problem, grouped, [], [])])[0]
         assert gap < most
         assert (gap < bare) == (problem is true)
 
@@ -74,7 +74,7 @@ def test_one_group_has_no_gap_on_others(noisy: Problem) -> None:
     model = noisy.simulator.model
     sensors = {k: one.model_copy(update={"groups": ["all"]}) for k, one in model.sensors.items()}
     base = type(noisy.simulator)(model.model_copy(update={"sensors": sensors}))
-    assert np.isnan(unseen_gap(noisy, base, fit(noisy, base, [], [])))
+    assert np.isnan(unseen_gaps(noisy, base, [fit(noisy, base, [], [])])[0])
 
 
 def test_what_was_tried_begins_with_nothing_and_ends_with_free_gains(noisy: Problem) -> None:

@@ -61,10 +61,10 @@ def predicting(
 ) -> dict[frozenset[str], float]:
     """Gaps on unseen channels by the supports whose settlements are in a fit."""
 
-    def gap(problem: Problem, base: Simulator, one: Fit) -> float:
-        return gaps[frozenset(str(h.place["support"]) for h in one.hypotheses)]
+    def of_fits(problem: Problem, base: Simulator, fits: list[Fit]) -> list[float]:
+        return [gaps[frozenset(str(h.place["support"]) for h in one.hypotheses)] for one in fits]
 
-    monkeypatch.setattr("rga.diagnosis.checks.robustness.unseen_gap", gap)
+    monkeypatch.setattr("rga.diagnosis.checks.robustness.unseen_gaps", of_fits)
     return gaps
 
 

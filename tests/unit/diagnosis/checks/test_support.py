@@ -86,7 +86,7 @@ def test_channels_get_worse_where_their_gap_and_their_likelihood_say_so(
     without = fit(noisy, noisy.simulator, [], [])
     sure = replace(found.fit, log_evidence=-20.0)
     monkeypatch.setattr(
-        "rga.diagnosis.checks.support.unseen_gap",
-        lambda problem, base, one: gap if one.hypotheses else 1.0,
+        "rga.diagnosis.checks.support.unseen_gaps",
+        lambda problem, base, fits: [gap if one.hypotheses else 1.0 for one in fits],
     )
     assert worsens(replace(found, fit=sure), without) == against

@@ -47,7 +47,7 @@ def test_another_noise_moves_a_fit_to_where_it_would_be_fitted(noisy: Problem) -
     off[:, 0] += 0.5
     problem = with_white_noise(noisy, off)
     wider = with_white_noise(noisy, off, problem.noise.sigma * np.where(np.arange(11) == 0, 30, 1))
-    moved = refit(wider, wider.simulator, fit(problem, problem.simulator, [one], [0.1]))
+    (moved,) = refit(wider, wider.simulator, [fit(problem, problem.simulator, [one], [0.1])])
     again = fit(wider, wider.simulator, [one], [0.1])
     assert moved.z == pytest.approx(again.z, rel=1e-4)
     assert moved.z != pytest.approx(fit(problem, problem.simulator, [one], [0.1]).z, rel=0.1)
