@@ -130,6 +130,21 @@ class RankedSignatures:
         shares = self.open_share[:, None] - np.minimum(sizes / total, 1.0) * taken
         return sums, sizes * np.maximum(shares, 0.0)
 
+    def largest(self, onsets: bool) -> FloatArray:
+        """d' of the trial values, or of two prior deviations where a response is straight.
+
+        Args:
+            onsets: whether effects may begin late.
+
+        Returns:
+            float[2, k]: of effects that always act, and of those that begin after the zero.
+        """
+        block = self.block
+        found = np.sqrt([self.size, self.whole_size if onsets else self.size])
+        linear = block.linear & block.free
+        found[:, linear] *= 2 / np.abs(block.z[linear, 0])
+        return found
+
     def of_numbers(self, numbers: Collection[int]) -> "RankedSignatures":
         """The signatures of some of the candidates."""
         which = np.array([number in numbers for number, _, _ in self.block.members], dtype=bool)
@@ -203,23 +218,23 @@ class Screening:
         data = problem.data
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
-        best: dict[tuple[int, Profile | None], Prospect] = {}
+        best: dict[tuple[int, Profile | None], tuple[float, _Promise, int]] = {}
         largest: dict[int, tuple[float, float]] = {}
         for judged in self._judged:
-            for one in _promises(judged, weighted, data, beginning):
-                # What an onset promises is rough, and must not hide another way to begin.
-                late = one.hypothesis.onset is not None
-                key = one.number, one.hypothesis.profile if late else None
-                best[key] = max(best.get(key, one), one, key=lambda each: each.score)
-                before = largest.get(one.number, (0.0, 0.0))
-                largest[one.number] = (
-                    max(before[0], one.largest),
-                    max(before[1], one.largest_late),
-                )
+            for promise in _promises(judged, weighted, data, beginning):
+                for k, score in enumerate(promise.scores.tolist()):
+                    # What an onset promises is rough, and must not hide another way to begin.
+                    key = judged.block.members[k][0], promise.profile
+                    if key not in best or score > best[key][0]:
+                        best[key] = score, promise, k
+            sizes = judged.largest(onsets=not data.belief.passing).T.tolist()
+            for (number, *_), (always, late) in zip(judged.block.members, sizes, strict=True):
+                before = largest.get(number, (0.0, 0.0))
+                largest[number] = max(before[0], always), max(before[1], late)
         kept = [
-            replace(one, largest=largest[one.number][0], largest_late=largest[one.number][1])
-            for one in best.values()
-            if not any(one.hypothesis.same_place(other) for other in taken)
+            promise.prospect(k, largest[number])
+            for (number, _), (_, promise, k) in best.items()
+            if not any(promise.of_place(k, other) for other in taken)
         ]
         kept.sort(key=_rank)
         # About the simulation of the screening nothing is new but what onsets make of signatures.
@@ -260,8 +275,7 @@ def judged_anew(
     for block in chunks(one for one in several if one is not None):
         size = covariance.squares(covariance.reduce(block.values, block.channels))
         sums = block.along(weighted).sum(1)
-        prior = np.array([hypothesis.log_prior for _, hypothesis, _ in block.members])
-        score, start = _scored(block, sums, np.maximum(size, 0.0), prior)
+        score, start = _scored(block, sums, np.maximum(size, 0.0), block.log_prior)
         found += [
             Prospect(number, hypothesis, _coordinates(z, s), float(points), *largest[number], z)
             for (number, hypothesis, z), points, s in zip(block.members, score, start, strict=True)
@@ -269,50 +283,65 @@ def judged_anew(
     return found
 
 
+@dataclass(frozen=True)
+class _Promise:
+    """What signatures promise that begin in one way.
+
+    Attributes:
+        block: the signatures.
+        scores: float[k].
+        starts: z of their best, float[k], or NaN: those of the trial.
+        profile: how they begin; None: they always act.
+        moments: at which they begin [s], float[k].
+        end: when they are fully grown [s]; None: in the last row.
+    """
+
+    block: Block
+    scores: FloatArray
+    starts: FloatArray
+    profile: Profile | None = None
+    moments: FloatArray | None = None
+    end: float | None = None
+
+    def of_place(self, k: int, other: Hypothesis) -> bool:
+        """Whether a signature is of the place of a hypothesis."""
+        return self.block.members[k][1].same_place(other)
+
+    def prospect(self, k: int, largest: tuple[float, float]) -> Prospect:
+        """The prospect of a signature."""
+        number, hypothesis, z = self.block.members[k]
+        if self.profile is not None and self.moments is not None:
+            hypothesis = hypothesis.beginning(float(self.moments[k]), self.profile, self.end)
+        start = _coordinates(z, float(self.starts[k]))
+        return Prospect(number, hypothesis, start, float(self.scores[k]), *largest, z)
+
+
 def _promises(
     judged: RankedSignatures, weighted: FloatArray, data: Data, beginning: Hypothesis | None
-) -> list[Prospect]:
-    """The prospects of every signature: from the start, and from its likeliest moment on."""
+) -> list[_Promise]:
+    """What every signature promises: from the start, and from its likeliest moment on."""
     block, time, tare = judged.block, data.time, data.tare
     along = np.stack([block.along(weighted), block.zero_along(weighted)])
-    members = block.members
-    onsets = not data.belief.passing
-    largest = np.sqrt([judged.size, judged.whole_size if onsets else judged.size])
-    linear = block.linear & block.free
-    largest[:, linear] *= 2 / np.abs(block.z[linear, 0])
-    before = np.array([hypothesis.log_prior for _, hypothesis, _ in members])
-    later = before + LATE
-    options: list[tuple[FloatArray, FloatArray]] = []
-    moments: list[tuple[FloatArray | None, Profile]] = []
-    options.append(_scored(block, along[0].sum(1), judged.size, before))
-    moments.append((None, "step"))
+    later = block.log_prior + LATE
+    found = [_Promise(block, *_scored(block, along[0].sum(1), judged.size, block.log_prior))]
     if beginning is not None and beginning.onset is not None:
         weight, weight_at_zero = data.weights(beginning.effect([0.0] * len(beginning.priors)))
         at_zero = tare.mean_weight(weight_at_zero[None])
         sums, sizes = judged.begun(along, OneBeginning(weight), at_zero)
-        options.append(_scored(block, sums[:, 0], sizes[:, 0], later))
-        moments.append((np.full(len(members), beginning.onset), beginning.profile))
-    if beginning is None and onsets:
+        scored = _scored(block, sums[:, 0], sizes[:, 0], later)
+        moments = np.full(len(later), beginning.onset)
+        found.append(_Promise(block, *scored, beginning.profile, moments, beginning.end))
+    if beginning is None and not data.belief.passing:
         margin = max(2, len(time) // 50)
         inner = slice(margin, len(time) - margin)
-        every = np.arange(len(members))
+        every = np.arange(len(later))
         for profile in PROFILES:
             weights = EveryBeginning(time, time[inner], profile)
             at_zero = tare.mean_weight(weights.at(tare.time))
             sums, sizes = judged.begun(along, weights, at_zero)
             row = np.argmax(_gained(sums, sizes), axis=1)
-            options.append(_scored(block, sums[every, row], sizes[every, row], later))
-            moments.append((time[inner][row], profile))
-    found = []
-    for k, (number, hypothesis, z) in enumerate(members):
-        for (moment, profile), (score, start) in zip(moments, options, strict=True):
-            one = hypothesis
-            if moment is not None:
-                end = None if beginning is None else beginning.end
-                one = hypothesis.beginning(float(moment[k]), profile, end)
-            start_z = _coordinates(z, start[k])
-            always, late = map(float, largest[:, k])
-            found.append(Prospect(number, one, start_z, float(score[k]), always, late, z))
+            scored = _scored(block, sums[every, row], sizes[every, row], later)
+            found.append(_Promise(block, *scored, profile, time[inner][row]))
     return found
 
 

@@ -104,6 +104,7 @@ class Block:
         z: float[k, parameters], zero behind the last parameter of each.
         linear: bool[k], all parameters have normal priors: the response is linear in z.
         free: bool[k], has a parameter.
+        log_prior: of the hypotheses, float[k].
     """
 
     members: list[tuple[int, Hypothesis, tuple[float, ...]]]
@@ -113,6 +114,7 @@ class Block:
     z: FloatArray
     linear: NDArray[np.bool_]
     free: NDArray[np.bool_]
+    log_prior: FloatArray
 
     @classmethod
     def of(cls, several: Sequence[Signature]) -> "Block":
@@ -134,6 +136,7 @@ class Block:
                 ]
             ),
             free=np.array([bool(one.z) for one in several]),
+            log_prior=np.array([one.hypothesis.log_prior for one in several]),
         )
 
     def along(self, weighted: FloatArray) -> FloatArray:
@@ -162,4 +165,5 @@ class Block:
             z=self.z[which],
             linear=self.linear[which],
             free=self.free[which],
+            log_prior=self.log_prior[which],
         )
