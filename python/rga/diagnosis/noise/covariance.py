@@ -54,6 +54,48 @@ class Reduced:
     scattered: FloatArray
 
 
+@dataclass(frozen=True)
+class _Effects:
+    """Shares of random effects, those apart that are of one sensor: most are.
+
+    Attributes:
+        count: how many there are.
+        several: numbers of those of several sensors, int[a].
+        shares: of these, float[a, sensors * courses].
+        alone: numbers of those of each sensor, int[sensors, most]; `count` in the place of none.
+        own: shares of these, float[sensors, most, courses].
+    """
+
+    count: int
+    several: IntArray
+    shares: FloatArray
+    alone: IntArray
+    own: FloatArray
+
+    @classmethod
+    def of(cls, shares: FloatArray) -> "_Effects":
+        """Those of shares float[effects, sensors, courses]."""
+        count, sensors, courses = shares.shape
+        on = (shares != 0.0).any(2)
+        single = on.sum(1) == 1
+        of_sensors = [np.flatnonzero(single & column) for column in on.T]
+        most = max(map(len, of_sensors), default=0)
+        alone, own = np.full((sensors, most), count), np.zeros((sensors, most, courses))
+        for sensor, numbers in enumerate(of_sensors):
+            alone[sensor, : len(numbers)] = numbers
+            own[sensor, : len(numbers)] = shares[numbers, sensor]
+        several = np.flatnonzero(~single)
+        return cls(count, several, shares[several].reshape(len(several), -1), alone, own)
+
+    def along(self, columns: FloatArray) -> FloatArray:
+        """Products with columns on the courses, float[sensors, courses, k]: float[effects, k]."""
+        sensors, courses, k = columns.shape
+        found = np.empty((self.count + 1, k))
+        found[self.several] = self.shares @ columns.reshape(sensors * courses, k)
+        found[self.alone] = np.matmul(self.own, columns)
+        return found[:-1]
+
+
 class Covariance:
     """The whole covariance: rows, and the scatter as random effects.
 
@@ -66,7 +108,7 @@ class Covariance:
     def __init__(self, rows: RowCovariance, scatter: RandomEffects, spread: FloatArray) -> None:
         self.rows = rows
         self.scatter = scatter
-        self._flat = scatter.shares.reshape(len(spread), -1)
+        self._effects = _Effects.of(scatter.shares)
         sensors = rows.observed.shape[1]
         of_sensors = np.tile(scatter.courses.T[:, None, :], (1, sensors, 1))
         white = rows.whiten(of_sensors)
@@ -74,7 +116,7 @@ class Covariance:
         self._context = rows.solve_contexts(self._on_contexts(rows.unwhiten(white)))
         grams = np.matmul(self._courses.transpose(0, 2, 1), self._courses)
         half = np.matmul(scatter.shares.transpose(1, 0, 2), grams).transpose(1, 0, 2)
-        self.information = half.reshape(self._flat.shape) @ self._flat.T
+        self.information = self._effects.along(half.transpose(1, 2, 0))
         self.information -= self._context.T @ self._context
         self.information = np.asfortranarray(self.information)
         self._spread_as(spread)
@@ -88,7 +130,8 @@ class Covariance:
         jacobian = self.rows.context_jacobian
         rows, sensors, contexts = jacobian.shape
         count = len(courses)
-        back = np.zeros((rows * contexts, len(self._flat)), order="F")
+        flat = self.scatter.shares.reshape(len(self.scatter.shares), -1)
+        back = np.zeros((rows * contexts, len(flat)), order="F")
         if not contexts:
             return back
         by_row = courses.transpose(2, 1, 0)
@@ -96,7 +139,7 @@ class Covariance:
         for first in range(0, sensors, step):
             few = slice(first, min(first + step, sensors))
             outer = np.einsum("tsj,tsp->tjsp", jacobian[:, few], by_row[:, few])
-            shares = self._flat[:, first * count : few.stop * count]
+            shares = flat[:, first * count : few.stop * count]
             back += outer.reshape(rows * contexts, -1) @ shares.T
         return back
 
@@ -132,8 +175,7 @@ class Covariance:
             for sensor in np.unique(channels):
                 which, place = np.nonzero(channels == sensor)
                 along[sensor, which] = white[which, place] @ self._courses[sensor]
-        along = along.transpose(0, 2, 1).reshape(sensors * courses, len(white))
-        score = self._flat @ along - self._context.T @ context
+        score = self._effects.along(along.transpose(0, 2, 1)) - self._context.T @ context
         scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
         return Reduced(white, context, score, scattered)
 
