@@ -38,6 +38,9 @@ impl StiffnessDifference {
                 }
                 continue;
             }
+            if one.young[member] == other.young[member] && one.area[member] == other.area[member] {
+                continue;
+            }
             let length = local_axes(one, member)?.0;
             let axial =
                 |structure: &Structure| structure.young[member] * structure.area[member] / length;
@@ -123,11 +126,19 @@ fn same_outputs(one: &Outputs, other: &Outputs) -> bool {
 }
 
 fn same<T: PartialEq>(one: Array<T>, other: Array<T>) -> bool {
-    one.shape == other.shape && one.values == other.values
+    shared(&one, &other) || (one.shape == other.shape && one.values == other.values)
 }
 
 /// What is not a number is the same as itself.
 fn same_numbers(one: Array<f64>, other: Array<f64>) -> bool {
+    if shared(&one, &other) {
+        return true;
+    }
     let mut pairs = one.values.iter().zip(other.values);
     one.shape == other.shape && pairs.all(|(one, other)| one.to_bits() == other.to_bits())
+}
+
+/// Whether both are the same numbers in memory: a copy shares what it does not change.
+fn shared<T>(one: &Array<T>, other: &Array<T>) -> bool {
+    one.shape == other.shape && std::ptr::eq(one.values, other.values)
 }

@@ -1,0 +1,75 @@
+//! Play, stops and slack beside a spring, against their closed forms.
+
+use rga_core::{Error, Law, UnitResponses, pseudo_forces};
+
+/// A term of stiffness `own` beside a spring of stiffness `beside`, both under one load.
+fn side_by_side(own: f64, beside: f64) -> UnitResponses {
+    let flexibility = 1.0 / (own + beside);
+    UnitResponses {
+        patterns: 1,
+        outputs: 1,
+        elements: 1,
+        element: vec![0],
+        stiffness: vec![own],
+        loaded: vec![flexibility],
+        stretched: vec![flexibility],
+        influence: vec![flexibility],
+        unit: vec![flexibility],
+    }
+}
+
+/// Elongations under loads of a term with a law: v = v0 - G w.
+fn elongations(system: &UnitResponses, loads: &[f64], law: Law) -> Result<Vec<f64>, Error> {
+    let pseudo = pseudo_forces(system, loads, &[law])?;
+    let pairs = loads.iter().zip(pseudo);
+    Ok(pairs
+        .map(|(load, pseudo)| system.stretched[0] * load - system.unit[0] * pseudo)
+        .collect())
+}
+
+fn close(found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() <= 1e-9 * expected.abs().max(1e-3),
+        "{found} instead of {expected}"
+    );
+}
+
+#[test]
+fn play_is_idle_between_its_ends_and_bears_beyond() {
+    let (own, beside, size) = (3e6, 1e6, 0.01);
+    let law = Law { size, rod: false };
+    let loads = [0.0, 5e3, -9e3, 3e4, -4e4];
+    let found = elongations(&side_by_side(own, beside), &loads, law).unwrap();
+    for (load, found) in loads.iter().zip(found) {
+        let free = load / beside;
+        let bearing = (load + load.signum() * own * size) / (own + beside);
+        close(found, if free.abs() <= size { free } else { bearing });
+    }
+}
+
+#[test]
+fn a_rod_bears_in_tension_beyond_its_slack_alone() {
+    let (own, beside, size) = (2e6, 5e5, 0.004);
+    let law = Law { size, rod: true };
+    let loads = [-4e4, 1e3, 8e3];
+    let found = elongations(&side_by_side(own, beside), &loads, law).unwrap();
+    close(found[0], loads[0] / beside);
+    close(found[1], loads[1] / beside);
+    close(found[2], (loads[2] + own * size) / (own + beside));
+}
+
+#[test]
+fn the_row_that_nothing_holds_is_named() {
+    let law = Law {
+        size: 0.0,
+        rod: true,
+    };
+    let found = pseudo_forces(&side_by_side(1e6, 0.0), &[2e3, -2e3], &[law]);
+    assert_eq!(found, Err(Error::UnstableSample { row: 1 }));
+}
+
+#[test]
+fn every_term_needs_a_law() {
+    let found = pseudo_forces(&side_by_side(1e6, 1e6), &[1.0], &[]);
+    assert!(matches!(found, Err(Error::InvalidInput(_))));
+}
