@@ -95,8 +95,9 @@ def compare(
             trials = product(*(prior.trials for prior in together[0].priors.values()))
             one = max((fit(problem, base, together, z) for z in trials), key=evidence)
         fits.append(one)
-        progress((number + 1) / len(chosen))
+        progress((number + 1) / (len(chosen) + 1))
     unseen = unseen_gaps(problem, base, fits)
+    progress(1.0)
     tried = [
         Tried(one, _gap(problem, one.simulated), gap) for one, gap in zip(fits, unseen, strict=True)
     ]
