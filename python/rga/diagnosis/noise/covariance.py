@@ -129,19 +129,19 @@ class Covariance:
         """
         jacobian = self.rows.context_jacobian
         rows, sensors, contexts = jacobian.shape
-        count = len(courses)
-        flat = self.scatter.shares.reshape(len(self.scatter.shares), -1)
-        back = np.zeros((rows * contexts, len(flat)), order="F")
-        if not contexts:
-            return back
+        count, effects = len(courses), self._effects
+        back = np.zeros((rows * contexts, effects.count + 1), order="F")
         by_row = courses.transpose(2, 1, 0)
-        step = max(1, TOGETHER // max(count, 1))
+        step = max(1, TOGETHER // max(count, 1)) if contexts else max(sensors, 1)
         for first in range(0, sensors, step):
             few = slice(first, min(first + step, sensors))
             outer = np.einsum("tsj,tsp->tjsp", jacobian[:, few], by_row[:, few])
-            shares = flat[:, first * count : few.stop * count]
-            back += outer.reshape(rows * contexts, -1) @ shares.T
-        return back
+            outer = outer.reshape(rows * contexts, few.stop - first, count)
+            shares = effects.shares[:, first * count : few.stop * count]
+            back[:, effects.several] += outer.reshape(len(outer), -1) @ shares.T
+            own = np.matmul(outer.transpose(1, 0, 2), effects.own[few].transpose(0, 2, 1))
+            back[:, effects.alone[few]] = own.transpose(1, 0, 2)
+        return back[:, :-1]
 
     def _spread_as(self, spread: FloatArray) -> None:
         self.spread = spread
