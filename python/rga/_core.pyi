@@ -156,6 +156,7 @@ class Condensation:
         self,
         coefficients: NDArray[np.float64],
         size: NDArray[np.float64],
+        stiffness: NDArray[np.float64],
         rod: NDArray[np.bool_],
     ) -> NDArray[np.float64]:
         """Beside terms with play or slack [n, r]."""

@@ -16,7 +16,7 @@ from rga.simulation.paths.factorisation import Factorisation
 from rga.simulation.paths.friction import respond_with_friction
 from rga.simulation.paths.large_displacements import respond_deformed
 from rga.simulation.paths.response import patterns, refused, respond
-from rga.simulation.paths.unilateral import respond_with_laws, terms_of
+from rga.simulation.paths.unilateral import LawTable, laws_alone, respond_with_laws, terms_of
 from rga.simulation.paths.variation import Variation, unvaried, variation
 from rga.simulation.perturbation.chebyshev import along_line
 
@@ -208,6 +208,14 @@ def _each_state(request: Request) -> FloatArray:
     straight = along_line(request, solve)
     if straight is not None:
         return straight
+    if len(request.states) > APART and request.fixed_patterns:
+        found = laws_alone([request.change(state) for state in request.states])
+        if found is not None:
+            structure, table = found
+            of_rows = LawTable(
+                table.size[request.state_of_row], table.stiffness[request.state_of_row]
+            )
+            return with_laws(request.prepared, structure, request.loads(structure, rows), of_rows)
     parts = []
     order = np.argsort(request.state_of_row, kind="stable")
     starts = np.searchsorted(request.state_of_row[order], np.arange(len(request.states) + 1))
@@ -239,16 +247,26 @@ def _each_state(request: Request) -> FloatArray:
 
 
 def with_laws(
-    prepared: list[CondensedPaths], structure: Structure, loads: list[Load]
+    prepared: list[CondensedPaths],
+    structure: Structure,
+    loads: list[Load],
+    table: LawTable | None = None,
 ) -> FloatArray:
-    """A structure with play or slack under loads, float[rows, sensors] in SI units."""
+    """A structure with play or slack under loads, float[rows, sensors] in SI units.
+
+    Args:
+        prepared: what was condensed before.
+        structure: with its laws.
+        loads: on it.
+        table: the laws of every row; None: those of the structure.
+    """
     if structure.bearings:
         raise InputError(
             "friction and slack are not simulated together", "effects", "leave out one of them"
         )
     members, springs = terms_of(structure)
     linear = condensed(prepared, structure, loads, members, springs, axial=True)
-    return respond_with_laws(structure, linear, coefficients(loads))
+    return respond_with_laws(structure, linear, coefficients(loads), table)
 
 
 def condensed(

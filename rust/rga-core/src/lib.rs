@@ -34,6 +34,6 @@ pub use paths::linear::respond;
 pub use paths::nonlinear::respond_nonlinear;
 pub use paths::rank_one::{Varied, count_terms};
 pub use paths::reanalysis::{Loaded, Reanalysis, StiffnessDifference};
-pub use paths::unilateral::{Law, pseudo_forces};
+pub use paths::unilateral::{Laws, pseudo_forces};
 pub use sparse::lower_triangle::LowerTriangle;
 pub use sparse::ordering::fill_reducing;

@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rga_core::{Array, Condensed, Law, UnitResponses, Varied, pseudo_forces};
+use rga_core::{Array, Condensed, Laws, UnitResponses, Varied, pseudo_forces};
 
 use crate::arrays::{Held, directions, numbers};
 use crate::exceptions::{InvalidInput, to_python};
@@ -162,7 +162,8 @@ impl Condensation {
     /// Parameters
     /// ----------
     /// coefficients : f64[n, p], of the loads
-    /// size : f64[r], a term carries nothing up to this elongation, a play down to its negative
+    /// size : f64[n, r], a term carries nothing up to this elongation, a play down to its negative
+    /// stiffness : f64[n, r], beyond; not below that in the structure
     /// rod : bool[r], a term carries tension alone
     ///
     /// Returns
@@ -177,19 +178,24 @@ impl Condensation {
         py: Python<'py>,
         coefficients: &Bound<'py, PyAny>,
         size: &Bound<'py, PyAny>,
+        stiffness: &Bound<'py, PyAny>,
         rod: &Bound<'py, PyAny>,
     ) -> PyResult<Matrix<'py>> {
         let coefficients = Held::<f64>::new(coefficients, "coefficients")?;
         let size = Held::<f64>::new(size, "size")?;
+        let stiffness = Held::<f64>::new(stiffness, "stiffness")?;
         let rod = Held::<bool>::new(rod, "rod")?;
         let q = coefficients.view();
         let [rows, _] = pair(q, "coefficients")?;
-        let of_terms = size.view().values.iter().zip(rod.view().values);
-        let laws: Vec<Law> = of_terms.map(|(&size, &rod)| Law { size, rod }).collect();
+        let laws = Laws {
+            size: size.view().values,
+            stiffness: stiffness.view().values,
+            rod: rod.view().values,
+        };
         let found = py
-            .detach(|| pseudo_forces(self.responses(), q.values, &laws))
+            .detach(|| pseudo_forces(self.responses(), q.values, laws))
             .map_err(|error| to_python(py, error))?;
-        matrix(py, &found, rows, laws.len())
+        matrix(py, &found, rows, self.terms())
     }
 
     /// Derivatives of samples along directions.

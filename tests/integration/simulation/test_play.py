@@ -1,10 +1,14 @@
 """Play in many members of a bridge at once."""
 
+from typing import Any
+
 import numpy as np
+import pytest
 
 import rga
 from rga.model import read_effect, read_model
 from rga_bench.diagnosis.design import Draw
+from rga_bench.synthetic import draw_case
 
 
 def test_play_in_all_diagonals_of_a_bridge_under_little_load() -> None:
@@ -23,3 +27,34 @@ def test_play_in_all_diagonals_of_a_bridge_under_little_load() -> None:
         # Play takes up at most so much beside the forces that the loads ask for.
         tight = rga.Simulator(given).predict(contexts)
         assert 0 < np.abs(shown - tight).max() < 2.0
+
+
+GAP = {"kind": "support_gap", "support": "B1", "dof": "ux", "gap": 4e-4, "stiffness": 4e7}
+SLIP = {"kind": "joint_slip", "group": "diagonal", "slip": 3e-4}
+SLACK = {"kind": "tension_only", "member": "3at-4a", "slack": 0.0}
+
+
+@pytest.mark.parametrize(
+    "places", [[GAP], [SLIP], [GAP, SLIP], [{**GAP, "profile": "step"}, SLIP], [GAP, SLACK]]
+)
+def test_play_that_grows_is_that_of_each_row(places: list[dict[str, Any]]) -> None:
+    """Rows whose laws differ are solved together; a few of them are solved one by one."""
+    case = draw_case(5, bridge="pratt", kind="null", rows=80)
+    growing = {"onset": 15.0, "profile": "ramp", "end": 70.0}
+    effects = {
+        str(k): read_effect({**growing, **place} if place is not SLACK else place, str(k))
+        for k, place in enumerate(places)
+    }
+    given = read_model(case.model, "case")
+    simulator = rga.Simulator(given.extended(effects))
+    contexts = {name: np.nan_to_num(case.channels[name]) for name in given.context}
+    contexts["time"] = np.arange(80.0)
+    together = simulator.predict(contexts)
+    alone = [
+        simulator.predict({name: column[k : k + 2] for name, column in contexts.items()})
+        for k in range(0, 80, 2)
+    ]
+    anew = np.concatenate(alone)
+    assert np.abs(together - anew).max() <= 1e-9 * np.abs(anew).max()
+    tight = rga.Simulator(given).predict(contexts)
+    assert np.abs(together - tight).max() > 1e-3 * np.abs(tight).max()

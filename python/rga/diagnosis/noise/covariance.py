@@ -131,8 +131,10 @@ class Covariance:
         rows, sensors, contexts = jacobian.shape
         count, effects = len(courses), self._effects
         back = np.zeros((rows * contexts, effects.count + 1), order="F")
+        if not contexts:
+            return back[:, :-1]
         by_row = courses.transpose(2, 1, 0)
-        step = max(1, TOGETHER // max(count, 1)) if contexts else max(sensors, 1)
+        step = max(1, TOGETHER // max(count, 1))
         for first in range(0, sensors, step):
             few = slice(first, min(first + step, sensors))
             outer = np.einsum("tsj,tsp->tjsp", jacobian[:, few], by_row[:, few])

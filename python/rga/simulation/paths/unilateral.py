@@ -1,16 +1,35 @@
 """Members and springs whose force is no multiple of their elongation: slack, play and stops."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from rga._core import Condensation, OutputKind, UnstableSample
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray, by_name
 from rga.errors import InputError
 from rga.model.structure import Law, Structure
 
 
+@dataclass(frozen=True)
+class LawTable:
+    """Laws of terms in several states, in the order of `terms_of`.
+
+    Attributes:
+        size: up to which a term is idle, float[states, terms] [m]; infinite where it never bears.
+        stiffness: beyond, float[states, terms] [N/m].
+    """
+
+    size: FloatArray
+    stiffness: FloatArray
+
+
 def respond_with_laws(
-    structure: Structure, linear: Condensation, coefficients: FloatArray
+    structure: Structure,
+    linear: Condensation,
+    coefficients: FloatArray,
+    table: LawTable | None = None,
 ) -> FloatArray:
     """Sensors of rows, float[rows, sensors] in SI units.
 
@@ -19,15 +38,18 @@ def respond_with_laws(
         linear: the structure condensed onto the terms that have them, in the order of
             `terms_of`.
         coefficients: of the load patterns, float[rows, patterns].
+        table: the laws of every row; None: those of the structure.
 
     Raises:
         InputError: play or slack leaves a row nothing that holds it.
     """
     laws = sorted(structure.laws, key=_order)
-    size = np.array([law.size for law in laws])
     rod = np.array([law.kind == "tension" for law in laws])
+    if table is None:
+        size = np.tile([law.size for law in laws], (len(coefficients), 1))
+        table = LawTable(size, np.tile(linear.stiffness, (len(coefficients), 1)))
     try:
-        pseudo = linear.pseudo_forces(coefficients, size, rod)
+        pseudo = linear.pseudo_forces(coefficients, table.size, table.stiffness, rod)
     except UnstableSample as error:
         raise InputError(
             "play or slack leaves nothing that holds the structure",
@@ -44,6 +66,67 @@ def respond_with_laws(
             axial = arrays["E"][law.member] * arrays["A"][law.member]
             influence[term, gauges == law.member] -= 1.0 / axial
     return np.asarray(coefficients @ linear.loaded - pseudo @ influence)
+
+
+def laws_alone(structures: Sequence[Structure]) -> tuple[Structure, LawTable] | None:
+    """A structure that differs from others in its laws alone, with the laws of all.
+
+    A stop may be stiffer in one than in another, or not be there; the structure is the one in which
+    it is softest, so that it bears at least as much in the others.
+
+    Returns:
+        The structure, and float[structures, terms]; None where more differs.
+    """
+    having = [one for one in structures if one.laws]
+    if not having or any(one.bearings or one.nonlinear for one in structures):
+        return None
+    softest = min(having, key=lambda one: float(_of_springs(one).sum()))
+    laws = sorted(softest.laws, key=_order)
+    stops = np.array([law.spring for law in laws if law.spring is not None], dtype=np.int64)
+    own = (softest.arrays["E"] * softest.arrays["A"] / softest.lengths)[
+        [law.member for law in laws if law.member is not None]
+    ]
+    sizes, stiffnesses = [], []
+    for one in structures:
+        if not _same_but_stops(softest, one, stops):
+            return None
+        others = sorted(one.laws, key=_order)
+        if not others and any(law.kind == "tension" for law in laws):
+            return None
+        if others:
+            if [replace(law, size=0.0) for law in others] != [
+                replace(law, size=0.0) for law in laws
+            ]:
+                return None
+            sizes.append([law.size for law in others])
+            stiffnesses.append([*own, *_of_springs(one)])
+        else:
+            # A member without play bears at once, a stop that is not there never.
+            sizes.append([0.0 if law.spring is None else np.inf for law in laws])
+            stiffnesses.append([*own, *_of_springs(softest)])
+    return softest, LawTable(np.array(sizes), np.array(stiffnesses))
+
+
+def _of_springs(structure: Structure) -> FloatArray:
+    """Stiffness of the springs that have a law, in the order of `terms_of`."""
+    laws = sorted(structure.laws, key=_order)
+    return structure.arrays["spring_stiffness"][
+        [law.spring for law in laws if law.spring is not None]
+    ]
+
+
+def _same_but_stops(one: Structure, other: Structure, stops: IntArray) -> bool:
+    """Whether two structures are the same, stops and their stiffness left aside."""
+    if not np.array_equal(one.alpha, other.alpha) or not np.array_equal(one.host, other.host):
+        return False
+    for name, array in by_name(one.arrays).items():
+        known = by_name(other.arrays)[name]
+        if name.startswith("spring_"):
+            array = np.delete(array, stops, axis=0)
+            known = np.delete(known, stops, axis=0) if other.laws else known
+        if not np.array_equal(array, known, equal_nan=array.dtype.kind == "f"):
+            return False
+    return True
 
 
 def terms_of(structure: Structure) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -31,13 +31,24 @@ const REFINED: usize = 2;
 /// Elongations below this are none [m].
 const NONE: f64 = 1e-12;
 
+/// What terms carry, row by row: `[rows, terms]` each.
+#[derive(Debug, Clone, Copy)]
+pub struct Laws<'a> {
+    /// A term carries nothing up to this elongation [m], and a play down to its negative; infinite
+    /// for a play that never carries.
+    pub size: &'a [f64],
+    /// Beyond, not below that of the term in the structure.
+    pub stiffness: &'a [f64],
+    /// Of the terms alone: it carries tension alone.
+    pub rod: &'a [bool],
+}
+
 /// What a term carries.
 #[derive(Debug, Clone, Copy)]
-pub struct Law {
-    /// It carries nothing up to this elongation [m], and a play down to its negative.
-    pub size: f64,
-    /// It carries tension alone.
-    pub rod: bool,
+struct Law {
+    size: f64,
+    stiffness: f64,
+    rod: bool,
 }
 
 /// Where the elongation of a term is: at an end of its play, where it bears, or between them.
@@ -52,29 +63,35 @@ enum Side {
 ///
 /// `coefficients` are those of the load patterns, `[rows, patterns]`; every term has a law.
 /// `UnstableSample` where play or slack leaves a row nothing that holds it.
-pub fn pseudo_forces(
-    linear: &UnitResponses,
-    coefficients: &[f64],
-    laws: &[Law],
-) -> Result<Vec<f64>> {
+pub fn pseudo_forces(linear: &UnitResponses, coefficients: &[f64], laws: Laws) -> Result<Vec<f64>> {
     let (terms, patterns) = (linear.stiffness.len(), linear.patterns);
-    if laws.len() != terms || patterns == 0 || !coefficients.len().is_multiple_of(patterns) {
+    let rows = coefficients.len() / patterns.max(1);
+    let of_rows = [laws.size.len(), laws.stiffness.len()] == [rows * terms; 2];
+    if !of_rows || laws.rod.len() != terms || coefficients.len() != rows * patterns {
         return Err(Error::invalid(
-            "every term needs a law, and every row the coefficients of all load patterns",
+            "every term needs a law in every row, and every row the coefficients of all load \
+             patterns",
         ));
     }
     let stretched = DMatrix::from_row_slice(patterns, terms, &linear.stretched);
-    let rows = coefficients.len() / patterns;
     let apart = DMatrix::from_row_slice(rows, patterns, coefficients) * stretched;
-    let largest = laws.iter().map(|law| law.size.abs()).fold(0.0, f64::max);
-    let system = System {
-        unit: DMatrix::from_row_slice(terms, terms, &linear.unit),
-        stiffness: &linear.stiffness,
-        laws,
-        carried: CARRIED * (apart.amax() + largest + NONE),
-    };
+    let sizes = laws.size.iter().filter(|size| size.is_finite());
+    let largest = sizes.fold(0.0, |most: f64, size| most.max(size.abs()));
+    let unit = DMatrix::from_row_slice(terms, terms, &linear.unit);
+    let carried = CARRIED * (apart.amax() + largest + NONE);
     let mut found = Vec::with_capacity(rows * terms);
     for (row, apart) in apart.row_iter().enumerate() {
+        let own = |term: usize| Law {
+            size: laws.size[row * terms + term],
+            stiffness: laws.stiffness[row * terms + term],
+            rod: laws.rod[term],
+        };
+        let system = System {
+            unit: &unit,
+            stiffness: &linear.stiffness,
+            laws: (0..terms).map(own).collect(),
+            carried,
+        };
         let forces = system
             .settled(&apart.transpose())
             .ok_or(Error::UnstableSample { row })?;
@@ -85,9 +102,10 @@ pub fn pseudo_forces(
 
 /// The compatibility of one row's elongations.
 struct System<'a> {
-    unit: DMatrix<f64>,
+    unit: &'a DMatrix<f64>,
+    /// Of the terms in the structure.
     stiffness: &'a [f64],
-    laws: &'a [Law],
+    laws: Vec<Law>,
     /// Elongation that the trace may take for itself [m].
     carried: f64,
 }
@@ -105,7 +123,10 @@ impl System<'_> {
         // All terms bear at first, each on the side that it would take without its law.
         let bearing = DVector::from_fn(apart.len(), |term, _| {
             let sign = f64::from(apart[term] > 0.0) - f64::from(apart[term] < 0.0);
-            sign * self.laws[term].size * self.stiffness[term]
+            match self.laws[term].size {
+                size if size.is_finite() => sign * size * self.stiffness[term],
+                _ => 0.0,
+            }
         });
         let mut place = self.at(apart + self.unit.tr_mul(&bearing), TRACE);
         if !self.newton(&mut place, apart, TRACE, false)? {
@@ -156,25 +177,29 @@ impl System<'_> {
     /// One Newton step, the terms staying on their sides.
     fn moved(&self, place: &Place, apart: &DVector<f64>, trace: f64) -> Option<DVector<f64>> {
         let missed = self.missed(place, apart, trace);
-        let idle: Vec<usize> = (0..place.sides.len())
-            .filter(|&term| place.sides[term] == Side::Idle)
+        // By how much a pseudo-force grows with the elongation.
+        let slope = |term: usize| match place.sides[term] {
+            Side::Idle => (trace.max(TRACE) - 1.0) * self.stiffness[term],
+            _ => self.laws[term].stiffness - self.stiffness[term],
+        };
+        let steep: Vec<usize> = (0..place.sides.len())
+            .filter(|&term| slope(term) != 0.0)
             .collect();
         let mut next = &place.elongation - &missed;
-        if idle.is_empty() {
+        if steep.is_empty() {
             return Some(next);
         }
-        // Terms that bear follow the idle ones: these alone are a system, as large as they are many.
-        let slope = |term: usize| (trace.max(TRACE) - 1.0) * self.stiffness[term];
-        let matrix = DMatrix::from_fn(idle.len(), idle.len(), |row, column| {
-            let own = self.unit[(idle[row], idle[column])] * slope(idle[column]);
+        // The other terms follow these: they alone are a system, as large as they are many.
+        let matrix = DMatrix::from_fn(steep.len(), steep.len(), |row, column| {
+            let own = self.unit[(steep[row], steep[column])] * slope(steep[column]);
             f64::from(row == column) + own
         });
-        let own = DVector::from_fn(idle.len(), |row, _| missed[idle[row]]);
+        let own = DVector::from_fn(steep.len(), |row, _| missed[steep[row]]);
         let own = matrix.lu().solve(&own)?;
-        for (&term, own) in idle.iter().zip(&own) {
+        for (&term, own) in steep.iter().zip(&own) {
             next.axpy(slope(term) * own, &self.unit.column(term), 1.0);
         }
-        for (&term, own) in idle.iter().zip(&own) {
+        for (&term, own) in steep.iter().zip(&own) {
             next[term] = place.elongation[term] - own;
         }
         Some(next)
@@ -188,14 +213,14 @@ impl System<'_> {
 
     fn pseudo(&self, elongation: &DVector<f64>, sides: &[Side], trace: f64) -> DVector<f64> {
         DVector::from_fn(elongation.len(), |term, _| {
-            let law = self.laws[term];
-            let rod = if law.rod { trace * law.size } else { 0.0 };
-            let carried = match sides[term] {
-                Side::Idle => (1.0 - trace) * elongation[term] + rod,
-                Side::Upper => law.size,
-                Side::Lower => -law.size,
-            };
-            -self.stiffness[term] * carried
+            let (law, own) = (self.laws[term], self.stiffness[term]);
+            let slack = if law.rod { trace * law.size } else { 0.0 };
+            let beyond = |end: f64| (law.stiffness - own) * elongation[term] - law.stiffness * end;
+            match sides[term] {
+                Side::Idle => -own * ((1.0 - trace) * elongation[term] + slack),
+                Side::Upper => beyond(law.size),
+                Side::Lower => beyond(-law.size),
+            }
         })
     }
 
@@ -215,12 +240,13 @@ impl System<'_> {
 
     /// Elongations, each on its side.
     fn at(&self, elongation: DVector<f64>, trace: f64) -> Place {
-        let sides = elongation.iter().zip(self.laws).map(|(&own, law)| {
+        let terms = elongation.iter().zip(&self.laws).zip(self.stiffness);
+        let sides = terms.map(|((&own, law), stiffness)| {
             // With the trace a rod's force is zero at its slack, that of a play in its middle.
             let highest = if law.rod {
                 law.size
             } else {
-                law.size / (1.0 - trace)
+                law.size / (1.0 - trace * stiffness / law.stiffness)
             };
             if own >= highest {
                 Side::Upper
