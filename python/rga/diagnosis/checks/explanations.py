@@ -89,7 +89,9 @@ def compare(
     for number, (together, start) in enumerate(_each_once(chosen)):
         first = together[: len(causes.hypotheses)]
         more = len(together) > len(first) and first == list(causes.hypotheses)
-        one = fit(problem, base, together, start, beside=causes if more else None)
+        one = _in_the_place_of_a_cause(found, together) or fit(
+            problem, base, together, start, beside=causes if more else None
+        )
         if len(together) == 1 and one.log_evidence < POOR:
             # The signature of a kind that slips or opens misleads: begin from every trial value.
             trials = product(*(prior.trials for prior in together[0].priors.values()))
@@ -103,6 +105,23 @@ def compare(
     ]
     gained = _free_gains(problem, tried[0])
     return [*tried, Tried(None, _gap(problem, gained), tried[0].gap_unseen)]
+
+
+def _in_the_place_of_a_cause(found: Found, together: Sequence[Hypothesis]) -> Fit | None:
+    """The fit that the search has made of a hypothesis alone, the sole cause left out."""
+    for ranked in found.alternatives:
+        for one in ranked:
+            known = one.fit.exact and one.fit.problem is found.problem
+            if known and _same(one.fit.hypotheses, together):
+                return one.fit
+    return None
+
+
+def _same(one: Sequence[Hypothesis], other: Sequence[Hypothesis]) -> bool:
+    """Whether two explanations are of the same places and beginnings."""
+    return len(one) == len(other) and all(
+        a.same_place(b) and a.onset == b.onset for a, b in zip(one, other, strict=True)
+    )
 
 
 def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
@@ -201,14 +220,6 @@ def _each_once(
 ) -> list[tuple[list[Hypothesis], list[float]]]:
     kept: list[tuple[list[Hypothesis], list[float]]] = []
     for together, z in chosen:
-        same = any(
-            len(others) == len(together)
-            and all(
-                a.same_place(b) and a.onset == b.onset
-                for a, b in zip(together, others, strict=True)
-            )
-            for others, _ in kept
-        )
-        if not same:
+        if not any(_same(others, together) for others, _ in kept):
             kept.append((together, z))
     return kept
