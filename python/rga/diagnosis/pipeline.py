@@ -101,7 +101,9 @@ def _diagnose(
         start = settled(base, data)
         progress("estimating the noise", 1.0)
         screening = Screening(start, base, candidates, lambda x: progress("screening", x))
-        return start, screening, search(start, base, candidates, screening, progress)
+        found = search(start, base, candidates, screening, progress)
+        progress("weighing rivals", 1.0)
+        return start, screening, found
 
     start, screening, found = searched(prepared)
     while (apart := own_response(found)) is not None:
@@ -115,6 +117,7 @@ def _diagnose(
     found, dropped = supported(
         _confirmed(found, screening, progress), start, whole, seed, reweighed
     )
+    progress("leaving out channels", 1.0)
     failed: list[str] = []
     no_explanations: list[Tried] = []
     tried = spared(

@@ -236,7 +236,7 @@ class _CopiedWhenRead(dict[str, NDArray[Any]]):
     """
 
     def __init__(self, arrays: dict[str, NDArray[Any]]) -> None:
-        super().__init__(arrays)
+        super().__init__((name, _read_only(array)) for name, array in arrays.items())
         self._shared = set(arrays)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
@@ -247,6 +247,12 @@ class _CopiedWhenRead(dict[str, NDArray[Any]]):
     def __setitem__(self, name: str, array: NDArray[Any]) -> None:
         self._shared.discard(name)
         super().__setitem__(name, array)
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 def check_direction(direction: Vector) -> None:

@@ -344,7 +344,11 @@ class Simulator:
             return self._loads(structure, of_rows)
 
         fixed = all(
-            effect.loads_by_geometry or type(effect).loads is Effect.loads
+            effect.loads_by_geometry
+            or (
+                type(effect).loads is Effect.loads
+                and type(effect).change_loads is Effect.change_loads
+            )
             for effect in effects.values()
         )
         return Request(states, state_of_row.ravel(), change, loads, fixed, self.prepared)

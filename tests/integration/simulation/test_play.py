@@ -58,3 +58,34 @@ def test_play_that_grows_is_that_of_each_row(places: list[dict[str, Any]]) -> No
     assert np.abs(together - anew).max() <= 1e-9 * np.abs(anew).max()
     tight = rga.Simulator(given).predict(contexts)
     assert np.abs(together - tight).max() > 1e-3 * np.abs(tight).max()
+
+
+MOVES = {"kind": "support_gap", "dof": "ux", "gap": 1e-4, "stiffness": {"context": "one"}}
+
+
+def test_stops_at_two_places_are_two_stops() -> None:
+    """One stop acts while the other does not: their springs have the same number."""
+    case = draw_case(5, bridge="pratt", kind="null", rows=40)
+    content = dict(case.model)
+    ranges = {"unit": "N/m", "range": [0.0, 9e7]}
+    content["context"] = {**content["context"], "one": ranges, "other": ranges}
+    stops = {
+        "B1": {**MOVES, "support": "B1"},
+        "B2": {**MOVES, "support": "B2", "stiffness": {"context": "other"}},
+    }
+    given = read_model(content, "case")
+    simulator = rga.Simulator(given.extended({k: read_effect(v, k) for k, v in stops.items()}))
+    turn = np.arange(40) % 2
+    contexts = {name: np.nan_to_num(case.channels.get(name, 0.0)) for name in case.model["context"]}
+    contexts |= {
+        "one": 1e6 * np.arange(40, 80) * turn,
+        "other": 1e6 * np.arange(40, 80) * (1 - turn),
+    }
+    contexts["time"] = np.arange(40.0)
+    together = simulator.predict(contexts)
+    alone = [
+        simulator.predict({name: column[k : k + 1] for name, column in contexts.items()})
+        for k in range(40)
+    ]
+    anew = np.concatenate(alone)
+    assert np.abs(together - anew).max() <= 1e-9 * np.abs(anew).max()

@@ -109,6 +109,8 @@ def compare(
 
 def _in_the_place_of_a_cause(found: Found, together: Sequence[Hypothesis]) -> Fit | None:
     """The fit that the search has made of a hypothesis alone, the sole cause left out."""
+    if len(together) != 1:
+        return None
     for ranked in found.alternatives:
         for one in ranked:
             known = one.fit.exact and one.fit.problem is found.problem
@@ -120,7 +122,8 @@ def _in_the_place_of_a_cause(found: Found, together: Sequence[Hypothesis]) -> Fi
 def _same(one: Sequence[Hypothesis], other: Sequence[Hypothesis]) -> bool:
     """Whether two explanations are of the same places and beginnings."""
     return len(one) == len(other) and all(
-        a.same_place(b) and a.onset == b.onset for a, b in zip(one, other, strict=True)
+        a.same_place(b) and (a.onset, a.profile, a.end) == (b.onset, b.profile, b.end)
+        for a, b in zip(one, other, strict=True)
     )
 
 

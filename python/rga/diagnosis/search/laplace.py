@@ -48,8 +48,8 @@ class Fit:
         exact: False where the simulation leaves out what effects do to each other.
         without: fits of some of the hypotheses, once known, by problem, simulator and numbers of
             those left out.
-        alternatives: what could stand in the place of each, once known, by problem, screening and
-            number.
+        alternatives: what could stand in the place of each, once known, by problem, simulator,
+            screening and number.
     """
 
     problem: Problem
@@ -63,7 +63,7 @@ class Fit:
     without: "dict[tuple[Problem, Simulator, tuple[int, ...]], Fit]" = field(
         default_factory=dict, init=False, repr=False
     )
-    alternatives: "dict[tuple[Problem, object, int], list[Alternative]]" = field(
+    alternatives: "dict[tuple[Problem, Simulator, object, int], list[Alternative]]" = field(
         default_factory=dict, init=False, repr=False
     )
     _simulators: dict[Simulator, Simulator] = field(default_factory=dict, init=False, repr=False)

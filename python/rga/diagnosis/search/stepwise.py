@@ -368,7 +368,7 @@ def _alternatives(
 
     They are kept.
     """
-    key = problem, screening, number
+    key = problem, base, screening, number
     if key not in current.alternatives:
         current.alternatives[key] = _fitted_alternatives(problem, base, current, number, screening)
     return current.alternatives[key]

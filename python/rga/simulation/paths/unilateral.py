@@ -82,6 +82,7 @@ def laws_alone(structures: Sequence[Structure]) -> tuple[Structure, LawTable] | 
         return None
     softest = min(having, key=lambda one: float(_of_springs(one).sum()))
     laws = sorted(softest.laws, key=_order)
+    places = [replace(law, size=0.0) for law in laws]
     stops = np.array([law.spring for law in laws if law.spring is not None], dtype=np.int64)
     own = (softest.arrays["E"] * softest.arrays["A"] / softest.lengths)[
         [law.member for law in laws if law.member is not None]
@@ -94,9 +95,9 @@ def laws_alone(structures: Sequence[Structure]) -> tuple[Structure, LawTable] | 
         if not others and any(law.kind == "tension" for law in laws):
             return None
         if others:
-            if [replace(law, size=0.0) for law in others] != [
-                replace(law, size=0.0) for law in laws
-            ]:
+            if [replace(law, size=0.0) for law in others] != places:
+                return None
+            if (_of_springs(one) < _of_springs(softest)).any():
                 return None
             sizes.append([law.size for law in others])
             stiffnesses.append([*own, *_of_springs(one)])
@@ -116,17 +117,22 @@ def _of_springs(structure: Structure) -> FloatArray:
 
 
 def _same_but_stops(one: Structure, other: Structure, stops: IntArray) -> bool:
-    """Whether two structures are the same, stops and their stiffness left aside."""
-    if not np.array_equal(one.alpha, other.alpha) or not np.array_equal(one.host, other.host):
-        return False
+    """Whether two structures are the same, the stiffness of stops left aside, or the stops."""
+    pairs = [(one.alpha, other.alpha), (one.host, other.host)]
+    known = dict(by_name(other.arrays).items())
     for name, array in by_name(one.arrays).items():
-        known = by_name(other.arrays)[name]
-        if name.startswith("spring_"):
+        theirs = known[name]
+        # What is no stop's stiffness, or where there is no stop no stop's at all.
+        if name == "spring_stiffness" or (name.startswith("spring_") and not other.laws):
             array = np.delete(array, stops, axis=0)
-            known = np.delete(known, stops, axis=0) if other.laws else known
-        if not np.array_equal(array, known, equal_nan=array.dtype.kind == "f"):
-            return False
-    return True
+            theirs = np.delete(theirs, stops, axis=0) if other.laws else theirs
+        pairs.append((array, theirs))
+    outputs = dict(by_name(other.outputs).items())
+    pairs += [(array, outputs[name]) for name, array in by_name(one.outputs).items()]
+    return all(
+        ours is theirs or np.array_equal(ours, theirs, equal_nan=ours.dtype.kind == "f")
+        for ours, theirs in pairs
+    )
 
 
 def terms_of(structure: Structure) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
