@@ -31,18 +31,30 @@ def test_play_in_all_diagonals_of_a_bridge_under_little_load() -> None:
 
 GAP = {"kind": "support_gap", "support": "B1", "dof": "ux", "gap": 4e-4, "stiffness": 4e7}
 SLIP = {"kind": "joint_slip", "group": "diagonal", "slip": 3e-4}
+STIFF = {"kind": "joint_rigidity", "group": ["diagonal"], "stiffness": 7e7}
+ZONE = {"kind": "rigid_end_zone", "group": "diagonal", "length": 0.5}
 SLACK = {"kind": "tension_only", "member": "3at-4a", "slack": 0.0}
 
 
 @pytest.mark.parametrize(
-    "places", [[GAP], [SLIP], [GAP, SLIP], [{**GAP, "profile": "step"}, SLIP], [GAP, SLACK]]
+    "places",
+    [
+        [GAP],
+        [SLIP],
+        [GAP, SLIP],
+        [{**GAP, "profile": "step"}, SLIP],
+        [GAP, SLACK],
+        [STIFF, ZONE, SLIP],
+    ],
 )
 def test_play_that_grows_is_that_of_each_row(places: list[dict[str, Any]]) -> None:
     """Rows whose laws differ are solved together; a few of them are solved one by one."""
     case = draw_case(5, bridge="pratt", kind="null", rows=80)
     growing = {"onset": 15.0, "profile": "ramp", "end": 70.0}
     effects = {
-        str(k): read_effect({**growing, **place} if place is not SLACK else place, str(k))
+        str(k): read_effect(
+            {**growing, **place} if place not in (SLACK, STIFF, ZONE) else place, str(k)
+        )
         for k, place in enumerate(places)
     }
     given = read_model(case.model, "case")

@@ -18,7 +18,7 @@ class LawTable:
 
     Attributes:
         size: up to which a term is idle, float[states, terms] [m]; infinite where it never bears.
-        stiffness: beyond, float[states, terms] [N/m].
+        stiffness: of the springs among them, beyond, float[states, springs] [N/m].
     """
 
     size: FloatArray
@@ -45,11 +45,13 @@ def respond_with_laws(
     """
     laws = sorted(structure.laws, key=_order)
     rod = np.array([law.kind == "tension" for law in laws])
-    if table is None:
-        size = np.tile([law.size for law in laws], (len(coefficients), 1))
-        table = LawTable(size, np.tile(linear.stiffness, (len(coefficients), 1)))
+    size = np.tile([law.size for law in laws], (len(coefficients), 1))
+    stiffness = np.tile(linear.stiffness, (len(coefficients), 1))
+    if table is not None:
+        size, springs = table.size, table.stiffness.shape[1]
+        stiffness[:, len(laws) - springs :] = table.stiffness
     try:
-        pseudo = linear.pseudo_forces(coefficients, table.size, table.stiffness, rod)
+        pseudo = linear.pseudo_forces(coefficients, size, stiffness, rod)
     except UnstableSample as error:
         raise InputError(
             "play or slack leaves nothing that holds the structure",
@@ -75,7 +77,7 @@ def laws_alone(structures: Sequence[Structure]) -> tuple[Structure, LawTable] | 
     it is softest, so that it bears at least as much in the others.
 
     Returns:
-        The structure, and float[structures, terms]; None where more differs.
+        The structure, and the laws of all structures; None where more differs.
     """
     having = [one for one in structures if one.laws]
     if not having or any(one.bearings or one.nonlinear for one in structures):
@@ -84,9 +86,6 @@ def laws_alone(structures: Sequence[Structure]) -> tuple[Structure, LawTable] | 
     laws = sorted(softest.laws, key=_order)
     places = [replace(law, size=0.0) for law in laws]
     stops = np.array([law.spring for law in laws if law.spring is not None], dtype=np.int64)
-    own = (softest.arrays["E"] * softest.arrays["A"] / softest.lengths)[
-        [law.member for law in laws if law.member is not None]
-    ]
     sizes, stiffnesses = [], []
     for one in structures:
         if not _same_but_stops(softest, one, stops):
@@ -100,11 +99,11 @@ def laws_alone(structures: Sequence[Structure]) -> tuple[Structure, LawTable] | 
             if (_of_springs(one) < _of_springs(softest)).any():
                 return None
             sizes.append([law.size for law in others])
-            stiffnesses.append([*own, *_of_springs(one)])
+            stiffnesses.append(_of_springs(one))
         else:
             # A member without play bears at once, a stop that is not there never.
             sizes.append([0.0 if law.spring is None else np.inf for law in laws])
-            stiffnesses.append([*own, *_of_springs(softest)])
+            stiffnesses.append(_of_springs(softest))
     return softest, LawTable(np.array(sizes), np.array(stiffnesses))
 
 
