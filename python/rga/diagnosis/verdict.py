@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga.diagnosis.data.held_out import Gain
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.residuals.lack_of_fit import Misfit
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.stepwise import Found

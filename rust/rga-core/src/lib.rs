@@ -32,7 +32,7 @@ pub use paths::directions::Directions;
 pub use paths::friction::{Bearings, slide};
 pub use paths::linear::respond;
 pub use paths::nonlinear::respond_nonlinear;
-pub use paths::rank_one::{Varied, count_terms};
+pub use paths::rank_one_terms::{Varied, count_terms};
 pub use paths::reanalysis::{Loaded, Reanalysis, StiffnessDifference};
 pub use paths::unilateral::{Laws, pseudo_forces};
 pub use sparse::lower_triangle::LowerTriangle;

@@ -9,7 +9,7 @@
 //! - `unilateral`: members and springs with slack, play or a stop.
 //! - `friction`: bearings that stick and slide, through time.
 //!
-//! Stiffnesses that vary are terms of rank one (`rank_one`). Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
+//! Stiffnesses that vary are terms of rank one (`rank_one_terms`). Samples are differentiated along `directions`, and rows are shared among threads (`parallel`).
 
 pub(crate) mod batch;
 pub(crate) mod condensation;
@@ -19,6 +19,6 @@ pub(crate) mod friction;
 pub(crate) mod linear;
 pub(crate) mod nonlinear;
 mod parallel;
-pub(crate) mod rank_one;
+pub(crate) mod rank_one_terms;
 pub(crate) mod reanalysis;
 pub(crate) mod unilateral;

@@ -7,7 +7,7 @@ import pytest
 
 from known_problem import candidate, found_with
 from rga.diagnosis.data.held_out import Gain
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.residuals.lack_of_fit import Misfit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found

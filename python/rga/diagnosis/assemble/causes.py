@@ -7,7 +7,7 @@ import numpy as np
 from rga.diagnosis.advice import Advice
 from rga.diagnosis.assemble.effects import content, estimated_effects, last_effect
 from rga.diagnosis.fallback import spared
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.search.change_point import beginnings
 from rga.diagnosis.search.laplace import Alternative, extended
 from rga.diagnosis.search.stepwise import Found

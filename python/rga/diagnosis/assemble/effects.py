@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.search.laplace import Fit
 from rga.diagnosis.search.stepwise import Found
 from rga.model.effect import Effect

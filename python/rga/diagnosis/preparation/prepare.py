@@ -11,10 +11,17 @@ from rga.diagnosis.data.tare import Tare
 from rga.diagnosis.preparation.bad_contexts import denied_rows, without_limits
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
 from rga.diagnosis.preparation.missing_codes import missing_codes
-from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
-from rga.diagnosis.preparation.single_channel import BrokenChannel, lost_zeros, stuck_channels
+from rga.diagnosis.preparation.sensor_faults.beside_other_channels import (
+    broken_channels,
+    lone_spikes,
+)
+from rga.diagnosis.preparation.sensor_faults.own_readings import (
+    BrokenChannel,
+    lost_zeros,
+    stuck_channels,
+)
 from rga.diagnosis.preparation.suspicious import suspicious_contexts, suspicious_units
-from rga.diagnosis.preparation.undeclared_zeros import with_own_zeros
+from rga.diagnosis.preparation.zeros.undeclared_zeros import with_own_zeros
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.linearised import load_basis
 from rga.diagnosis.search.signatures import signatures

@@ -17,7 +17,7 @@ use crate::fe::outputs::read_outputs;
 use crate::input::{Loads, Outputs, Structure};
 use crate::paths::condensed::Condensed;
 use crate::paths::linear::{Analysis, check_read};
-use crate::paths::rank_one::{Term, TermKind, Varied, find_terms};
+use crate::paths::rank_one_terms::{Term, TermKind, Varied, find_terms};
 use crate::validate::loads::check_loads;
 use crate::validate::outputs::check_outputs;
 use crate::validate::structure::check_structure;

@@ -9,7 +9,7 @@ use crate::fe::outputs::{Observer, Output, State, read_outputs};
 use crate::fe::reduction::Reduction;
 use crate::fe::stability::Solver;
 use crate::input::{Loads, Outputs, Structure};
-use crate::paths::rank_one::{Term, TermKind};
+use crate::paths::rank_one_terms::{Term, TermKind};
 use crate::validate::loads::check_loads;
 use crate::validate::outputs::check_outputs;
 use crate::validate::structure::check_structure;

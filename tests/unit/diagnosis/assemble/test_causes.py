@@ -9,7 +9,7 @@ from known_problem import candidate, change_of, found_with, with_white_noise
 from rga.diagnosis.assemble.causes import causes, fault_cause, rivals_of
 from rga.diagnosis.assemble.effects import effects_of, fault_effect
 from rga.diagnosis.preparation.prepare import PreparedRecord
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found
 from rga.findings.schema import Cause

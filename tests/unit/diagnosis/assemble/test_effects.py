@@ -13,7 +13,7 @@ from rga.diagnosis.assemble.effects import (
     last_effect,
 )
 from rga.diagnosis.preparation.prepare import PreparedRecord
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.search.linearised import Problem
 from rga.model import Model, read_effect
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rga import Simulator
-from rga.diagnosis.preparation.channel_prediction import own_parts
 from rga.diagnosis.preparation.prepare import prepare
+from rga.diagnosis.preparation.sensor_faults.channel_prediction import own_parts
 from rga.diagnosis.residuals.lack_of_fit import misfits
 from rga.diagnosis.search.linearised import Problem, load_basis, pose
 from rga_bench.faults.base import Base, Sound, load

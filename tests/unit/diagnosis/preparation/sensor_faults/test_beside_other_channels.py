@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.diagnosis.preparation.sensor_faults import broken_channels, lone_spikes
-from rga.diagnosis.preparation.single_channel import BrokenChannel
+from rga.diagnosis.preparation.sensor_faults.beside_other_channels import (
+    broken_channels,
+    lone_spikes,
+)
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel
 from rga.diagnosis.search.linearised import Problem, load_basis
 from rga.numerics.hysteresis import play
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.preparation.levels import Compared, constant, left_by_causes, moving_means
-from rga.diagnosis.preparation.zeroed_again import BESIDE, TAKEN
+from rga.diagnosis.preparation.zeros.levels import Compared, constant, left_by_causes, moving_means
+from rga.diagnosis.preparation.zeros.zeroed_again import BESIDE, TAKEN
 
 #: rows over which a jump must be there already, and the share of it
 AT_ONCE, THERE = 2, 0.7

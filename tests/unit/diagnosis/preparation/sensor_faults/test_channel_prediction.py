@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rga.diagnosis.preparation.channel_prediction import (
+from rga.diagnosis.preparation.sensor_faults.channel_prediction import (
     beyond_others,
     own_parts,
     robust_deviation,

@@ -13,10 +13,10 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data
-from rga.diagnosis.preparation.levels import Compared, constant, left_by_causes, means_between
-from rga.diagnosis.preparation.restarted import Jump, restarted
-from rga.diagnosis.preparation.zero_rows import ZeroRows, zero_rows
-from rga.diagnosis.preparation.zeroed_again import zeroed_again
+from rga.diagnosis.preparation.zeros.levels import Compared, constant, left_by_causes, means_between
+from rga.diagnosis.preparation.zeros.restarted import Jump, restarted
+from rga.diagnosis.preparation.zeros.zero_rows import ZeroRows, zero_rows
+from rga.diagnosis.preparation.zeros.zeroed_again import zeroed_again
 from rga.model.schema import Model
 from rga.records import Record
 from rga.simulation import Simulator

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.preparation.channel_prediction import (
+from rga.diagnosis.preparation.sensor_faults.channel_prediction import (
     ROWS_PER_COURSE,
     OwnParts,
     beyond_others,
@@ -23,7 +23,7 @@ from rga.diagnosis.preparation.channel_prediction import (
     robust_fit,
     root_mean_square,
 )
-from rga.diagnosis.preparation.single_channel import (
+from rga.diagnosis.preparation.sensor_faults.own_readings import (
     ENOUGH,
     BrokenChannel,
     answers,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.diagnosis.preparation.levels import Compared, moving_means
+from rga.diagnosis.preparation.zeros.levels import Compared, moving_means
 
 #: rows over which the logger may have taken its zero, and over which levels are compared
 TAKEN, BESIDE = (1, 2, 5, 10), 10

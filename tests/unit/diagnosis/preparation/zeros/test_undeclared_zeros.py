@@ -9,7 +9,7 @@ import pytest
 
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.prepare import PreparedRecord
-from rga.diagnosis.preparation.undeclared_zeros import OwnZeros, with_own_zeros
+from rga.diagnosis.preparation.zeros.undeclared_zeros import OwnZeros, with_own_zeros
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.model import Model, read_effect
 from rga.records import Record
@@ -30,7 +30,7 @@ def zeroed(
         def of_kind(*arguments: Any) -> list[Hypothesis]:
             return [one for one in hypotheses(*arguments) if one.name == kind]
 
-        monkeypatch.setattr("rga.diagnosis.preparation.levels.hypotheses", of_kind)
+        monkeypatch.setattr("rga.diagnosis.preparation.zeros.levels.hypotheses", of_kind)
         readings = record.readings + off
         data: Data = replace(prepared.data, readings=readings)
         return with_own_zeros(model, Simulator(model), replace(record, readings=readings), data)
@@ -108,7 +108,7 @@ def test_a_load_that_is_greater_than_was_measured_is_no_zero(
     warnings: int,
 ) -> None:
     """Its responses have a mean, and follow the load: here one that grows without any noise."""
-    monkeypatch.setattr("rga.diagnosis.preparation.levels.hypotheses", lambda *of: [])
+    monkeypatch.setattr("rga.diagnosis.preparation.zeros.levels.hypotheses", lambda *of: [])
     simulator, belief = Simulator(model), prepared.data.belief
     load = np.sort(belief.table["west load"])
     data = replace(prepared.data, belief=belief.with_values({"west load": load}))
@@ -144,10 +144,12 @@ def test_channels_in_another_unit_say_nothing_of_a_zero(
     warnings: int,
 ) -> None:
     """They read next to nothing of a load that comes, as if they had been set to zero there."""
-    monkeypatch.setattr("rga.diagnosis.preparation.levels.hypotheses", lambda *of: [])
+    monkeypatch.setattr("rga.diagnosis.preparation.zeros.levels.hypotheses", lambda *of: [])
     if not doubted:
         none = np.zeros(len(model.sensors), dtype=bool)
-        monkeypatch.setattr("rga.diagnosis.preparation.levels.doubted_units", lambda *of: none)
+        monkeypatch.setattr(
+            "rga.diagnosis.preparation.zeros.levels.doubted_units", lambda *of: none
+        )
     simulator, rows = Simulator(model), len(prepared.data.readings)
     load = np.where(np.arange(rows) < 40, 0.0, 100.0) + np.random.default_rng(6).normal(0, 3, rows)
     still = {name: np.full(rows, 20.0) for name in model.context} | {"west load": load}

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from rga.arrays import FloatArray, IntArray
-from rga.diagnosis.preparation.levels import Compared, means_between
+from rga.diagnosis.preparation.zeros.levels import Compared, means_between
 
 #: numbers of rows that are tried anywhere in a record; from its first row on every number is
 ANYWHERE = (1, 2, 3, 5, 10, 20, 50)

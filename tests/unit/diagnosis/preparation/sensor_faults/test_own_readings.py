@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.diagnosis.preparation.single_channel import (
+from rga.diagnosis.preparation.sensor_faults.own_readings import (
     BrokenChannel,
     answers,
     copied,

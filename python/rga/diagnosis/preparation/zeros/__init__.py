@@ -1,0 +1,1 @@
+"""Zeros of a logger: nobody declared, set over some rows only, or set again in mid-record."""
