@@ -22,10 +22,19 @@ from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
 
 T = TypeVar("T")
+#: what was built, by what it was built of, and with it: while that lives, nothing has its number
+Built = dict[tuple[int | bytes, ...], tuple[tuple[object, ...], Any]]
 #: a load along a member: its number, local axis, from, to [m], start, end
 Spread = tuple[int, int, float, float, float, float]
 #: what a structure remembers of effects
 REMEMBERED = 512
+#: where nodes are, which of them members join, and how these stand
+GEOMETRY: tuple[Literal["coordinates", "ends", "frame", "local_y"], ...] = (
+    "coordinates",
+    "ends",
+    "frame",
+    "local_y",
+)
 #: properties that a member has and a node has not
 OF_MEMBERS: tuple[
     Literal["E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end"], ...
@@ -131,9 +140,8 @@ class Structure:
     bearings: list[Bearing]
     laws: list[Law]
     nonlinear: bool
-    _built: dict[tuple[int, ...], tuple[tuple[object, ...], Any]] = field(
-        default_factory=dict, repr=False, compare=False
-    )
+    _built: Built = field(default_factory=dict, repr=False, compare=False)
+    _built_for_geometry: Built = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def linear(self) -> bool:
@@ -150,14 +158,14 @@ class Structure:
 
         For what no parameter changes, once the structure is as it is to be: a load pattern, say.
         """
-        key = tuple(map(id, of))
-        if key not in self._built:
-            if len(self._built) >= REMEMBERED:
-                self._built.clear()
-            # With the objects: while they live, no others have their numbers.
-            self._built[key] = of, build()
-        found: T = self._built[key][1]
-        return found
+        return _once(self._built, tuple(map(id, of)), build, of)
+
+    def once_for_geometry(self, build: Callable[[], T], *of: object) -> T:
+        """The same for what follows from the geometry alone: copies of one geometry share it."""
+        # Not by arrays[name]: a copy would hold arrays of its own from then on.
+        geometry = (self.arrays.get(name) for name in GEOMETRY)
+        key = *(array.tobytes() for array in geometry if array is not None), *map(id, of)
+        return _once(self._built_for_geometry, key, build, of)
 
     def copy(self) -> "Structure":
         """A copy for effects to change; this structure is not to be changed any more."""
@@ -176,6 +184,7 @@ class Structure:
             list(self.bearings),
             list(self.laws),
             self.nonlinear,
+            _built_for_geometry=self._built_for_geometry,
         )
 
     @property
@@ -247,6 +256,17 @@ class _CopiedWhenRead(dict[str, NDArray[Any]]):
     def __setitem__(self, name: str, array: NDArray[Any]) -> None:
         self._shared.discard(name)
         super().__setitem__(name, array)
+
+
+def _once(
+    built: Built, key: tuple[int | bytes, ...], build: Callable[[], T], of: tuple[object, ...]
+) -> T:
+    if key not in built:
+        if len(built) >= REMEMBERED:
+            built.clear()
+        built[key] = of, build()
+    found: T = built[key][1]
+    return found
 
 
 def _read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -11,7 +11,6 @@ from itertools import product
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.noise.covariance import Covariance
 from rga.diagnosis.noise.row_covariance import RowCovariance
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.laplace import Fit, fit, refit
@@ -140,7 +139,8 @@ def _hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
     old = problem.covariance
     jacobian = np.where(data.observed[:, :, None], old.rows.context_jacobian, 0.0)
     rows = RowCovariance(problem.noise, data.time, data.observed, jacobian)
-    return replace(problem, data=data, covariance=Covariance(rows, old.scatter, old.spread))
+    hidden = np.array([data.sensors.index(name) for name in sensors])
+    return replace(problem, data=data, covariance=old.without(hidden, rows))
 
 
 def variance(problem: Problem) -> FloatArray:

@@ -6,6 +6,7 @@ are random effects B, a dense system beside the rows: Woodbury's identity once m
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_solve, lapack
@@ -87,12 +88,17 @@ class _Effects:
         several = np.flatnonzero(~single)
         return cls(count, several, shares[several].reshape(len(several), -1), alone, own)
 
+    def on(self, sensors: IntArray) -> "_Effects":
+        """The same with the shares that they have on some sensors, int[k]."""
+        of_sensors = self.shares.reshape(len(self.shares), *self.own.shape[::2])[:, sensors]
+        shares = of_sensors.reshape(len(self.shares), -1)
+        return _Effects(self.count, self.several, shares, self.alone[sensors], self.own[sensors])
+
     def along(self, columns: FloatArray) -> FloatArray:
-        """Products with columns on the courses, float[sensors, courses, k]: float[effects, k]."""
-        sensors, courses, k = columns.shape
-        found = np.empty((self.count + 1, k))
-        found[self.several] = self.shares @ columns.reshape(sensors * courses, k)
-        found[self.alone] = np.matmul(self.own, columns)
+        """Products with columns on the courses, float[k, sensors, courses]: float[effects, k]."""
+        found = np.zeros((self.count + 1, len(columns)))
+        found[self.several] = self.shares @ columns.reshape(len(columns), -1).T
+        found[self.alone] = np.matmul(self.own, columns.transpose(1, 2, 0))
         return found[:-1]
 
 
@@ -109,41 +115,79 @@ class Covariance:
         self.rows = rows
         self.scatter = scatter
         self._effects = _Effects.of(scatter.shares)
-        sensors = rows.observed.shape[1]
-        of_sensors = np.tile(scatter.courses.T[:, None, :], (1, sensors, 1))
-        white = rows.whiten(of_sensors)
-        self._courses = np.ascontiguousarray(white.transpose(1, 2, 0))
-        self._context = rows.solve_contexts(self._on_contexts(rows.unwhiten(white)))
-        grams = np.matmul(self._courses.transpose(0, 2, 1), self._courses)
-        half = np.matmul(scatter.shares.transpose(1, 0, 2), grams).transpose(1, 0, 2)
-        self.information = self._effects.along(half.transpose(1, 2, 0))
-        self.information -= self._context.T @ self._context
-        self.information = np.asfortranarray(self.information)
+        self._settle(*self._whole, spread)
+
+    def _settle(self, information: FloatArray, on_contexts: FloatArray, spread: FloatArray) -> None:
+        """Take errors of the contexts off what rows tell of the random effects (`_part`)."""
+        self._context = self.rows.solve_contexts(on_contexts)
+        own = information - self._context.T @ self._context
+        self.information = np.asfortranarray(own)
         self._spread_as(spread)
 
-    def _on_contexts(self, courses: FloatArray) -> FloatArray:
-        """The random effects against the contexts' derivatives, float[rows * contexts, effects].
+    @cached_property
+    def _whole(self) -> tuple[FloatArray, FloatArray]:
+        return self._part(np.arange(self.rows.observed.shape[1]))
+
+    def _part(self, sensors: IntArray) -> tuple[FloatArray, FloatArray]:
+        """What some sensors tell of the random effects, were the contexts known.
+
+        Returns:
+            B' W' W B, float[effects, effects], and J' W' W B with the derivatives J by the
+            contexts, float[rows * contexts, effects].
+        """
+        effects, courses = self._effects.on(sensors), self.scatter.courses.T
+        of_sensors = np.tile(courses[:, None, :], (1, len(sensors), 1))
+        white, back = self.rows.weighted(of_sensors, np.tile(sensors, (len(courses), 1)))
+        grams = np.matmul(white.transpose(1, 0, 2), white.transpose(1, 2, 0))
+        shares = self.scatter.shares[:, sensors].transpose(1, 0, 2)
+        half = np.matmul(shares, grams).transpose(1, 0, 2)
+        return effects.along(half), self._on_contexts(effects, back, sensors)
+
+    def _on_contexts(self, effects: _Effects, back: FloatArray, sensors: IntArray) -> FloatArray:
+        """Effects on some sensors against the contexts' derivatives.
 
         Args:
-            courses: W' W of the courses on every sensor, float[courses, sensors, rows].
+            effects: their shares on these sensors.
+            back: W' W of the courses on each of them, float[courses, k, rows].
+            sensors: their numbers, int[k].
         """
-        jacobian = self.rows.context_jacobian
-        rows, sensors, contexts = jacobian.shape
-        count, effects = len(courses), self._effects
-        back = np.zeros((rows * contexts, effects.count + 1), order="F")
+        jacobian = self.rows.context_jacobian[:, sensors]
+        rows, _, contexts = jacobian.shape
+        count = len(back)
+        found = np.zeros((rows * contexts, effects.count + 1), order="F")
         if not contexts:
-            return back[:, :-1]
-        by_row = courses.transpose(2, 1, 0)
+            return found[:, :-1]
+        by_row = np.ascontiguousarray(back.transpose(2, 1, 0))
         step = max(1, TOGETHER // max(count, 1))
-        for first in range(0, sensors, step):
-            few = slice(first, min(first + step, sensors))
-            outer = np.einsum("tsj,tsp->tjsp", jacobian[:, few], by_row[:, few])
+        for first in range(0, len(sensors), step):
+            few = slice(first, min(first + step, len(sensors)))
+            derivatives = jacobian[:, few].transpose(0, 2, 1)
+            outer = np.multiply(derivatives[..., None], by_row[:, None, few], order="C")
             outer = outer.reshape(rows * contexts, few.stop - first, count)
             shares = effects.shares[:, first * count : few.stop * count]
-            back[:, effects.several] += outer.reshape(len(outer), -1) @ shares.T
+            found[:, effects.several] += outer.reshape(len(outer), -1) @ shares.T
             own = np.matmul(outer.transpose(1, 0, 2), effects.own[few].transpose(0, 2, 1))
-            back[:, effects.alone[few]] = own.transpose(1, 0, 2)
-        return back[:, :-1]
+            found[:, effects.alone[few]] = own.transpose(1, 0, 2)
+        return found[:, :-1]
+
+    def without(self, hidden: IntArray, rows: RowCovariance) -> "Covariance":
+        """The same with some sensors unseen: what they told is taken off.
+
+        Args:
+            hidden: their numbers, int[k].
+            rows: covariance of the rows without them.
+        """
+        other = self._copy()
+        other.__dict__.pop("_whole", None)
+        other.rows = rows
+        parts = [whole - part for whole, part in zip(self._whole, self._part(hidden), strict=True)]
+        # Of what only they showed nothing is left, not even rounding.
+        gone = np.setdiff1d(self._effects.alone[hidden], len(self.spread))
+        for part in parts:
+            part[:, gone] = 0.0
+        parts[0][gone] = 0.0
+        other._settle(*parts, self.spread)
+        return other
 
     def _spread_as(self, spread: FloatArray) -> None:
         self.spread = spread
@@ -155,9 +199,13 @@ class Covariance:
 
     def with_spread(self, spread: FloatArray) -> "Covariance":
         """The same with another scatter."""
+        other = self._copy()
+        other._spread_as(spread)
+        return other
+
+    def _copy(self) -> "Covariance":
         other = object.__new__(Covariance)
         other.__dict__.update(self.__dict__)
-        other._spread_as(spread)
         return other
 
     def reduce(self, columns: FloatArray, channels: IntArray | None = None) -> Reduced:
@@ -167,17 +215,18 @@ class Covariance:
             columns: float[k, sensors, rows], or float[k, channels, rows].
             channels: those that each column touches, int[k, channels]; None: all sensors.
         """
-        white = self.rows.whiten(columns, channels)
-        context = self.rows.project(white, channels)
-        sensors, _, courses = self._courses.shape
-        if channels is None:
-            along = np.matmul(white.transpose(1, 0, 2), self._courses)
-        else:
-            along = np.zeros((sensors, len(white), courses))
-            for sensor in np.unique(channels):
-                which, place = np.nonzero(channels == sensor)
-                along[sensor, which] = white[which, place] @ self._courses[sensor]
-        score = self._effects.along(along.transpose(0, 2, 1)) - self._context.T @ context
+        white, back = self.rows.weighted(columns, channels)
+        context = self.rows.solve_contexts(self.rows.on_contexts(back, channels))
+        courses = self.scatter.courses
+        along = (back.reshape(-1, len(courses)) @ courses).reshape(
+            *back.shape[:2], courses.shape[1]
+        )
+        if channels is not None:
+            of_channels = along
+            along = np.zeros((len(back), self.rows.observed.shape[1], courses.shape[1]))
+            # A column may name a channel twice.
+            np.add.at(along, (np.arange(len(back))[:, None], channels), of_channels)
+        score = self._effects.along(along) - self._context.T @ context
         scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
         return Reduced(white, context, score, scattered)
 

@@ -25,7 +25,7 @@ FACTOR_MEAN = 3.0
 #: slow courses that such a pattern may follow
 WAVES = 8
 #: share of an effect that may be left out of its courses
-EXACT = 1e-9
+EXACT = 1e-7
 
 
 @dataclass(frozen=True)

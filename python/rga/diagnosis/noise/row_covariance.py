@@ -13,6 +13,9 @@ from scipy.linalg import cholesky_banded, lapack
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 
+#: numbers in the columns that are weighted at a time
+CACHED = 1 << 15
+
 
 @dataclass(frozen=True)
 class Noise:
@@ -63,32 +66,27 @@ class RowCovariance:
         self.weight = np.where(observed.T, 1.0 / spread, 0.0)
         self._passing = self.weight * memory
         self._memory, self._spread = memory, spread
-        self._by_sensor = np.ascontiguousarray(context_jacobian.transpose(1, 0, 2))
-        # W of the derivatives: what an innovation and the one after it have of a context's error.
-        now = self.weight[:, :, None] * self._by_sensor
-        before = self._passing[:, 1:, None] * self._by_sensor[:, :-1]
-        whitened = np.concatenate([now, np.pad(before, ((0, 0), (1, 0), (0, 0)))], axis=2)
-        self._whitened = np.ascontiguousarray(whitened.transpose(1, 2, 0))
+        self._by_context = np.ascontiguousarray(context_jacobian.transpose(2, 1, 0))
         self._factor = self._context_factor()
 
     def _context_factor(self) -> FloatArray:
         """Cholesky factor of the contexts' precision, its lower band."""
-        jacobian = self._by_sensor
-        _, rows, contexts = jacobian.shape
+        jacobian = self._by_context
+        contexts, _, rows = jacobian.shape
         if contexts == 0:
             return np.zeros((1, 0))
-        now = self.weight[:, :, None] * jacobian
-        later = self._passing[:, 1:, None] * jacobian[:, :-1]
+        now = self.weight * jacobian
+        later = self._passing[:, 1:] * jacobian[..., :-1]
         own = _over_sensors(now, now)
-        own[:-1] += _over_sensors(later, later)
-        own += np.diag(self.noise.context_sigma**-2.0)
-        cross = -_over_sensors(later, now[:, 1:])
+        own[..., :-1] += _over_sensors(later, later)
+        own += np.diag(self.noise.context_sigma**-2.0)[..., None]
+        cross = -_over_sensors(later, now[..., 1:])
         lower = np.zeros((2 * contexts, rows * contexts))
         for i in range(contexts):
             for j in range(contexts):
                 if i >= j:
-                    lower[i - j, j::contexts] = own[:, i, j]
-                lower[contexts + i - j, j : (rows - 1) * contexts : contexts] = cross[:, j, i]
+                    lower[i - j, j::contexts] = own[i, j]
+                lower[contexts + i - j, j : (rows - 1) * contexts : contexts] = cross[j, i]
         return np.asfortranarray(cholesky_banded(lower, lower=True))
 
     def whiten(self, columns: FloatArray, channels: IntArray | None = None) -> FloatArray:
@@ -98,12 +96,29 @@ class RowCovariance:
         white[..., 1:] -= self._passing[here][..., 1:] * columns[..., :-1]
         return np.asarray(white)
 
-    def unwhiten(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
+    def unwhiten(self, white: FloatArray) -> FloatArray:
         """W' x of whitened columns, of their shape."""
-        here = slice(None) if channels is None else channels
-        back = white * self.weight[here]
-        back[..., :-1] -= (white * self._passing[here])[..., 1:]
+        back = white * self.weight
+        back[..., :-1] -= (white * self._passing)[..., 1:]
         return np.asarray(back)
+
+    def weighted(
+        self, columns: FloatArray, channels: IntArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """W x and W' W x of columns, of their shape."""
+        white, back = np.empty_like(columns), np.empty_like(columns)
+        weight, passing = self.weight, self._passing[:, 1:]
+        # Few at a time stay in the cache.
+        step = max(1, CACHED // max(columns[:1].size, 1))
+        for first in range(0, len(columns), step):
+            few = slice(first, first + step)
+            if channels is not None:
+                weight, passing = self.weight[channels[few]], self._passing[channels[few], 1:]
+            np.multiply(columns[few], weight, out=white[few])
+            white[few, :, 1:] -= passing * columns[few, :, :-1]
+            np.multiply(white[few], weight, out=back[few])
+            back[few, :, :-1] -= passing * white[few, :, 1:]
+        return white, back
 
     def whitened_variance(self, variance: FloatArray) -> FloatArray:
         """Variances of whitened readings of independent variances, float[sensors, rows]."""
@@ -118,17 +133,14 @@ class RowCovariance:
             columns[:, row] += self._memory[:, row] * columns[:, row - 1]
         return np.where(self.observed.T, columns, 0.0)
 
-    def project(self, white: FloatArray, channels: IntArray | None = None) -> FloatArray:
-        """Whitened columns on the contexts' errors, float[rows * contexts, k]."""
-        _, rows, contexts = self._by_sensor.shape
+    def on_contexts(self, back: FloatArray, channels: IntArray | None = None) -> FloatArray:
+        """Columns W' W x against the contexts' derivatives, float[rows * contexts, k]."""
+        contexts, _, rows = self._by_context.shape
         if channels is None:
-            both = np.matmul(self._whitened, white.transpose(2, 1, 0))
-            own = both[:, :contexts]
-            own[:-1] -= both[1:, contexts:]
-            return self.solve_contexts(own.reshape(rows * contexts, len(white)))
-        back = self.unwhiten(white, channels)
-        found = np.einsum("kct,kctj->ktj", back, self._by_sensor[channels])
-        return self.solve_contexts(found.reshape(len(white), rows * contexts).T)
+            found = np.einsum("kct,jct->kjt", back, self._by_context)
+        else:
+            found = np.einsum("kct,jkct->kjt", back, self._by_context[:, channels])
+        return found.transpose(0, 2, 1).reshape(len(back), rows * contexts).T
 
     def solve_contexts(self, right: FloatArray) -> FloatArray:
         """The contexts' factor solved for right sides, float[rows * contexts, k]."""
@@ -137,13 +149,13 @@ class RowCovariance:
     def context_error(self, residual: FloatArray) -> FloatArray:
         """Most likely errors of the contexts, float[rows, contexts], given float[rows, sensors]."""
         rows, _, contexts = self.context_jacobian.shape
-        half = self.project(self.whiten(residual.T[None]))
+        half = self.solve_contexts(self.on_contexts(self.unwhiten(self.whiten(residual.T[None]))))
         return _solved(self._factor, half, b"T").reshape(rows, contexts)
 
 
 def _over_sensors(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Inner products over the sensors, row by row, float[rows, contexts, contexts]."""
-    return np.asarray(np.matmul(one.transpose(1, 2, 0), other.transpose(1, 0, 2)))
+    """Inner products over the sensors, row by row, float[contexts, contexts, rows]."""
+    return np.asarray(np.einsum("ist,jst->ijt", one, other))
 
 
 def _solved(factor: FloatArray, right: FloatArray, trans: bytes) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -80,17 +81,23 @@ class Centre:
         }
         return _changed(effects, own, structure, values)
 
+    @cached_property
+    def _places(self) -> dict[tuple[int, ...], int]:
+        """Of the loads, by the identity of their patterns."""
+        return {_identity(load): number for number, load in enumerate(self.loads)}
+
     def under(self, loads: list[Load]) -> tuple[FloatArray, Loaded]:
         """Coefficients of loads, and this structure under them; it knows most of them."""
         if loads is self.loads:
             return self.coefficients, self.loaded
-        place = {id(load): number for number, load in enumerate(self.loads)}
-        new = [load for load in loads if id(load) not in place]
-        if not new and len(loads) == len(place):
-            return self.coefficients, self.loaded
-        place |= {id(load): len(self.loads) + number for number, load in enumerate(new)}
+        places = [self._places.get(_identity(load)) for load in loads]
+        if places == list(range(len(self.loads))):
+            return coefficients(loads), self.loaded
+        new = [load for load, known in zip(loads, places, strict=True) if known is None]
         more = self.near.under(new) if new else None
-        return coefficients(loads), self.loaded.choose(more, [place[id(load)] for load in loads])
+        numbers = iter(range(len(self.loads), len(self.loads) + len(new)))
+        chosen = [next(numbers) if known is None else known for known in places]
+        return coefficients(loads), self.loaded.choose(more, chosen)
 
     def with_laws(
         self, structure: Structure, loads: list[Load], where: StiffnessDifference | None
@@ -147,6 +154,11 @@ class Centre:
             if effects[name].loads_by_geometry
             and (warms or all(load.strain is None for load in loads))
         }
+
+
+def _identity(load: Load) -> tuple[int, ...]:
+    """That of the pattern of a load: what lives has a number of its own."""
+    return tuple(map(id, load.pattern))
 
 
 def loading(effect: Effect) -> bool:

@@ -8,7 +8,11 @@
 //! A trace of stiffness in idle terms keeps in the middle of the play what only the play lets move
 //! and no load pushes. It finds the side on which each term is; its force is then taken off again.
 
-use nalgebra::{DMatrix, DVector};
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use crate::error::{Error, Result};
 use crate::paths::condensation::UnitResponses;
@@ -28,6 +32,8 @@ const TRACES: [f64; 13] = [
 const HALVED: i32 = 16;
 /// Steps that take the force of the trace off again.
 const REFINED: usize = 2;
+/// Factors that are kept: rows under much the same loads have the same terms idle.
+const KEPT: usize = 64;
 /// Elongations below this are none [m].
 const NONE: f64 = 1e-12;
 
@@ -52,7 +58,7 @@ struct Law {
 }
 
 /// Where the elongation of a term is: at an end of its play, where it bears, or between them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Side {
     Lower,
     Idle,
@@ -80,10 +86,16 @@ pub fn pseudo_forces(linear: &UnitResponses, coefficients: &[f64], laws: Laws) -
     let unit = DMatrix::from_row_slice(terms, terms, &linear.unit);
     let carried = CARRIED * (apart.amax() + largest + NONE);
     let mut found = Vec::with_capacity(rows * terms);
+    let factors = Factors::default();
+    let mut solved: Vec<(DVector<f64>, Place)> = Vec::with_capacity(rows);
     for (row, apart) in apart.row_iter().enumerate() {
+        let beyond = &laws.stiffness[row * terms..][..terms];
+        if row == 0 || *beyond != laws.stiffness[(row - 1) * terms..][..terms] {
+            factors.borrow_mut().clear();
+        }
         let own = |term: usize| Law {
             size: laws.size[row * terms + term],
-            stiffness: laws.stiffness[row * terms + term],
+            stiffness: beyond[term],
             rod: laws.rod[term],
         };
         let system = System {
@@ -91,13 +103,28 @@ pub fn pseudo_forces(linear: &UnitResponses, coefficients: &[f64], laws: Laws) -
             stiffness: &linear.stiffness,
             laws: (0..terms).map(own).collect(),
             carried,
+            factors: &factors,
         };
-        let forces = system
-            .settled(&apart.transpose())
+        let apart = apart.transpose();
+        let place = system
+            .settled(&apart, &solved)
             .ok_or(Error::UnstableSample { row })?;
-        found.extend(forces.iter());
+        found.extend(system.pseudo(&place.elongation, &place.sides, 0.0).iter());
+        solved.push((apart, place));
     }
     Ok(found)
+}
+
+/// What terms that follow no others are solved by, of every set of idle terms with its trace, while
+/// their stiffnesses are the same.
+type Factors = RefCell<HashMap<(Vec<bool>, u64), Rc<Steep>>>;
+
+/// Terms whose pseudo-force grows with their elongation: they are a system of their own.
+struct Steep {
+    terms: Vec<usize>,
+    /// By how much it grows.
+    slopes: Vec<f64>,
+    factor: LU<f64, Dyn, Dyn>,
 }
 
 /// The compatibility of one row's elongations.
@@ -108,6 +135,7 @@ struct System<'a> {
     laws: Vec<Law>,
     /// Elongation that the trace may take for itself [m].
     carried: f64,
+    factors: &'a Factors,
 }
 
 /// Elongations with the side that each is on.
@@ -117,9 +145,20 @@ struct Place {
     sides: Vec<Side>,
 }
 
+/// The elongations of the row that is nearest by what they would be without laws.
+fn nearest<'a>(apart: &DVector<f64>, solved: &'a [(DVector<f64>, Place)]) -> Option<&'a Place> {
+    let distance = |(other, _): &&(DVector<f64>, Place)| (apart - other).norm_squared();
+    let by_distance = |one: &&(DVector<f64>, Place), other: &&(DVector<f64>, Place)| {
+        distance(one).total_cmp(&distance(other))
+    };
+    solved.iter().min_by(by_distance).map(|(_, place)| place)
+}
+
 impl System<'_> {
-    /// Pseudo-forces of a row, whose elongations would be `apart` were all terms linear.
-    fn settled(&self, apart: &DVector<f64>) -> Option<DVector<f64>> {
+    /// Elongations of a row, which would be `apart` were all terms linear.
+    ///
+    /// `solved` are other rows, by what their elongations would be.
+    fn settled(&self, apart: &DVector<f64>, solved: &[(DVector<f64>, Place)]) -> Option<Place> {
         // All terms bear at first, each on the side that it would take without its law.
         let bearing = DVector::from_fn(apart.len(), |term, _| {
             let sign = f64::from(apart[term] > 0.0) - f64::from(apart[term] < 0.0);
@@ -128,25 +167,29 @@ impl System<'_> {
                 _ => 0.0,
             }
         });
-        let mut place = self.at(apart + self.unit.tr_mul(&bearing), TRACE);
-        if !self.newton(&mut place, apart, TRACE, false)? {
-            // Many idle terms and little load: Newton's method goes round in circles, and is led
-            // from terms that keep much of their stiffness to those that keep a trace.
-            let mut met = false;
+        let start = self.at(apart + self.unit.tr_mul(&bearing), TRACE);
+        let mut place = start.clone();
+        let mut met = self.newton(&mut place, apart, TRACE, false)?;
+        if !met && let Some(near) = nearest(apart, solved) {
+            // Many idle terms and little load: Newton's method goes round in circles. It seldom
+            // does from the sides of a row whose loads are much the same.
+            place = self.at(near.elongation.clone(), TRACE);
+            met = self.newton(&mut place, apart, TRACE, false) == Some(true);
+        }
+        if !met {
+            // It is led from terms that keep much of their stiffness to those that keep a trace.
+            place = start;
             for trace in TRACES {
                 met = self.newton(&mut place, apart, trace, true)?;
             }
-            if !met {
-                return None;
-            }
         }
-        if TRACE * place.elongation.amax() >= self.carried {
+        if !met || TRACE * place.elongation.amax() >= self.carried {
             return None;
         }
         for _ in 0..REFINED {
             place.elongation = self.moved(&place, apart, 0.0)?;
         }
-        Some(self.pseudo(&place.elongation, &place.sides, 0.0))
+        Some(place)
     }
 
     /// Newton steps, in place; whether they come to an end. None where nothing holds the terms.
@@ -157,7 +200,12 @@ impl System<'_> {
         trace: f64,
         damped: bool,
     ) -> Option<bool> {
+        let mut met = HashSet::new();
         for _ in 0..STEPS {
+            // A step depends on the sides alone: from sides that were left before it goes round.
+            if !damped && !met.insert(place.sides.clone()) {
+                return Some(false);
+            }
             let mut next = self.at(self.moved(place, apart, trace)?, trace);
             if damped {
                 next = self.shortened(place, &next, apart, trace);
@@ -177,32 +225,53 @@ impl System<'_> {
     /// One Newton step, the terms staying on their sides.
     fn moved(&self, place: &Place, apart: &DVector<f64>, trace: f64) -> Option<DVector<f64>> {
         let missed = self.missed(place, apart, trace);
-        // By how much a pseudo-force grows with the elongation.
-        let slope = |term: usize| match place.sides[term] {
-            Side::Idle => (trace.max(TRACE) - 1.0) * self.stiffness[term],
-            _ => self.laws[term].stiffness - self.stiffness[term],
-        };
-        let steep: Vec<usize> = (0..place.sides.len())
-            .filter(|&term| slope(term) != 0.0)
-            .collect();
+        let steep = self.steep(place, trace.max(TRACE));
         let mut next = &place.elongation - &missed;
-        if steep.is_empty() {
+        if steep.terms.is_empty() {
             return Some(next);
         }
-        // The other terms follow these: they alone are a system, as large as they are many.
-        let matrix = DMatrix::from_fn(steep.len(), steep.len(), |row, column| {
-            let own = self.unit[(steep[row], steep[column])] * slope(steep[column]);
-            f64::from(row == column) + own
-        });
-        let own = DVector::from_fn(steep.len(), |row, _| missed[steep[row]]);
-        let own = matrix.lu().solve(&own)?;
-        for (&term, own) in steep.iter().zip(&own) {
-            next.axpy(slope(term) * own, &self.unit.column(term), 1.0);
+        let own = DVector::from_fn(steep.terms.len(), |row, _| missed[steep.terms[row]]);
+        let own = steep.factor.solve(&own)?;
+        for ((&term, slope), own) in steep.terms.iter().zip(&steep.slopes).zip(&own) {
+            next.axpy(slope * own, &self.unit.column(term), 1.0);
         }
-        for (&term, own) in steep.iter().zip(&own) {
+        for (&term, own) in steep.terms.iter().zip(&own) {
             next[term] = place.elongation[term] - own;
         }
         Some(next)
+    }
+
+    /// The terms that the others follow, the idle ones with a trace of stiffness.
+    fn steep(&self, place: &Place, trace: f64) -> Rc<Steep> {
+        let idle: Vec<bool> = place.sides.iter().map(|side| *side == Side::Idle).collect();
+        let key = (idle, trace.to_bits());
+        if let Some(known) = self.factors.borrow().get(&key) {
+            return Rc::clone(known);
+        }
+        let slope = |term: usize| match key.0[term] {
+            true => (trace - 1.0) * self.stiffness[term],
+            false => self.laws[term].stiffness - self.stiffness[term],
+        };
+        let terms: Vec<usize> = (0..key.0.len())
+            .filter(|&term| slope(term) != 0.0)
+            .collect();
+        let slopes: Vec<f64> = terms.iter().map(|&term| slope(term)).collect();
+        let factor = DMatrix::from_fn(terms.len(), terms.len(), |row, column| {
+            let own = self.unit[(terms[row], terms[column])] * slopes[column];
+            f64::from(row == column) + own
+        })
+        .lu();
+        let found = Rc::new(Steep {
+            terms,
+            slopes,
+            factor,
+        });
+        let mut factors = self.factors.borrow_mut();
+        if factors.len() >= KEPT {
+            factors.clear();
+        }
+        factors.insert(key, Rc::clone(&found));
+        found
     }
 
     /// By how much compatibility is missed.

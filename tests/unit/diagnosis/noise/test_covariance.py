@@ -80,6 +80,23 @@ def test_another_spread_is_another_matrix(covariance: Covariance) -> None:
     assert (wider.squares(wider.reduce(a)) < covariance.squares(covariance.reduce(a))).all()
 
 
+def test_a_sensor_taken_out_is_one_that_never_was_seen(covariance: Covariance) -> None:
+    hidden = np.array([1])
+    observed = np.ones((ROWS, SENSORS), dtype=bool)
+    observed[:, hidden] = False
+    jacobian = np.where(observed[:, :, None], JACOBIAN, 0.0)
+    rows = RowCovariance(NOISE, TIME, observed, jacobian)
+    found, expected = covariance.without(hidden, rows), Covariance(rows, SCATTER, SPREAD)
+    assert found.information == pytest.approx(expected.information, rel=1e-9, abs=1e-9)
+    a = DRAW.standard_normal((3, SENSORS, ROWS))
+    sizes = [one.product(*2 * [one.reduce(a)]) for one in (found, expected)]
+    assert sizes[0] == pytest.approx(sizes[1], rel=1e-9, abs=1e-9)
+    whole = covariance.product(*2 * [covariance.reduce(a)])
+    assert abs(sizes[0] - whole).max() > 1.0
+    # Once more from what is left.
+    assert found.without(hidden, rows).information == pytest.approx(found.information, abs=1e-9)
+
+
 def test_a_missing_reading_says_nothing() -> None:
     observed = np.ones((ROWS, SENSORS), dtype=bool)
     observed[5, 1] = observed[6, 1] = False

@@ -81,7 +81,7 @@ class AxleLoad(Effect):
         return {**resolved, "heading": np.full(rows, -1.0 if backwards else 1.0)}
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        stations, patterns = structure.once(lambda: self._path(structure), self)
+        stations, patterns = structure.once_for_geometry(lambda: self._path(structure), self)
         shares = self._shares(values, stations) * values["factor"]
         permanent = not self.drivers()
         return [

@@ -10,11 +10,9 @@ def line_forces(
     structure: Structure, group: str | list[str], direction: tuple[float, float, float]
 ) -> dict[int, FloatArray]:
     """Nodal forces of a unit load per length on a group: half of each member to each end."""
+    members = structure.named(None, group)
+    ends = structure.arrays["ends"][members]
+    half = np.zeros(len(structure.arrays["coordinates"]))
+    np.add.at(half, ends, structure.lengths[members, None] / 2)
     unit = np.append(unit_vector(direction), np.zeros(3))
-    forces: dict[int, FloatArray] = {}
-    lengths = structure.lengths
-    for member in structure.named(None, group):
-        for node in structure.arrays["ends"][member]:
-            share = unit * lengths[member] / 2
-            forces[int(node)] = forces.get(int(node), np.zeros(6)) + share
-    return forces
+    return {node: half[node] * unit for node in np.unique(ends).tolist()}

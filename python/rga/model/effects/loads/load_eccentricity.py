@@ -50,25 +50,31 @@ class LoadEccentricity(Effect):
         self, loads: dict[str, list[Load]], structure: Structure, values: Values
     ) -> None:
         for name in listed(self.effect):
-            shifted = [
-                structure.once(partial(_shifted, structure, load), *load.pattern).times(
-                    2 * values["share"] * load.coefficient
-                )
-                for load in loads[name]
+            given = loads[name]
+            objects = [one for load in given for one in load.pattern]
+            shifted = structure.once_for_geometry(partial(_shifted, structure, given), *objects)
+            loads[name] = [
+                *given,
+                *(
+                    to_side.times(2 * values["share"] * load.coefficient)
+                    for to_side, load in zip(shifted, given, strict=True)
+                ),
             ]
-            loads[name] = [*loads[name], *shifted]
 
 
-def _shifted(structure: Structure, load: Load) -> Load:
-    """A load that is full at the +y side of the structure and turned round at the -y side."""
+def _shifted(structure: Structure, loads: list[Load]) -> list[Load]:
+    """Loads that are full at the +y side of the structure and turned round at the -y side."""
     y = structure.arrays["coordinates"][:, 1]
     side = np.sign(np.round(y - (y.min() + y.max()) / 2, 9))
     of_member = side[structure.arrays["ends"]].mean(axis=1)
-    return replace(
-        load,
-        forces={node: side[node] * force for node, force in load.forces.items()},
-        spread=[
-            (member, *along, of_member[member] * start, of_member[member] * end)
-            for member, *along, start, end in load.spread
-        ],
-    )
+    return [
+        replace(
+            load,
+            forces={node: side[node] * force for node, force in load.forces.items()},
+            spread=[
+                (member, *along, of_member[member] * start, of_member[member] * end)
+                for member, *along, start, end in load.spread
+            ],
+        )
+        for load in loads
+    ]

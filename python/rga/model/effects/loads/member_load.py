@@ -42,7 +42,7 @@ class MemberLoad(Effect):
         return self
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        spread = structure.once(lambda: self._spread(structure), self)
+        spread = structure.once_for_geometry(lambda: self._spread(structure), self)
         return [Load(values["factor"], spread=spread, permanent=not self.drivers())]
 
     def _spread(self, structure: Structure) -> list[Spread]:

@@ -37,7 +37,7 @@ class NodalLoad(Effect):
         return list(self.forces)
 
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
-        forces = structure.once(
+        forces = structure.once_for_geometry(
             lambda: {
                 structure.nodes[node]: np.array([*force, 0.0, 0.0, 0.0][:6])
                 for node, force in self.forces.items()
