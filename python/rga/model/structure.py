@@ -164,8 +164,8 @@ class Structure:
         """The same for what follows from the geometry alone: copies of one geometry share it."""
         # Not by arrays[name]: a copy would hold arrays of its own from then on.
         geometry = (self.arrays.get(name) for name in GEOMETRY)
-        key = *(array.tobytes() for array in geometry if array is not None), *map(id, of)
-        return _once(self._built_for_geometry, key, build, of)
+        content = (array.tobytes() for array in geometry if array is not None)
+        return _once(self._built_for_geometry, (*content, *map(id, of)), build, of)
 
     def copy(self) -> "Structure":
         """A copy for effects to change; this structure is not to be changed any more."""

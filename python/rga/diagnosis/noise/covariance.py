@@ -180,13 +180,12 @@ class Covariance:
         other = self._copy()
         other.__dict__.pop("_whole", None)
         other.rows = rows
-        parts = [whole - part for whole, part in zip(self._whole, self._part(hidden), strict=True)]
+        (information, on_contexts), (told, told_on_contexts) = self._whole, self._part(hidden)
+        information, on_contexts = information - told, on_contexts - told_on_contexts
         # Of what only they showed nothing is left, not even rounding.
         gone = np.setdiff1d(self._effects.alone[hidden], len(self.spread))
-        for part in parts:
-            part[:, gone] = 0.0
-        parts[0][gone] = 0.0
-        other._settle(*parts, self.spread)
+        information[gone] = information[:, gone] = on_contexts[:, gone] = 0.0
+        other._settle(information, on_contexts, self.spread)
         return other
 
     def _spread_as(self, spread: FloatArray) -> None:
@@ -206,6 +205,7 @@ class Covariance:
     def _copy(self) -> "Covariance":
         other = object.__new__(Covariance)
         other.__dict__.update(self.__dict__)
+        other.__dict__.pop("_constants", None)
         return other
 
     def reduce(self, columns: FloatArray, channels: IntArray | None = None) -> Reduced:
@@ -229,6 +229,32 @@ class Covariance:
         score = self._effects.along(along) - self._context.T @ context
         scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
         return Reduced(white, context, score, scattered)
+
+    def shifted(self, a: Reduced, by: FloatArray, channels: IntArray | None = None) -> Reduced:
+        """Columns with a constant added on each channel, made ready for products.
+
+        Args:
+            a: the columns.
+            by: the constants, float[k, channels].
+            channels: as for `reduce`.
+        """
+        one, amounts = self._constants, by
+        here: IntArray | slice = slice(None)
+        if channels is not None:
+            amounts, here = np.zeros((len(by), len(one.white))), channels
+            np.add.at(amounts, (np.arange(len(by))[:, None], channels), by)
+        return Reduced(
+            a.white + by[:, :, None] * one.white[:, 0][here],
+            a.context + one.context @ amounts.T,
+            a.score + one.score @ amounts.T,
+            a.scattered + one.scattered @ amounts.T,
+        )
+
+    @cached_property
+    def _constants(self) -> Reduced:
+        """A constant of one on each sensor alone."""
+        rows, sensors = self.rows.observed.shape
+        return self.reduce(np.ones((sensors, 1, rows)), np.arange(sensors)[:, None])
 
     def product(self, a: Reduced, b: Reduced) -> FloatArray:
         """x' C^-1 y of all pairs of columns on the same channels."""

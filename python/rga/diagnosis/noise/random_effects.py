@@ -172,9 +172,9 @@ def _courses(known: FloatArray, changes: list[FloatArray]) -> FloatArray:
         known: courses that are expected, float[rows, k]: those of the loads.
         changes: float[rows, sensors] each.
     """
-    together = np.stack(changes, axis=1)
-    scale = np.sqrt((together**2).mean((0, 1)))
-    together = (together / np.where(scale > 0, scale, 1.0)).reshape(len(known), -1)
+    squares = np.mean([(change**2).mean(0) for change in changes], axis=0)
+    scale = np.where(squares > 0, np.sqrt(squares), 1.0)
+    together = np.hstack([change / scale for change in changes])
     courses = _orthonormal(known)
     rest = together - courses @ (courses.T @ together)
     if _largest(rest) > EXACT * _largest(together):

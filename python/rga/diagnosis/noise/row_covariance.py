@@ -140,7 +140,7 @@ class RowCovariance:
             found = np.einsum("kct,jct->kjt", back, self._by_context)
         else:
             found = np.einsum("kct,jkct->kjt", back, self._by_context[:, channels])
-        return found.transpose(0, 2, 1).reshape(len(back), rows * contexts).T
+        return np.asarray(found.transpose(0, 2, 1).reshape(len(back), rows * contexts).T)
 
     def solve_contexts(self, right: FloatArray) -> FloatArray:
         """The contexts' factor solved for right sides, float[rows * contexts, k]."""

@@ -83,7 +83,7 @@ class RankedSignatures:
         size = whole_size = np.maximum(covariance.squares(reduced), 0.0)
         across = None
         if block.zero.any():
-            whole = covariance.reduce(block.values + block.zero[:, :, None], block.channels)
+            whole = covariance.shifted(reduced, block.zero, block.channels)
             whole_size = np.maximum(covariance.squares(whole), 0.0)
             across = (reduced.white * whole.white).sum(1).astype(np.float32)
         by_row = (whole.white**2).sum(1)
@@ -148,6 +148,8 @@ class RankedSignatures:
     def of_numbers(self, numbers: Collection[int]) -> "RankedSignatures":
         """The signatures of some of the candidates."""
         which = np.array([number in numbers for number, _, _ in self.block.members], dtype=bool)
+        if which.all():
+            return self
         return RankedSignatures(
             self.block.kept(which),
             self.size[which],

@@ -41,6 +41,10 @@ impl Equilibrium<'_> {
                 fixed_end_forces(member, index, strain, loads.of(index))
             })
             .collect::<Result<_>>()?;
+        // Where nothing moves yet, members take their fixed-end forces alone.
+        let still = displacements
+            .iter()
+            .all(|&displacement| displacement == 0.0);
         let mut state = State {
             loads,
             strain,
@@ -50,7 +54,13 @@ impl Equilibrium<'_> {
             unbalanced: Vec::new(),
             deformed: None,
         };
-        self.balance(&mut state);
+        if still {
+            let ends = state.fixed_end.iter().copied();
+            let internal = self.model.sum_forces(&state.displacements, ends);
+            state.unbalanced = left(forces, &internal);
+        } else {
+            self.balance(&mut state);
+        }
         Ok(state)
     }
 
@@ -97,11 +107,15 @@ impl Equilibrium<'_> {
         let internal = self
             .model
             .internal_forces(&state.displacements, &state.fixed_end);
-        let applied = state.forces.iter().zip(internal);
-        state.unbalanced = applied
-            .map(|(applied, internal)| applied - internal)
-            .collect();
+        state.unbalanced = left(state.forces, &internal);
     }
+}
+
+fn left(applied: &[f64], internal: &[f64]) -> Vec<f64> {
+    let pairs = applied.iter().zip(internal);
+    pairs
+        .map(|(applied, internal)| applied - internal)
+        .collect()
 }
 
 pub(crate) fn loose_moment(load: impl Display, dof: usize) -> Error {

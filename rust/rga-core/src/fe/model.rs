@@ -156,7 +156,9 @@ impl Model {
     ) -> Vec<f64> {
         let mut total = vec![0.0; self.dofs];
         for (member, ends) in self.members.iter().zip(ends) {
-            member.for_each_force(&ends, |dof, force| total[dof] += force);
+            if ends.iter().any(|&force| force != 0.0) {
+                member.for_each_force(&ends, |dof, force| total[dof] += force);
+            }
         }
         for spring in &self.springs {
             spring.for_each_force(displacements, |dof, force| total[dof] += force);

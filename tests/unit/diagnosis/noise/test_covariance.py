@@ -97,6 +97,19 @@ def test_a_sensor_taken_out_is_one_that_never_was_seen(covariance: Covariance) -
     assert found.without(hidden, rows).information == pytest.approx(found.information, abs=1e-9)
 
 
+def test_constants_are_added_to_columns(covariance: Covariance) -> None:
+    a, by = DRAW.standard_normal((4, SENSORS, ROWS)), DRAW.standard_normal((4, SENSORS))
+    expected = covariance.reduce(a + by[:, :, None])
+    found = covariance.shifted(covariance.reduce(a), by)
+    assert covariance.squares(found) == pytest.approx(covariance.squares(expected), rel=1e-9)
+    assert found.score == pytest.approx(expected.score, rel=1e-9, abs=1e-9)
+    channels = np.array([[0, 2], [1, 0], [2, 1], [1, 2]])
+    few, few_by = a[:, :2], by[:, :2]
+    expected = covariance.reduce(few + few_by[:, :, None], channels)
+    found = covariance.shifted(covariance.reduce(few, channels), few_by, channels)
+    assert covariance.squares(found) == pytest.approx(covariance.squares(expected), rel=1e-9)
+
+
 def test_a_missing_reading_says_nothing() -> None:
     observed = np.ones((ROWS, SENSORS), dtype=bool)
     observed[5, 1] = observed[6, 1] = False
