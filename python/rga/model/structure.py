@@ -17,6 +17,7 @@ from rga.arrays import (
     StructureArrays,
     by_name,
 )
+from rga.model.copied_when_read import CopiedWhenRead
 from rga.model.parameter import listed
 from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
@@ -176,8 +177,8 @@ class Structure:
             self.sensors,
             self.groups,
             self.materials,
-            cast(StructureArrays, _CopiedWhenRead(by_name(self.arrays))),
-            cast(OutputArrays, _CopiedWhenRead(by_name(self.outputs))),
+            cast(StructureArrays, CopiedWhenRead(by_name(self.arrays))),
+            cast(OutputArrays, CopiedWhenRead(by_name(self.outputs))),
             self.per_si,
             self.alpha.copy(),
             self.host.copy(),
@@ -238,26 +239,6 @@ class Structure:
         arrays["spring_stiffness"] = np.append(arrays["spring_stiffness"], np.full(more, stiffness))
 
 
-class _CopiedWhenRead(dict[str, NDArray[Any]]):
-    """Arrays of another structure, each copied when it is first read: an effect needs few of them.
-
-    What is not read the core knows to be the same.
-    """
-
-    def __init__(self, arrays: dict[str, NDArray[Any]]) -> None:
-        super().__init__((name, _read_only(array)) for name, array in arrays.items())
-        self._shared = set(arrays)
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        if name in self._shared:
-            self[name] = super().__getitem__(name).copy()
-        return super().__getitem__(name)
-
-    def __setitem__(self, name: str, array: NDArray[Any]) -> None:
-        self._shared.discard(name)
-        super().__setitem__(name, array)
-
-
 def _once(
     built: Built, key: tuple[int | bytes, ...], build: Callable[[], T], of: tuple[object, ...]
 ) -> T:
@@ -267,12 +248,6 @@ def _once(
         built[key] = of, build()
     found: T = built[key][1]
     return found
-
-
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
-    view = array.view()
-    view.flags.writeable = False
-    return view
 
 
 def check_direction(direction: Vector) -> None:
