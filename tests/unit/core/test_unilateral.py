@@ -250,3 +250,49 @@ def test_a_truss_whose_diagonals_all_slip() -> None:
     apart = np.sign(tight[:, 1:]) @ virtual * slip
     assert np.allclose(loose[:, 1:], tight[:, 1:], rtol=1e-6, atol=1e-9)
     assert np.allclose(loose[:, 0] - tight[:, 0], apart, rtol=1e-6)
+
+
+def test_a_row_is_what_it_is_beside_any_others() -> None:
+    """Many members slip, and hold each other: rows lead on to the sides of rows near them."""
+    panels = 8
+    nodes = {f"{side}{k}": [3.0 * k, 0, z] for side, z in (("L", 0), ("U", 3)) for k in range(9)}
+    bars = [(f"{side}{k}", f"{side}{k + 1}") for side in "LU" for k in range(panels)]
+    bars += [(f"L{k}", f"U{k}") for k in range(panels + 1)]
+    bars += [(f"{a}{k}", f"{b}{k + 1}") for a, b in ("LU", "UL") for k in range(panels)]
+    bridge = model(
+        nodes,
+        {"-".join(ends): list(ends) for ends in bars},
+        supports={
+            "west": {"node": "L0", "fixed": ["ux", "uz"]},
+            "east": {"node": f"L{panels}", "fixed": ["uz"]},
+        },
+        effects={
+            "crowd": {
+                "kind": "nodal_load",
+                "forces": {f"L{k}": [0.2 * k, 0, -1.0 - 0.3 * k] for k in range(1, panels)},
+                "factor": {"context": "load"},
+            },
+            "wind": {
+                "kind": "nodal_load",
+                "forces": {f"U{k}": [1.0, 0, 0.4 - 0.1 * k] for k in range(panels)},
+                "factor": {"context": "warm"},
+            },
+            "slips": {"kind": "joint_slip", "group": "all", "slip": 3e-4},
+        },
+        sensors={
+            name: {"kind": "displacement", "node": name, "direction": [0, 0, 1], "unit": "m"}
+            for name in nodes
+        },
+    )
+    draw = np.random.default_rng(5)
+    load, wind = draw.uniform(-1e5, 1e5, 60), draw.uniform(-50, 50, 60)
+    simulator = rga.Simulator(bridge)
+    together = simulator.predict({"load": load, "warm": wind})
+    alone = [
+        simulator.predict({"load": load[k : k + 1], "warm": wind[k : k + 1]})[0]
+        for k in range(len(load))
+    ]
+    assert together == pytest.approx(np.array(alone), rel=1e-11, abs=1e-13)
+    stiff = bridge.model_copy(update={"effects": {k: bridge.effects[k] for k in ("crowd", "wind")}})
+    plain = rga.Simulator(stiff).predict({"load": load, "warm": wind})
+    assert abs(together - plain).max() > 3e-4

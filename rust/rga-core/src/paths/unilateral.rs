@@ -186,6 +186,9 @@ impl System<'_> {
         if !met || TRACE * place.elongation.amax() >= self.carried {
             return None;
         }
+        // From the sides alone: on whatever way they were found, the bits are the same.
+        place.elongation = apart.clone();
+        place.elongation = self.moved(&place, apart, TRACE)?;
         for _ in 0..REFINED {
             place.elongation = self.moved(&place, apart, 0.0)?;
         }
