@@ -9,10 +9,15 @@ class CopiedWhenRead(dict[str, NDArray[Any]]):
     """Arrays of another structure, each copied when it is first read: an effect needs few of them.
 
     What is not read the core knows to be the same.
+
+    Args:
+        arrays: cannot be written any more from now on, by anyone.
     """
 
     def __init__(self, arrays: dict[str, NDArray[Any]]) -> None:
-        super().__init__((name, _read_only(array)) for name, array in arrays.items())
+        super().__init__(arrays)
+        for array in arrays.values():
+            array.flags.writeable = False
         self._shared = set(arrays)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
@@ -23,9 +28,3 @@ class CopiedWhenRead(dict[str, NDArray[Any]]):
     def __setitem__(self, name: str, array: NDArray[Any]) -> None:
         self._shared.discard(name)
         super().__setitem__(name, array)
-
-
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
-    view = array.view()
-    view.flags.writeable = False
-    return view

@@ -201,12 +201,9 @@ class Structure:
 
     def named(self, member: str | list[str] | None, group: str | list[str] | None) -> IntArray:
         """Numbers of the members that a place names, each once."""
-        numbers = [self.members[name] for name in listed(member)]
-        return np.unique(
-            np.concatenate([numbers, *(self.groups[name] for name in listed(group))]).astype(
-                np.int64
-            )
-        )
+        numbers = {self.members[name] for name in listed(member)}
+        numbers.update(*(self.groups[name].tolist() for name in listed(group)))
+        return np.array(sorted(numbers), dtype=np.int64)
 
     def add_nodes(self, coordinates: FloatArray) -> IntArray:
         """Add nodes at coordinates float[k, 3] [m]; their numbers."""

@@ -283,8 +283,7 @@ def _with_whole_step(left: FloatArray, basis: FloatArray) -> tuple[FloatArray, F
 
 
 def _orthonormal(basis: FloatArray, most: int) -> FloatArray:
-    """What a constant and the first columns of a basis span; the strongest of these come first."""
-    with_constant = np.column_stack([np.ones(len(basis)), basis])[:, :most]
+    with_constant = np.column_stack([np.ones(len(basis)), basis])
     scale = np.linalg.norm(with_constant, axis=0)
     u, s, _ = thin_svd(with_constant / np.where(scale > 0, scale, 1.0))
-    return np.asarray(u[:, s > 1e-6 * s[0]])
+    return np.asarray(u[:, s > 1e-6 * s[0]][:, :most])

@@ -67,18 +67,3 @@ def test_a_spike_and_a_slow_wave_are_no_shift() -> None:
     for change in (40.0 * (row == 150), 6.0 * np.sin(2 * np.pi * row / ROWS)):
         channel = wandering(0.0) + change[:, None]
         assert noise_in(channel) > 0.99 * channel.std()
-
-
-def test_the_strongest_of_many_load_courses_are_no_noise() -> None:
-    # More courses than a twelfth of the rows, the strongest first: those after are left out.
-    basis, _ = np.linalg.qr(np.random.default_rng(4).standard_normal((ROWS, 25)))
-    basis *= np.sqrt(ROWS)
-    strong = NOISE + 50.0 * basis[:, :10] @ np.ones((10, SENSORS))
-    seen = np.ones(strong.shape, dtype=bool)
-    rest = unexplainable(strong, seen, basis)
-    assert rest.std() == pytest.approx(1.0, rel=0.1)
-    # Rounding decides nothing.
-    moved = unexplainable(strong, seen, basis * (1.0 + 1e-15 * DRAW.standard_normal(basis.shape)))
-    assert moved == pytest.approx(rest, abs=1e-6)
-    weak = NOISE + 50.0 * basis[:, -1:] @ np.ones((1, SENSORS))
-    assert unexplainable(weak, seen, basis).std() > 10.0
