@@ -23,7 +23,8 @@ from rga.model.schema import DOFS, Model, Sensor, Vector
 from rga.model.units import per_si
 
 T = TypeVar("T")
-#: what was built, by what it was built of, and with it: while that lives, nothing has its number
+#: what was built, under the numbers (id) of what it was built of; these are kept with it, so that
+#: nothing else gets such a number
 Built = dict[tuple[int | bytes, ...], tuple[tuple[object, ...], Any]]
 #: a load along a member: its number, local axis, from, to [m], start, end
 Spread = tuple[int, int, float, float, float, float]
@@ -239,12 +240,15 @@ class Structure:
 def _once(
     built: Built, key: tuple[int | bytes, ...], build: Callable[[], T], of: tuple[object, ...]
 ) -> T:
-    if key not in built:
-        if len(built) >= REMEMBERED:
-            built.clear()
-        built[key] = of, build()
-    found: T = built[key][1]
-    return found
+    known = built.get(key)
+    if known is not None:
+        found: T = known[1]
+        return found
+    made = build()
+    if len(built) >= REMEMBERED:
+        built.clear()
+    built[key] = of, made
+    return made
 
 
 def check_direction(direction: Vector) -> None:

@@ -105,6 +105,27 @@ fn the_row_that_nothing_holds_is_named() {
 }
 
 #[test]
+fn a_rod_of_any_slack_that_nothing_else_holds_is_refused_under_small_loads() {
+    let system = side_by_side(1e8, 0.0);
+    // A tenth of a nanometre, were the rod not slack.
+    for slack in [0.0, 3e-4] {
+        let found = elongations(&system, &[-1e-2], &[(slack, 1e8)], true);
+        assert_eq!(found, Err(Error::UnstableSample { row: 0 }), "{slack}");
+    }
+    // Where no load asks it to bear, any place within its slack is as good.
+    let idle = elongations(&system, &[0.0], &[(3e-4, 1e8)], true).unwrap();
+    assert!(idle[0].abs() <= 3e-4);
+}
+
+#[test]
+fn a_rod_of_endless_slack_carries_nothing() {
+    let (own, beside, load) = (1e6, 3e6, 5e3);
+    let laws = [(f64::INFINITY, own)];
+    let found = elongations(&side_by_side(own, beside), &[load], &laws, true).unwrap();
+    close(found[0], load / beside);
+}
+
+#[test]
 fn every_term_needs_a_law_in_every_row() {
     let found = elongations(&side_by_side(1e6, 1e6), &[1.0, 2.0], &[(0.0, 1e6)], true);
     assert!(matches!(found, Err(Error::InvalidInput(_))));

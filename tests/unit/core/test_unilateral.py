@@ -252,14 +252,15 @@ def test_a_truss_whose_diagonals_all_slip() -> None:
     assert np.allclose(loose[:, 0] - tight[:, 0], apart, rtol=1e-6)
 
 
-def test_a_row_is_what_it_is_beside_any_others() -> None:
-    """Many members slip, and hold each other: rows lead on to the sides of rows near them."""
-    panels = 8
-    nodes = {f"{side}{k}": [3.0 * k, 0, z] for side, z in (("L", 0), ("U", 3)) for k in range(9)}
+def crossed(panels: int, **law: Any) -> rga.Model:
+    """A truss with crossed diagonals of which every member has a law."""
+    nodes = {
+        f"{side}{k}": [3.0 * k, 0, z] for side, z in (("L", 0), ("U", 3)) for k in range(panels + 1)
+    }
     bars = [(f"{side}{k}", f"{side}{k + 1}") for side in "LU" for k in range(panels)]
     bars += [(f"L{k}", f"U{k}") for k in range(panels + 1)]
     bars += [(f"{a}{k}", f"{b}{k + 1}") for a, b in ("LU", "UL") for k in range(panels)]
-    bridge = model(
+    return model(
         nodes,
         {"-".join(ends): list(ends) for ends in bars},
         supports={
@@ -277,13 +278,18 @@ def test_a_row_is_what_it_is_beside_any_others() -> None:
                 "forces": {f"U{k}": [1.0, 0, 0.4 - 0.1 * k] for k in range(panels)},
                 "factor": {"context": "warm"},
             },
-            "slips": {"kind": "joint_slip", "group": "all", "slip": 3e-4},
+            "laws": {"group": "all", **law},
         },
         sensors={
             name: {"kind": "displacement", "node": name, "direction": [0, 0, 1], "unit": "m"}
             for name in nodes
         },
     )
+
+
+def test_a_row_is_what_it_is_beside_any_others() -> None:
+    """Many members slip, and hold each other: rows lead on to the sides of rows near them."""
+    bridge = crossed(8, kind="joint_slip", slip=3e-4)
     draw = np.random.default_rng(5)
     load, wind = draw.uniform(-1e5, 1e5, 60), draw.uniform(-50, 50, 60)
     simulator = rga.Simulator(bridge)
@@ -296,3 +302,14 @@ def test_a_row_is_what_it_is_beside_any_others() -> None:
     stiff = bridge.model_copy(update={"effects": {k: bridge.effects[k] for k in ("crowd", "wind")}})
     plain = rga.Simulator(stiff).predict({"load": load, "warm": wind})
     assert abs(together - plain).max() > 3e-4
+
+
+@pytest.mark.parametrize("slack", [0.0, 3e-4])
+def test_rods_alone_hold_nothing_however_small(slack: float) -> None:
+    """A truss takes compression somewhere; elongations of metres would be no answer."""
+    simulator = rga.Simulator(crossed(4, kind="tension_only", slack=slack))
+    for load in (1.0, 1e3, 1e5):
+        with pytest.raises(InputError, match="nothing that holds the structure"):
+            simulator.predict({"load": [0.0, load], "warm": [0.0, 0.0]})
+    idle = simulator.predict({"load": [0.0], "warm": [0.0]})
+    assert abs(idle).max() <= 2 * slack

@@ -11,7 +11,6 @@ from itertools import product
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.noise.row_covariance import RowCovariance
 from rga.diagnosis.search.hypothesis import Hypothesis, hypotheses
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
@@ -136,11 +135,8 @@ def hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
 
 def _hiding(problem: Problem, sensors: Sequence[str]) -> Problem:
     data = problem.data.without(set(sensors))
-    old = problem.covariance
-    jacobian = np.where(data.observed[:, :, None], old.rows.context_jacobian, 0.0)
-    rows = RowCovariance(problem.noise, data.time, data.observed, jacobian)
-    hidden = np.array([data.sensors.index(name) for name in sensors])
-    return replace(problem, data=data, covariance=old.without(hidden, rows))
+    hidden = np.array([data.sensors.index(name) for name in sensors], dtype=np.int64)
+    return replace(problem, data=data, covariance=problem.covariance.without(hidden))
 
 
 def variance(problem: Problem) -> FloatArray:

@@ -86,18 +86,21 @@ class _Effects:
             alone[sensor, : len(numbers)] = numbers
             own[sensor, : len(numbers)] = shares[numbers, sensor]
         several = np.flatnonzero(~single)
-        return cls(count, several, shares[several].reshape(len(several), -1), alone, own)
+        of_several = shares[several].reshape(len(several), sensors * courses)
+        return cls(count, several, of_several, alone, own)
 
     def on(self, sensors: IntArray) -> "_Effects":
         """The same with the shares that they have on some sensors, int[k]."""
-        of_sensors = self.shares.reshape(len(self.shares), *self.own.shape[::2])[:, sensors]
-        shares = of_sensors.reshape(len(self.shares), -1)
+        every, courses = self.own.shape[::2]
+        of_sensors = self.shares.reshape(len(self.shares), every, courses)[:, sensors]
+        shares = of_sensors.reshape(len(self.shares), len(sensors) * courses)
         return _Effects(self.count, self.several, shares, self.alone[sensors], self.own[sensors])
 
     def along(self, columns: FloatArray) -> FloatArray:
         """Products with columns on the courses, float[k, sensors, courses]: float[effects, k]."""
         found = np.zeros((self.count + 1, len(columns)))
-        found[self.several] = self.shares @ columns.reshape(len(columns), -1).T
+        flat = columns.reshape(len(columns), self.shares.shape[1])
+        found[self.several] = self.shares @ flat.T
         found[self.alone] = np.matmul(self.own, columns.transpose(1, 2, 0))
         return found[:-1]
 
@@ -115,20 +118,13 @@ class Covariance:
         self.rows = rows
         self.scatter = scatter
         self._effects = _Effects.of(scatter.shares)
-        self._settle(*self._whole, spread)
-
-    def _settle(self, information: FloatArray, on_contexts: FloatArray, spread: FloatArray) -> None:
-        """Take errors of the contexts off what rows tell of the random effects (`_part`)."""
-        self._context = self.rows.solve_contexts(on_contexts)
-        own = information - self._context.T @ self._context
-        self.information = np.asfortranarray(own)
-        self._spread_as(spread)
+        self._marginalise(*self._told_by_all, spread)
 
     @cached_property
-    def _whole(self) -> tuple[FloatArray, FloatArray]:
-        return self._part(np.arange(self.rows.observed.shape[1]))
+    def _told_by_all(self) -> tuple[FloatArray, FloatArray]:
+        return self._told_by(np.arange(self.rows.observed.shape[1]))
 
-    def _part(self, sensors: IntArray) -> tuple[FloatArray, FloatArray]:
+    def _told_by(self, sensors: IntArray) -> tuple[FloatArray, FloatArray]:
         """What some sensors tell of the random effects, were the contexts known.
 
         Returns:
@@ -170,22 +166,26 @@ class Covariance:
             found[:, effects.alone[few]] = own.transpose(1, 0, 2)
         return found[:, :-1]
 
-    def without(self, hidden: IntArray, rows: RowCovariance) -> "Covariance":
-        """The same with some sensors unseen: what they told is taken off.
+    def _marginalise(
+        self, information: FloatArray, on_contexts: FloatArray, spread: FloatArray
+    ) -> None:
+        """Take the contexts' errors off what sensors tell of the random effects (`_told_by`)."""
+        self._context = self.rows.solve_contexts(on_contexts)
+        own = information - self._context.T @ self._context
+        self.information = np.asfortranarray(own)
+        self._spread_as(spread)
 
-        Args:
-            hidden: their numbers, int[k].
-            rows: covariance of the rows without them.
-        """
-        other = self._copy()
-        other.__dict__.pop("_whole", None)
-        other.rows = rows
-        (information, on_contexts), (told, told_on_contexts) = self._whole, self._part(hidden)
-        information, on_contexts = information - told, on_contexts - told_on_contexts
+    def without(self, hidden: IntArray) -> "Covariance":
+        """The same with some sensors unseen, int[k]: what they told is taken off."""
+        hidden = np.unique(hidden)
+        other = self._copy("_constants", "_told_by_all")
+        other.rows = self.rows.without(hidden)
+        (information, on_contexts), (told, on_theirs) = self._told_by_all, self._told_by(hidden)
+        information, on_contexts = information - told, on_contexts - on_theirs
         # Of what only they showed nothing is left, not even rounding.
         gone = np.setdiff1d(self._effects.alone[hidden], len(self.spread))
         information[gone] = information[:, gone] = on_contexts[:, gone] = 0.0
-        other._settle(information, on_contexts, self.spread)
+        other._marginalise(information, on_contexts, self.spread)
         return other
 
     def _spread_as(self, spread: FloatArray) -> None:
@@ -198,14 +198,15 @@ class Covariance:
 
     def with_spread(self, spread: FloatArray) -> "Covariance":
         """The same with another scatter."""
-        other = self._copy()
+        other = self._copy("_constants")
         other._spread_as(spread)
         return other
 
-    def _copy(self) -> "Covariance":
+    def _copy(self, *stale: str) -> "Covariance":
+        """A copy to be changed, without the cached properties that will not hold for it."""
         other = object.__new__(Covariance)
-        other.__dict__.update(self.__dict__)
-        other.__dict__.pop("_constants", None)
+        known = self.__dict__.items()
+        other.__dict__.update({name: value for name, value in known if name not in stale})
         return other
 
     def reduce(self, columns: FloatArray, channels: IntArray | None = None) -> Reduced:
@@ -213,19 +214,16 @@ class Covariance:
 
         Args:
             columns: float[k, sensors, rows], or float[k, channels, rows].
-            channels: those that each column touches, int[k, channels]; None: all sensors.
+            channels: those that each column touches, each once, int[k, channels]; None: all
+                sensors.
         """
         white, back = self.rows.weighted(columns, channels)
         context = self.rows.solve_contexts(self.rows.on_contexts(back, channels))
-        courses = self.scatter.courses
-        along = (back.reshape(-1, len(courses)) @ courses).reshape(
-            *back.shape[:2], courses.shape[1]
-        )
+        along = back @ self.scatter.courses
         if channels is not None:
             of_channels = along
-            along = np.zeros((len(back), self.rows.observed.shape[1], courses.shape[1]))
-            # A column may name a channel twice.
-            np.add.at(along, (np.arange(len(back))[:, None], channels), of_channels)
+            along = np.zeros((len(back), self.rows.observed.shape[1], along.shape[2]))
+            along[np.arange(len(back))[:, None], channels] = of_channels
         score = self._effects.along(along) - self._context.T @ context
         scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
         return Reduced(white, context, score, scattered)
@@ -242,7 +240,7 @@ class Covariance:
         here: IntArray | slice = slice(None)
         if channels is not None:
             amounts, here = np.zeros((len(by), len(one.white))), channels
-            np.add.at(amounts, (np.arange(len(by))[:, None], channels), by)
+            amounts[np.arange(len(by))[:, None], channels] = by
         return Reduced(
             a.white + by[:, :, None] * one.white[:, 0][here],
             a.context + one.context @ amounts.T,

@@ -103,7 +103,10 @@ def scatter_effects(
     constant = np.ones((len(clock), 1 if len(data.tare) else 0))
     known = [basis, constant, *([drift] if factors.size else [])]
     of_contexts = [change for change, _ in calibrations]
-    courses = _courses(np.hstack(known), [simulated, *members, *of_contexts, *moved])
+    own_spread = [*calibrations, *zip(moved, (spread for *_, spread in lines(data)), strict=True)]
+    # Each as large as it may be: units differ by many powers of ten.
+    sizes = [MEDIANS[0] * change for change in members] + [s * change for change, s in own_spread]
+    courses = _courses(np.hstack(known), [simulated, *sizes])
 
     def share(history: FloatArray) -> FloatArray:
         return np.asarray(courses.T @ history)

@@ -13,7 +13,7 @@ from scipy.linalg import cholesky_banded, lapack
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 
-#: numbers in the columns that are weighted at a time
+#: numbers in the columns that are weighted at a time: with their products they stay in the cache
 CACHED = 1 << 15
 
 
@@ -54,6 +54,7 @@ class RowCovariance:
         self, noise: Noise, time: FloatArray, observed: BoolArray, context_jacobian: FloatArray
     ) -> None:
         self.noise = noise
+        self.time = time
         self.observed = observed
         self.context_jacobian = context_jacobian
         step = np.diff(time, prepend=time[0] - 1.0)
@@ -68,6 +69,13 @@ class RowCovariance:
         self._memory, self._spread = memory, spread
         self._by_context = np.ascontiguousarray(context_jacobian.transpose(2, 1, 0))
         self._factor = self._context_factor()
+
+    def without(self, hidden: IntArray) -> "RowCovariance":
+        """The same with some sensors unseen, int[k]."""
+        observed = self.observed.copy()
+        observed[:, hidden] = False
+        jacobian = np.where(observed[:, :, None], self.context_jacobian, 0.0)
+        return RowCovariance(self.noise, self.time, observed, jacobian)
 
     def _context_factor(self) -> FloatArray:
         """Cholesky factor of the contexts' precision, its lower band."""
@@ -106,9 +114,8 @@ class RowCovariance:
         self, columns: FloatArray, channels: IntArray | None = None
     ) -> tuple[FloatArray, FloatArray]:
         """W x and W' W x of columns, of their shape."""
-        white, back = np.empty_like(columns), np.empty_like(columns)
+        white, back = np.empty(columns.shape), np.empty(columns.shape)
         weight, passing = self.weight, self._passing[:, 1:]
-        # Few at a time stay in the cache.
         step = max(1, CACHED // max(columns[:1].size, 1))
         for first in range(0, len(columns), step):
             few = slice(first, first + step)

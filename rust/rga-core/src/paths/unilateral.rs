@@ -21,27 +21,26 @@ use crate::paths::condensation::UnitResponses;
 const STEPS: usize = 60;
 /// An elongation is found when it changes by less than this part of the largest.
 const CONVERGED: f64 = 1e-12;
-/// Share of its stiffness that an idle term keeps, and how much of the loads it may carry by that.
+/// Share of its stiffness that an idle term keeps.
 const TRACE: f64 = 1e-8;
-const CARRIED: f64 = 1e-3;
 /// Shares that lead to the trace where it cannot be reached at once.
 const TRACES: [f64; 13] = [
     0.9, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 1e-2, 3e-3, 1e-3, 1e-4, 1e-6, TRACE,
 ];
 /// How often a step is halved on the way.
 const HALVED: i32 = 16;
-/// Steps that take the force of the trace off again.
+/// Steps that take the force of the trace off again, and by how much of the largest elongation the
+/// last may move.
 const REFINED: usize = 2;
+const HELD: f64 = 1e-3;
 /// Factors that are kept: rows under much the same loads have the same terms idle.
 const KEPT: usize = 64;
-/// Elongations below this are none [m].
-const NONE: f64 = 1e-12;
 
 /// What terms carry, row by row: `[rows, terms]` each.
 #[derive(Debug, Clone, Copy)]
 pub struct Laws<'a> {
     /// A term carries nothing up to this elongation [m], and a play down to its negative; infinite
-    /// for a play that never carries.
+    /// for a term that never carries.
     pub size: &'a [f64],
     /// Beyond, not below that of the term in the structure.
     pub stiffness: &'a [f64],
@@ -81,16 +80,13 @@ pub fn pseudo_forces(linear: &UnitResponses, coefficients: &[f64], laws: Laws) -
     }
     let stretched = DMatrix::from_row_slice(patterns, terms, &linear.stretched);
     let apart = DMatrix::from_row_slice(rows, patterns, coefficients) * stretched;
-    let sizes = laws.size.iter().filter(|size| size.is_finite());
-    let largest = sizes.fold(0.0, |most: f64, size| most.max(size.abs()));
     let unit = DMatrix::from_row_slice(terms, terms, &linear.unit);
-    let carried = CARRIED * (apart.amax() + largest + NONE);
     let mut found = Vec::with_capacity(rows * terms);
     let factors = Factors::default();
     let mut solved: Vec<(DVector<f64>, Place)> = Vec::with_capacity(rows);
     for (row, apart) in apart.row_iter().enumerate() {
         let beyond = &laws.stiffness[row * terms..][..terms];
-        if row == 0 || *beyond != laws.stiffness[(row - 1) * terms..][..terms] {
+        if row > 0 && *beyond != laws.stiffness[(row - 1) * terms..][..terms] {
             factors.borrow_mut().clear();
         }
         let own = |term: usize| Law {
@@ -102,7 +98,6 @@ pub fn pseudo_forces(linear: &UnitResponses, coefficients: &[f64], laws: Laws) -
             unit: &unit,
             stiffness: &linear.stiffness,
             laws: (0..terms).map(own).collect(),
-            carried,
             factors: &factors,
         };
         let apart = apart.transpose();
@@ -115,8 +110,8 @@ pub fn pseudo_forces(linear: &UnitResponses, coefficients: &[f64], laws: Laws) -
     Ok(found)
 }
 
-/// What terms that follow no others are solved by, of every set of idle terms with its trace, while
-/// their stiffnesses are the same.
+/// The factored system of the `Steep` terms for each set of idle terms and each trace; it holds as
+/// long as rows have terms of the same stiffness.
 type Factors = RefCell<HashMap<(Vec<bool>, u64), Rc<Steep>>>;
 
 /// Terms whose pseudo-force grows with their elongation: they are a system of their own.
@@ -133,8 +128,6 @@ struct System<'a> {
     /// Of the terms in the structure.
     stiffness: &'a [f64],
     laws: Vec<Law>,
-    /// Elongation that the trace may take for itself [m].
-    carried: f64,
     factors: &'a Factors,
 }
 
@@ -182,17 +175,26 @@ impl System<'_> {
             for trace in TRACES {
                 met = self.newton(&mut place, apart, trace, true)?;
             }
+            // Rounding keeps what only the trace holds from standing still; its sides stay.
+            met = met || self.newton(&mut place, apart, TRACE, false)?;
         }
-        if !met || TRACE * place.elongation.amax() >= self.carried {
+        if !met {
             return None;
         }
         // From the sides alone: on whatever way they were found, the bits are the same.
         place.elongation = apart.clone();
         place.elongation = self.moved(&place, apart, TRACE)?;
+        let mut moved = 0.0;
         for _ in 0..REFINED {
-            place.elongation = self.moved(&place, apart, 0.0)?;
+            let next = self.moved(&place, apart, 0.0)?;
+            moved = (&next - &place.elongation).amax();
+            place.elongation = next;
         }
-        Some(place)
+        // What only the trace holds moves on as far with every step. Under next to no load that is
+        // within the play, where all places are as good.
+        let sizes = self.laws.iter().map(|law| law.size.abs());
+        let play = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        (moved <= (HELD * place.elongation.amax()).max(play)).then_some(place)
     }
 
     /// Newton steps, in place; whether they come to an end. None where nothing holds the terms.
@@ -203,10 +205,10 @@ impl System<'_> {
         trace: f64,
         damped: bool,
     ) -> Option<bool> {
-        let mut met = HashSet::new();
+        let mut seen = HashSet::new();
         for _ in 0..STEPS {
             // A step depends on the sides alone: from sides that were left before it goes round.
-            if !damped && !met.insert(place.sides.clone()) {
+            if !damped && !seen.insert(place.sides.clone()) {
                 return Some(false);
             }
             let mut next = self.at(self.moved(place, apart, trace)?, trace);
@@ -286,7 +288,11 @@ impl System<'_> {
     fn pseudo(&self, elongation: &DVector<f64>, sides: &[Side], trace: f64) -> DVector<f64> {
         DVector::from_fn(elongation.len(), |term, _| {
             let (law, own) = (self.laws[term], self.stiffness[term]);
-            let slack = if law.rod { trace * law.size } else { 0.0 };
+            let slack = if law.rod && law.size.is_finite() {
+                trace * law.size
+            } else {
+                0.0
+            };
             let beyond = |end: f64| (law.stiffness - own) * elongation[term] - law.stiffness * end;
             match sides[term] {
                 Side::Idle => -own * ((1.0 - trace) * elongation[term] + slack),

@@ -81,12 +81,12 @@ def test_another_spread_is_another_matrix(covariance: Covariance) -> None:
 
 
 def test_a_sensor_taken_out_is_one_that_never_was_seen(covariance: Covariance) -> None:
-    hidden = np.array([1])
+    hidden = np.array([1, 1])
     observed = np.ones((ROWS, SENSORS), dtype=bool)
     observed[:, hidden] = False
     jacobian = np.where(observed[:, :, None], JACOBIAN, 0.0)
     rows = RowCovariance(NOISE, TIME, observed, jacobian)
-    found, expected = covariance.without(hidden, rows), Covariance(rows, SCATTER, SPREAD)
+    found, expected = covariance.without(hidden), Covariance(rows, SCATTER, SPREAD)
     assert found.information == pytest.approx(expected.information, rel=1e-9, abs=1e-9)
     a = DRAW.standard_normal((3, SENSORS, ROWS))
     sizes = [one.product(*2 * [one.reduce(a)]) for one in (found, expected)]
@@ -94,7 +94,24 @@ def test_a_sensor_taken_out_is_one_that_never_was_seen(covariance: Covariance) -
     whole = covariance.product(*2 * [covariance.reduce(a)])
     assert abs(sizes[0] - whole).max() > 1.0
     # Once more from what is left.
-    assert found.without(hidden, rows).information == pytest.approx(found.information, abs=1e-9)
+    assert found.without(hidden).information == pytest.approx(found.information, abs=1e-9)
+
+
+def test_without_no_sensor_nothing_changes(covariance: Covariance) -> None:
+    same = covariance.without(np.zeros(0, dtype=np.int64))
+    assert same.information == pytest.approx(covariance.information)
+
+
+def test_a_record_of_one_sensor() -> None:
+    """All of its random effects are of that sensor alone."""
+    alone = Noise(NOISE.sigma[:1], NOISE.phi[:1], NOISE.context_sigma, NOISE.deviation[:1])
+    rows = RowCovariance(alone, TIME, np.ones((ROWS, 1), dtype=bool), JACOBIAN[:, :1])
+    scatter = RandomEffects(SCATTER.courses, SCATTER.shares[:, :1])
+    covariance = Covariance(rows, scatter, SPREAD)
+    residual = DRAW.standard_normal((ROWS, 1))
+    square = covariance.squares(covariance.reduce(residual.T[None]))[0]
+    weighted = covariance.inverse_times(residual)
+    assert square == pytest.approx(float(residual.T.ravel() @ weighted.ravel()))
 
 
 def test_constants_are_added_to_columns(covariance: Covariance) -> None:

@@ -5,8 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.diagnosis.noise.random_effects import level_evidence, lines, scatter_levels
-from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.noise.random_effects import (
+    level_evidence,
+    lines,
+    scatter_effects,
+    scatter_levels,
+)
+from rga.diagnosis.search.linearised import Problem, load_basis
 from rga.model import read_effect
 
 
@@ -80,3 +85,22 @@ def test_a_line_may_move_up_and_turn(posed: Problem) -> None:
     ]  # fmt: skip
     assert (moves[0][1] == 1).all()
     np.testing.assert_allclose(moves[1][1], posed.data.time - posed.data.time.mean())
+
+
+def test_courses_know_no_units(posed: Problem) -> None:
+    """An effect may be a billion times a reading, if a billionth of it is likely at most."""
+    rows, sensors = posed.simulated.shape
+    clock = (posed.data.time - posed.data.time.mean()) / np.ptp(posed.data.time)
+    course = np.outer(np.sin(9 * clock), posed.simulated.std(0))
+    zeros = [(np.tile(1e9 * one, (rows, 1)), 1e-9) for one in np.eye(sensors)]
+    found = scatter_effects(
+        posed.simulator,
+        posed.data,
+        posed.simulated,
+        load_basis(posed.simulator, posed.data),
+        np.zeros((sensors, 0)),
+        [*zeros, (course, 0.01)],
+    )
+    number = int(np.flatnonzero(found.family < 0)[len(zeros)])
+    shown = found.effects.at(np.eye(len(found.family))[number])
+    np.testing.assert_allclose(shown, course, atol=1e-4 * abs(course).max())

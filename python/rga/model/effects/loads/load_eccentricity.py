@@ -51,8 +51,8 @@ class LoadEccentricity(Effect):
     ) -> None:
         for name in listed(self.effect):
             given = loads[name]
-            objects = [one for load in given for one in load.pattern]
-            shifted = structure.once_for_geometry(partial(_shifted, structure, given), *objects)
+            patterns = [one for load in given for one in load.pattern]
+            shifted = structure.once_for_geometry(partial(_shifted, structure, given), *patterns)
             loads[name] = [
                 *given,
                 *(
