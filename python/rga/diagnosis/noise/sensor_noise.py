@@ -12,13 +12,13 @@ from scipy.optimize import minimize_scalar
 from scipy.special import gammaln
 
 from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.noise.fitted_courses import LARGEST_MEMORY, FittedCourses
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
-from rga.diagnosis.noise.unexplainable import Unexplained
 
 #: rounds of expectation and maximisation, which end a few percent off and in places a sixth; the
 #: next estimate of the same record begins where they end
 ITERATIONS = 12
+#: correlation from row to row beyond which noise is as good as a random walk
+LARGEST_MEMORY = 0.995
 #: excess of the innovations' kurtosis, in standard deviations, beyond which tails are heavy
 HEAVY = 3.7
 #: degrees of freedom of heavy tails to begin with, and bounds of one over them
@@ -28,7 +28,7 @@ ABOUT = 12
 
 
 def estimate_noise(
-    left: Unexplained,
+    left: FloatArray,
     time: FloatArray,
     observed: BoolArray,
     context_jacobian: FloatArray,
@@ -39,7 +39,7 @@ def estimate_noise(
     """Noise of the sensors and of the contexts by expectation and maximisation.
 
     Args:
-        left: residual without what a model could explain.
+        left: residual without what a model could explain, float[rows, sensors].
         time: float[rows] [s].
         observed: bool[rows, sensors].
         context_jacobian: float[rows, sensors, contexts].
@@ -51,12 +51,11 @@ def estimate_noise(
         The noise, and what its tails add to the readings, float[rows, sensors]: zero where it is
         Gaussian.
     """
-    noise, tails = start, np.zeros_like(left.values)
-    fitted = FittedCourses.of(left.courses, time)
+    noise, tails = start, np.zeros_like(left)
 
     def expected() -> _Expected:
         rows = RowCovariance(noise, time, observed, context_jacobian)
-        return _Expected.of(rows, left, fitted, tails, context_known)
+        return _Expected.of(rows, left, tails, context_known)
 
     for _ in range(ITERATIONS):
         noise = _gaussian(expected(), floor)
@@ -79,33 +78,24 @@ class _Expected:
         rest: noise of the readings, float[rows, sensors].
         hidden: its variance, by what is not known of the contexts' errors, float[rows, sensors].
         context_sigma: standard deviation of each context's error, float[contexts].
-        left: what the noise is estimated on.
-        fitted: courses that were taken out of it.
     """
 
     rows: RowCovariance
     rest: FloatArray
     hidden: FloatArray
     context_sigma: FloatArray
-    left: Unexplained
-    fitted: FittedCourses
 
     @classmethod
     def of(
-        cls,
-        rows: RowCovariance,
-        left: Unexplained,
-        fitted: FittedCourses,
-        tails: FloatArray,
-        context_known: BoolArray,
+        cls, rows: RowCovariance, left: FloatArray, tails: FloatArray, context_known: BoolArray
     ) -> "_Expected":
         jacobian, sigma = rows.context_jacobian, rows.noise.context_sigma
-        error = rows.context_error(left.values - tails)
+        error = rows.context_error(left - tails)
         # The posterior variance of a context in its own row, neighbours left out.
         weighted = jacobian * (rows.weight.T**2)[:, :, None]
         precise = np.matmul(weighted.transpose(0, 2, 1), jacobian)
         variance = np.linalg.inv(precise + np.diag(sigma**-2.0))
-        rest = np.where(rows.observed, left.values - np.einsum("tsi,ti->ts", jacobian, error), 0.0)
+        rest = np.where(rows.observed, left - np.einsum("tsi,ti->ts", jacobian, error), 0.0)
         hidden = (np.matmul(jacobian, variance) * jacobian).sum(2)
         context = np.sqrt((error**2 + np.einsum("tii->ti", variance)).mean(0))
         return cls(
@@ -113,16 +103,13 @@ class _Expected:
             rest,
             np.where(rows.observed, hidden, 0.0),
             np.where(context_known, sigma, np.maximum(context, 1e-9)),
-            left,
-            fitted,
         )
 
     @property
     def deviation(self) -> FloatArray:
         """Root mean square of each sensor's noise, float[sensors]."""
         counts = np.maximum(self.rows.observed.sum(0), 1)
-        share = np.where(self.left.fitted, self.fitted.share_left(self.memory), 1.0)
-        return np.asarray(np.sqrt((self.rest**2 + self.hidden).sum(0) / counts / share))
+        return np.asarray(np.sqrt((self.rest**2 + self.hidden).sum(0) / counts))
 
     def innovations(self, level: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Whitened innovations of the noise about a level, and their expected squares.
@@ -138,9 +125,7 @@ class _Expected:
         rest, pairs = self.rest, self.rows.observed[1:] & self.rows.observed[:-1]
         product = (rest[1:] * rest[:-1] * pairs).sum(0)
         before = ((rest[:-1] ** 2 + self.hidden[:-1]) * pairs).sum(0)
-        shown = product / np.maximum(before, 1e-300)
-        whole = np.clip(shown, 0.0, LARGEST_MEMORY)
-        return np.where(self.left.fitted, self.fitted.memory_of_noise(shown), whole)
+        return np.asarray(np.clip(product / np.maximum(before, 1e-300), 0.0, LARGEST_MEMORY))
 
 
 def _gaussian(expected: _Expected, floor: FloatArray) -> Noise:

@@ -31,27 +31,12 @@ SEEN = 1e-10
 TINY = 1e-300
 
 
-@dataclass(frozen=True)
-class Unexplained:
-    """What a fit leaves of a residual.
-
-    Attributes:
-        values: float[rows, sensors], scaled for the degrees of freedom that the fit takes.
-        courses: that were fitted, float[rows, k].
-        fitted: True for channels that had enough readings, bool[sensors].
-    """
-
-    values: FloatArray
-    courses: FloatArray
-    fitted: BoolArray
-
-
 def unexplainable(
     residual: FloatArray,
     observed: BoolArray,
     basis: FloatArray,
     context_error: FloatArray | float = 0.0,
-) -> Unexplained:
+) -> FloatArray:
     """The part of a residual that no linear structure under these loads has.
 
     Args:
@@ -61,6 +46,9 @@ def unexplainable(
         context_error: part of the residual that errors of contexts account for, float[rows,
             sensors]. Steps and drifts are looked for beside it: it is the same error in many
             channels, and may be larger from row to row than a step of one of them.
+
+    Returns:
+        float[rows, sensors], scaled for the degrees of freedom that the fit takes.
     """
     span = _orthonormal(basis, max(1, len(residual) // 12))
     own = residual - context_error
@@ -79,18 +67,13 @@ def unexplainable(
         clock = np.arange(len(residual)) / len(residual)
         later = np.maximum(clock - clock[begun], 0.0)
         span = np.column_stack([span, clock, later])
-    return Unexplained(_left(residual, observed, span), span, _fitted(observed, span))
-
-
-def _fitted(observed: BoolArray, span: FloatArray) -> BoolArray:
-    """True for channels that were read often enough to fit a span to them, bool[sensors]."""
-    return np.asarray(observed.sum(0) > 2 * span.shape[1])
+    return _left(residual, observed, span)
 
 
 def _left(residual: FloatArray, observed: BoolArray, span: FloatArray) -> FloatArray:
     left = np.where(observed, residual, 0.0)
     for rows, sensors in _seen_together(observed):
-        if _fitted(observed, span)[sensors[0]]:
+        if len(rows) > 2 * span.shape[1]:
             place = np.ix_(rows, sensors)
             weights = lstsq(span[rows], residual[place])[0]
             rest = residual[place] - span[rows] @ weights
@@ -300,8 +283,7 @@ def _with_whole_step(left: FloatArray, basis: FloatArray) -> tuple[FloatArray, F
 
 
 def _orthonormal(basis: FloatArray, most: int) -> FloatArray:
-    # The strongest come first; weaker ones than there is room for pass for noise.
-    with_constant = np.column_stack([np.ones(len(basis)), basis])[:, :most]
+    with_constant = np.column_stack([np.ones(len(basis)), basis])
     scale = np.linalg.norm(with_constant, axis=0)
     u, s, _ = thin_svd(with_constant / np.where(scale > 0, scale, 1.0))
-    return np.asarray(u[:, s > 1e-6 * s[0]])
+    return np.asarray(u[:, s > 1e-6 * s[0]][:, :most])

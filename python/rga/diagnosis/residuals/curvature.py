@@ -181,6 +181,5 @@ def _distinct(courses: Iterable[FloatArray]) -> list[FloatArray]:
 def _courses(basis: FloatArray) -> FloatArray:
     """A level and the courses of the loads, orthonormal, float[rows, courses]."""
     together = np.column_stack([np.ones(len(basis)), basis])
-    strongest = together[:, : max(1, int(MOST_COURSES * len(basis)))]
-    u, s, _ = thin_svd(strongest / np.linalg.norm(strongest, axis=0))
-    return np.asarray(u[:, s > 1e-6 * s[0]])
+    u, s, _ = thin_svd(together / np.linalg.norm(together, axis=0))
+    return np.asarray(u[:, s > 1e-6 * s[0]][:, : max(1, int(MOST_COURSES * len(basis)))])

@@ -114,7 +114,7 @@ def innovations(problem: Problem) -> tuple[FloatArray, BoolArray]:
     """
     data = problem.data
     residual = problem.residual(problem.simulated)
-    left = unexplainable(residual, data.observed, load_basis(problem.simulator, data)).values
+    left = unexplainable(residual, data.observed, load_basis(problem.simulator, data))
     rows = problem.covariance.rows
     error = rows.context_error(left)
     left = left - np.einsum("tsi,ti->ts", rows.context_jacobian, error)

@@ -129,7 +129,7 @@ def pose(
 
     basis = load_basis(simulator, data)
     left = unexplainable(residual, data.observed, basis)
-    scale = np.sqrt((left.values**2).sum(0) / np.maximum(data.observed.sum(0), 1))
+    scale = np.sqrt((left**2).sum(0) / np.maximum(data.observed.sum(0), 1))
     stated = np.array([simulator.model.sensors[name].noise or 0.0 for name in data.sensors])
     floor = np.maximum(0.3 * stated, 1e-9 + 1e-4 * np.abs(simulated).max(0, initial=0.0))
     if factors.shape[1] and before is not None:
@@ -147,13 +147,11 @@ def pose(
     known = np.array([n in belief.known for n in belief.spread] + unknown_spread, dtype=bool)
     noise, tails = estimate_noise(left, data.time, data.observed, jacobian, start, known, floor)
     if jacobian.shape[2]:
-        error = RowCovariance(noise, data.time, data.observed, jacobian).context_error(
-            left.values - tails
-        )
+        error = RowCovariance(noise, data.time, data.observed, jacobian).context_error(left - tails)
         shared = np.einsum("tsi,ti->ts", jacobian, error)
         beside = unexplainable(residual, data.observed, basis, shared)
         size = noise.deviation
-        if ((beside.values / size) ** 2).sum() < ALIKE * ((left.values / size) ** 2).sum():
+        if ((beside / size) ** 2).sum() < ALIKE * ((left / size) ** 2).sum():
             noise, tails = estimate_noise(
                 beside, data.time, data.observed, jacobian, start, known, floor
             )

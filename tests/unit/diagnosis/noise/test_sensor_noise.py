@@ -6,7 +6,6 @@ import pytest
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.row_covariance import Noise, RowCovariance
 from rga.diagnosis.noise.sensor_noise import estimate_noise
-from rga.diagnosis.noise.unexplainable import Unexplained, unexplainable
 
 ROWS, SENSORS, MEMORY = 240, 24, 0.6
 
@@ -18,14 +17,13 @@ def noise_of(values: FloatArray, observed: BoolArray | None = None) -> tuple[Noi
     start = Noise(deviation, np.full(sensors, 0.3), np.zeros(0), deviation)
     jacobian = np.zeros((rows, sensors, 0))
     known, floor = np.zeros(0, dtype=bool), np.full(sensors, 1e-9)
-    left = Unexplained(values, np.zeros((rows, 0)), np.ones(sensors, dtype=bool))
-    return estimate_noise(left, 600.0 * np.arange(rows), seen, jacobian, start, known, floor)
+    return estimate_noise(values, 600.0 * np.arange(rows), seen, jacobian, start, known, floor)
 
 
-def with_memory(innovations: FloatArray, memory: float = MEMORY) -> FloatArray:
+def with_memory(innovations: FloatArray) -> FloatArray:
     values = innovations.copy()
     for row in range(1, len(values)):
-        values[row] = memory * values[row - 1] + np.sqrt(1 - memory**2) * innovations[row]
+        values[row] = MEMORY * values[row - 1] + np.sqrt(1 - MEMORY**2) * innovations[row]
     return values
 
 
@@ -76,19 +74,3 @@ def test_tails_of_readings_are_those_of_their_innovations() -> None:
     rows = RowCovariance(noise, np.arange(ROWS, dtype=float), observed, np.zeros((ROWS, 2, 0)))
     innovations = np.where(observed.T, heavy(3, 2).T, 0.0)
     np.testing.assert_allclose(rows.whiten(rows.coloured(innovations)), innovations, atol=1e-12)
-
-
-def test_courses_that_are_fitted_take_neither_memory_nor_size_from_the_noise() -> None:
-    """Slow courses look much like noise with memory: half of what they take is noise."""
-    rows, sensors = 160, 60
-    slow = np.cos(np.outer(np.arange(rows), np.pi / rows * np.arange(1, 12)))
-    time, seen = 600.0 * np.arange(rows), np.ones((rows, sensors), dtype=bool)
-    start = Noise(*np.tile([[1.0], [0.3]], sensors), np.zeros(0), np.ones(sensors))
-    rest = (np.zeros((rows, sensors, 0)), start, np.zeros(0, dtype=bool), np.full(sensors, 1e-9))
-    for memory in (0.0, 0.5):
-        white = np.random.default_rng(7).standard_normal((rows, sensors))
-        values = with_memory(white, memory) + 20.0 * slow[:, :5] @ np.ones((5, sensors))
-        left = unexplainable(values, seen, slow)
-        noise, _ = estimate_noise(left, time, seen, *rest)
-        assert noise.sigma.mean() == pytest.approx(1.0, rel=0.03)
-        assert noise.phi.mean() == pytest.approx(memory, abs=0.04)
