@@ -148,6 +148,12 @@ class Effect(BaseModel):
         return cls.on_sensors or any(mark.of == "sensor" for mark in cls.place_fields().values())
 
     @classmethod
+    @cache
+    def overrides(cls, method: str) -> bool:
+        """True where a kind has a method of its own: those of `Effect` do nothing."""
+        return getattr(cls, method) is not getattr(Effect, method)
+
+    @classmethod
     def unit(cls, parameter: str, place: Mapping[str, Any]) -> str:
         """Unit of a parameter at a place: stiffnesses and motions of a rotation have their own."""
         unit = cls.parameters()[parameter].unit

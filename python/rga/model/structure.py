@@ -189,6 +189,12 @@ class Structure:
             _built_for_geometry=self._built_for_geometry,
         )
 
+    def same_geometry(self, other: "Structure") -> bool:
+        """Whether nodes and members stand as those of another structure, and are of its kinds."""
+        # Not by arrays[name]: a copy would hold arrays of its own from then on.
+        pairs = [(self.arrays.get(name), other.arrays.get(name)) for name in GEOMETRY]
+        return all(one is two or _equal(one, two) for one, two in pairs)
+
     @property
     def lengths(self) -> FloatArray:
         """Member lengths, float[members] [m]."""
@@ -249,6 +255,13 @@ def _once(
         built.clear()
     built[key] = of, made
     return made
+
+
+def _equal(one: NDArray[Any] | None, other: NDArray[Any] | None) -> bool:
+    """Whether arrays are the same bit by bit: what is not a number is the same as itself."""
+    if one is None or other is None or one.shape != other.shape:
+        return False
+    return one.tobytes() == other.tobytes()
 
 
 def check_direction(direction: Vector) -> None:

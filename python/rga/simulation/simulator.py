@@ -158,8 +158,9 @@ class Simulator:
             ),
         )
         for name, effect in {**self.model.effects, **(more or {})}.items():
-            own = values[name] if name in values else effect.values(response.contexts, rows)
-            effect.change_readings(readings, own)
+            if effect.overrides("change_readings"):
+                own = values[name] if name in values else effect.values(response.contexts, rows)
+                effect.change_readings(readings, own)
         return readings
 
     def load_coefficients(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
@@ -216,9 +217,7 @@ class Simulator:
     def reads_plainly(self) -> bool:
         """Whether sensors show what the structure does and nothing else."""
         effects, sensors = self.model.effects.values(), self.model.sensors.values()
-        plain = not any(
-            type(effect).change_readings is not Effect.change_readings for effect in effects
-        )
+        plain = not any(effect.overrides("change_readings") for effect in effects)
         return plain and all(sensor.zero is None for sensor in sensors)
 
     def as_torch(self, time: ArrayLike | None = None) -> "DifferentiableSimulator":
@@ -279,11 +278,13 @@ class Simulator:
         effects, rows = self.model.effects, len(measured["time"])
         true = dict(measured)
         for effect in effects.values():
-            effect.change_contexts(true, effect.values(measured, rows))
+            if effect.overrides("change_contexts"):
+                effect.change_contexts(true, effect.values(measured, rows))
         values = {name: effect.values(true, rows) for name, effect in effects.items()}
         # What the structure follows is known once lags have acted on it.
         for name, effect in sorted(effects.items(), key=lambda named: named[1].structural):
-            effect.change_values(values, values[name], measured["time"])
+            if effect.overrides("change_values"):
+                effect.change_values(values, values[name], measured["time"])
         return values
 
     def request(self, values: dict[str, Values], rows: int) -> Request:
@@ -345,10 +346,7 @@ class Simulator:
 
         fixed = all(
             effect.loads_by_geometry
-            or (
-                type(effect).loads is Effect.loads
-                and type(effect).change_loads is Effect.change_loads
-            )
+            or not (effect.overrides("loads") or effect.overrides("change_loads"))
             for effect in effects.values()
         )
         return Request(states, state_of_row.ravel(), change, loads, fixed, self.prepared)

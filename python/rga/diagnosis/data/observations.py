@@ -101,7 +101,7 @@ class Data:
     """
 
     sensors: tuple[str, ...]
-    columns: list[int]
+    columns: IntArray
     readings: FloatArray
     observed: BoolArray
     belief: Belief
@@ -187,13 +187,13 @@ class Data:
             changed = about.read_with(effect)
         else:
             changed, _ = about.nearly({"trial": effect})
-        touched = (changed != about.read).any(0)[self.columns]
-        channels = np.flatnonzero(touched)
-        columns = [self.columns[channel] for channel in channels]
-        now, before = changed[:, columns], about.read[:, columns]
-        difference = now - before
+        difference = changed - about.read
+        # What is not a number counts as touched.
+        channels = np.flatnonzero(difference[:, self.columns].any(0))
+        columns = self.columns[channels]
+        difference = difference[:, columns]
         if not np.isfinite(difference).all():
-            difference = np.nan_to_num(now) - np.nan_to_num(before)
+            difference = np.nan_to_num(changed[:, columns]) - np.nan_to_num(about.read[:, columns])
         zero, rows = self._parted(difference)
         return channels, rows, zero
 

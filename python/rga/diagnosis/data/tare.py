@@ -33,7 +33,7 @@ class Tare:
 
     @classmethod
     def of(
-        cls, record: Record, contexts: Values, columns: list[int], zeros: Sequence[Interval | None]
+        cls, record: Record, contexts: Values, columns: IntArray, zeros: Sequence[Interval | None]
     ) -> "Tare":
         """The tare of a record.
 
@@ -69,7 +69,7 @@ class Tare:
         """Clock of the zero rows [s], float[zero rows]."""
         return self.contexts["time"]
 
-    def mean(self, values: FloatArray, columns: list[int] | IntArray) -> FloatArray:
+    def mean(self, values: FloatArray, columns: IntArray) -> FloatArray:
         """What is taken off channels, float[channels].
 
         Args:

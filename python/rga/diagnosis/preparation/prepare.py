@@ -230,7 +230,7 @@ def _data(model: Model, record: Record, criteria: Criteria) -> Data:
     # A row whose context is missing cannot be simulated: its readings are left aside.
     known = [np.isfinite(record.contexts[n]) for n in belief.spread if n in record.contexts]
     complete = np.all(known, axis=0) if known else np.ones(len(record.time), dtype=bool)
-    columns = [order[name] for name in record.sensors]
+    columns = np.array([order[name] for name in record.sensors], dtype=np.int64)
     return Data(
         sensors=tuple(record.sensors),
         columns=columns,
@@ -268,7 +268,7 @@ def _of_channels(data: Data, kept: list[int]) -> Data:
     return replace(
         data,
         sensors=tuple(data.sensors[number] for number in kept),
-        columns=[data.columns[number] for number in kept],
+        columns=data.columns[kept],
         readings=data.readings[:, kept],
         observed=data.observed[:, kept],
     )

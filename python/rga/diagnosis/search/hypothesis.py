@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -44,13 +45,21 @@ class Hypothesis:
 
     def effect(self, z: Sequence[float] | FloatArray) -> Effect:
         """The effect with parameters at standard normal coordinates z, one a parameter."""
-        values = {
+        return self._usual.with_values(self._values(z))
+
+    @cached_property
+    def _usual(self) -> Effect:
+        """The effect in the middle of its priors: others differ in values alone."""
+        late = {"onset": self.onset, "profile": self.profile, "end": self.end}
+        given = {**self.place, **self._values([0.0] * len(self.priors)), **late}
+        return self.kind(kind=self.name, **given)
+
+    def _values(self, z: Sequence[float] | FloatArray) -> dict[str, float]:
+        """Parameters at coordinates."""
+        return {
             name: prior.value(float(one))
             for (name, prior), one in zip(self.priors.items(), z, strict=True)
         }
-        late = {"onset": self.onset, "profile": self.profile, "end": self.end}
-        given = {**self.place, **values, **late}
-        return self.kind(kind=self.name, **given)
 
     @property
     def name(self) -> str:
@@ -67,6 +76,8 @@ class Hypothesis:
         self, onset: float | None, profile: Profile = "step", end: float | None = None
     ) -> "Hypothesis":
         """The same with another onset."""
+        if (self.onset, self.profile, self.end) == (onset, profile, end):
+            return self
         return replace(self, onset=onset, profile=profile, end=end)
 
     def beginning_with(self, other: "Hypothesis") -> "Hypothesis":

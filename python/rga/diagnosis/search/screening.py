@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from rga.simulation import Simulator
 
 #: prospects that are judged anew, by signatures about the simulation as it stands
 JUDGED = 100
+#: prospects behind these that are ranked with them: those judged may fall back
+BEHIND = 50
 #: d' below which not even the largest of a hypothesis' trial values will ever be named
 HOPELESS = 1.5
 #: d' below which a signature has no size: what rounding leaves of it, which promises nothing
@@ -195,7 +198,13 @@ class Screening:
             self._judged.append(RankedSignatures.of(block, covariance))
             done = max(done, *(number + 1 for number, _, _ in block.members))
             progress(done / len(candidates))
-        self.first = self.again(problem, simulator, ())
+        self._largest: dict[int, tuple[float, float]] = {}
+        for judged in self._judged:
+            sizes = judged.largest(onsets=not data.belief.passing).T.tolist()
+            for (number, *_), (always, late) in zip(judged.block.members, sizes, strict=True):
+                before = self._largest.get(number, (0.0, 0.0))
+                self._largest[number] = max(before[0], always), max(before[1], late)
+        self.first = self._ranked(problem, simulator, (), None, inf)
         hopeful = {
             one.number for one in self.first if max(one.largest, one.largest_late) >= HOPELESS
         }
@@ -216,29 +225,28 @@ class Screening:
             taken: hypotheses that are left out.
             beginning: a candidate acts always, or begins as this one does; None: candidates may
                 begin at any time.
+
+        Returns:
+            Those that were judged anew, some behind them, and the best of every kind.
         """
+        return self._ranked(problem, simulator, taken, beginning, JUDGED + BEHIND)
+
+    def _ranked(
+        self,
+        problem: Problem,
+        simulator: Simulator,
+        taken: Collection[Hypothesis],
+        beginning: Hypothesis | None,
+        most: float,
+    ) -> list[Prospect]:
+        """The same, as many as wanted and the best of every kind."""
         data = problem.data
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
-        best: dict[tuple[int, Profile | None], tuple[float, _Promise, int]] = {}
-        largest: dict[int, tuple[float, float]] = {}
+        promises: list[_Promise] = []
         for judged in self._judged:
-            for promise in _promises(judged, weighted, data, beginning):
-                for k, score in enumerate(promise.scores.tolist()):
-                    # What an onset promises is rough, and must not hide another way to begin.
-                    key = judged.block.members[k][0], promise.profile
-                    if key not in best or score > best[key][0]:
-                        best[key] = score, promise, k
-            sizes = judged.largest(onsets=not data.belief.passing).T.tolist()
-            for (number, *_), (always, late) in zip(judged.block.members, sizes, strict=True):
-                before = largest.get(number, (0.0, 0.0))
-                largest[number] = max(before[0], always), max(before[1], late)
-        kept = [
-            promise.prospect(k, largest[number])
-            for (number, _), (_, promise, k) in best.items()
-            if not any(promise.of_place(k, other) for other in taken)
-        ]
-        kept.sort(key=_rank)
+            promises += _promises(judged, weighted, data, beginning)
+        kept = self._best(promises, taken, most) if promises else []
         # About the simulation of the screening nothing is new but what onsets make of signatures.
         here = self._about == (problem, simulator)
         known = [here and one.hypothesis.onset is None for one in kept[:JUDGED]]
@@ -253,6 +261,36 @@ class Screening:
         for one in sorted(kept, key=_rank):
             first.setdefault(one.number, one)
         return list(first.values())
+
+    def _best(
+        self,
+        promises: Sequence["_Promise"],
+        taken: Collection[Hypothesis],
+        most: float,
+    ) -> list[Prospect]:
+        """The best promise of each candidate for each way to begin, the best first.
+
+        What an onset promises is rough, and must not hide another way to begin.
+        """
+        numbers = np.concatenate([one.block.numbers for one in promises])
+        scores = np.concatenate([one.scores for one in promises])
+        places = [(promise, k) for promise in promises for k in range(len(promise.scores))]
+        kept: list[Prospect] = []
+        known: set[tuple[int, Profile | None]] = set()
+        kinds: set[str] = set()
+        for place in np.lexsort((numbers, -scores)).tolist():
+            promise, k = places[place]
+            number, hypothesis, _ = promise.block.members[k]
+            if (number, promise.profile) in known:
+                continue
+            known.add((number, promise.profile))
+            if len(kept) >= most and hypothesis.name in kinds:
+                continue
+            if any(hypothesis.same_place(other) for other in taken):
+                continue
+            kinds.add(hypothesis.name)
+            kept.append(promise.prospect(k, self._largest[number]))
+        return kept
 
 
 def judged_anew(
@@ -304,10 +342,6 @@ class _Promise:
     profile: Profile | None = None
     moments: FloatArray | None = None
     end: float | None = None
-
-    def of_place(self, k: int, other: Hypothesis) -> bool:
-        """Whether a signature is of the place of a hypothesis."""
-        return self.block.members[k][1].same_place(other)
 
     def prospect(self, k: int, largest: tuple[float, float]) -> Prospect:
         """The prospect of a signature."""

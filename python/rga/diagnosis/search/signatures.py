@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -57,7 +58,7 @@ def signature(
         weight, weight_at_zero = data.weights(hypothesis.effect(z))
         change = change * weight[:, None]
         at_zero = at_zero * weight_at_zero[:, None]
-    zero = data.tare.mean(at_zero, [data.columns[channel] for channel in touched])
+    zero = data.tare.mean(at_zero, data.columns[touched])
     values = (change - zero).T
     if len(touched) <= FEW:
         return Signature(number, hypothesis, z, touched, values, zero)
@@ -138,6 +139,11 @@ class Block:
             free=np.array([bool(one.z) for one in several]),
             log_prior=np.array([one.hypothesis.log_prior for one in several]),
         )
+
+    @cached_property
+    def numbers(self) -> IntArray:
+        """Of the hypotheses, int[k]."""
+        return np.array([number for number, _, _ in self.members], dtype=np.int64)
 
     def along(self, weighted: FloatArray) -> FloatArray:
         """Products with a residual, row by row, float[k, rows].

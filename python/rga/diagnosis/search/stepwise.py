@@ -30,6 +30,8 @@ CLOSE = 15.0
 #: rounds of weighing and exchanging causes, and the log-odds that an exchange must gain: less lies
 #: within what Laplace's approximation misses
 EXCHANGES, WORTH_EXCHANGE = 3, 1.0
+#: log-odds that rounding makes of what acts on the same readings
+ROUNDING = 1e-6
 #: rounds in which inferred contexts come to rest
 ROUNDS = 4
 #: how far contexts at rest may move [their prior spread]
@@ -174,7 +176,8 @@ def with_moment(problem: Problem, base: Simulator, current: Fit, number: int) ->
     if moved == hypothesis:
         return current
     hypotheses = [moved if k == number else one for k, one in enumerate(current.hypotheses)]
-    return max(current, fit(problem, base, hypotheses, current.z), key=evidence)
+    likelier = fit(problem, base, hypotheses, current.z)
+    return likelier if evidence(likelier) > evidence(current) + ROUNDING else current
 
 
 def _hidden_by_scatter(

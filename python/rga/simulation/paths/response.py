@@ -16,8 +16,13 @@ def respond(structure: Structure, loads: list[Load], outputs: OutputArrays) -> F
         UnstableStructureError: names the node and the direction that can move.
         InputError: a property that the core refuses.
     """
+    return respond_to(structure, patterns(structure, loads), outputs)
+
+
+def respond_to(structure: Structure, loads: LoadArrays, outputs: OutputArrays) -> FloatArray:
+    """The same of loads in the form that the core takes, with the same errors."""
     try:
-        return _core.respond(structure.arrays, patterns(structure, loads), outputs)
+        return _core.respond(structure.arrays, loads, outputs)
     except (_core.UnstableStructure, _core.InvalidInput) as error:
         raise refused(structure, error) from None
 

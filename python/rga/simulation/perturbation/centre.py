@@ -1,18 +1,19 @@
 """A structure of a simulation under its loads, and what structures near it make of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from rga._core import Loaded, StiffnessDifference
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, LoadArrays
 from rga.model.effect import Effect, Values
 from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import coefficients
 from rga.simulation.paths.friction import frictionless, slid
+from rga.simulation.paths.response import patterns, respond, respond_to
 from rga.simulation.paths.unilateral import respond_with_laws, terms_of
 from rga.simulation.perturbation.reanalysis import Reanalysis
 
@@ -58,7 +59,6 @@ class Centre:
         structure: Structure,
         effects: Mapping[str, Effect],
         values: dict[str, Values],
-        near: bool,
         apart: bool,
     ) -> list[Load]:
         """Loads of all effects on a structure; those that are what they are here are known.
@@ -67,10 +67,10 @@ class Centre:
             structure: with all effects.
             effects: those of the simulation, then others.
             values: of their parameters.
-            near: the structure differs from this in stiffnesses alone.
             apart: effects of the simulation have the values that they had here.
         """
-        warms = near and np.array_equal(self.near.structure.alpha, structure.alpha)
+        first = self.near.structure
+        warms = first.same_geometry(structure) and np.array_equal(first.alpha, structure.alpha)
         more = list(effects.values())[len(self.own) :]
         if apart and warms and self.of_geometry and not any(map(loading, more)):
             return self.loads
@@ -98,6 +98,25 @@ class Centre:
         numbers = iter(range(len(self.loads), len(self.loads) + len(new)))
         chosen = [next(numbers) if known is None else known for known in places]
         return coefficients(loads), self.loaded.choose(more, chosen)
+
+    def solved_anew(self, structure: Structure, loads: list[Load]) -> FloatArray:
+        """A structure that is not near this one, float[rows, sensors] in SI units.
+
+        Args:
+            structure: itself.
+            loads: on it, as `loads_on` has them.
+        """
+        if loads is not self.loads:
+            few = _together(loads)
+            return coefficients(few) @ respond(structure, few, structure.outputs)
+        q, few_patterns = self._together
+        return q @ respond_to(structure, few_patterns, structure.outputs)
+
+    @cached_property
+    def _together(self) -> tuple[FloatArray, LoadArrays]:
+        """Coefficients and patterns of the loads, those that go together as one."""
+        few = _together(self.loads)
+        return coefficients(few), patterns(self.near.structure, few)
 
     def with_laws(
         self, structure: Structure, loads: list[Load], where: StiffnessDifference | None
@@ -127,7 +146,7 @@ class Centre:
         where = self.near.differing(structure)
         if where is None or where or not structure.linear_but_friction:
             return None
-        if self.loads_on(structure, effects, values, near=True, apart=True) is not self.loads:
+        if self.loads_on(structure, effects, values, apart=True) is not self.loads:
             return None
         places = tuple((bearing.node, bearing.dof) for bearing in structure.bearings)
         if places not in self.frictionless:
@@ -163,12 +182,7 @@ def _identity(load: Load) -> tuple[int, ...]:
 
 def loading(effect: Effect) -> bool:
     """True where an effect may have loads, or change others'."""
-    return overrides(effect, "loads") or overrides(effect, "change_loads")
-
-
-def overrides(effect: Effect, method: str) -> bool:
-    """True where a kind has a method of its own."""
-    return getattr(type(effect), method) is not getattr(Effect, method)
+    return effect.overrides("loads") or effect.overrides("change_loads")
 
 
 def _changed(
@@ -182,3 +196,22 @@ def _changed(
     for name, effect in effects.items():
         effect.change_loads(loads, structure, values[name])
     return [load for of_effect in loads.values() for load in of_effect]
+
+
+def _together(loads: list[Load]) -> list[Load]:
+    """The same loads, with nodal forces that have the same coefficients put into one."""
+    found: list[Load] = []
+    place: dict[bytes, int] = {}
+    for load in loads:
+        if load.strain is not None or load.prescribed or load.spread:
+            found.append(load)
+            continue
+        key = load.coefficient.tobytes()
+        if key not in place:
+            place[key] = len(found)
+            found.append(replace(load, forces=dict(load.forces)))
+            continue
+        forces = found[place[key]].forces
+        for node, force in load.forces.items():
+            forces[node] = forces[node] + force if node in forces else force
+    return found

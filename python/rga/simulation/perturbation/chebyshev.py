@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rga.simulation.dispatch import Request
 
 #: Chebyshev points to begin with and at most
-FIRST, MOST = 9, 65
+FIRST, MOST = 5, 65
 #: share of the largest response that the last doubling may change
 EXACT = 1e-10
 #: places at which that is looked for

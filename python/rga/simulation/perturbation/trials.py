@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 from rga._core import StiffnessDifference
 from rga.arrays import FloatArray, IntArray
 from rga.model.effect import Effect, Values
-from rga.model.structure import Load, Structure
+from rga.model.structure import Structure
 from rga.simulation.dispatch import APART, Request, coefficients, with_laws
 from rga.simulation.paths.response import respond
-from rga.simulation.perturbation.centre import Centre, overrides
+from rga.simulation.perturbation.centre import Centre
 from rga.simulation.perturbation.chebyshev import along_line
 
 if TYPE_CHECKING:
@@ -43,8 +43,10 @@ class Vicinity:
         effects = simulator.model.effects.values()
         self._true = dict(self.response.contexts)
         for effect in effects:
-            effect.change_contexts(self._true, effect.values(self.response.contexts, self._rows))
-        self._settled = not any(overrides(effect, "change_values") for effect in effects)
+            if effect.overrides("change_contexts"):
+                own = effect.values(self.response.contexts, self._rows)
+                effect.change_contexts(self._true, own)
+        self._settled = not any(effect.overrides("change_values") for effect in effects)
         self._centres: list[Centre] = []
         self._of_row = np.zeros(self._rows, np.int64)
         self._find_centres()
@@ -241,15 +243,14 @@ class Vicinity:
         if structure.bearings or structure.nonlinear:
             return None
         centre, where = self._nearest(structure)
-        loads = centre.loads_on(structure, effects, values, where is not None, apart)
+        loads = centre.loads_on(structure, effects, values, apart)
         if structure.laws:
             near = centre.with_laws(structure, loads, where)
             if near is not None:
                 return near
             return with_laws(self.simulator.prepared, structure, loads)
         if where is None:
-            few = _together(loads)
-            return coefficients(few) @ respond(structure, few, structure.outputs)
+            return centre.solved_anew(structure, loads)
         q, loaded = centre.under(loads)
         return q @ centre.near.changed(loaded, structure, where)
 
@@ -268,8 +269,7 @@ class Vicinity:
 
         def solve(structure: Structure) -> tuple[FloatArray, FloatArray]:
             centre, where = self._nearest(structure)
-            near, effects = where is not None, trial.model.effects
-            loads = centre.loads_on(structure, effects, values, near, apart)
+            loads = centre.loads_on(structure, trial.model.effects, values, apart)
             if where is None:
                 return coefficients(loads), respond(structure, loads, structure.outputs)
             q, loaded = centre.under(loads)
@@ -296,23 +296,4 @@ def _state(values: Values) -> dict[str, float] | None:
 
 def _meddles(effect: Effect) -> bool:
     """True where an effect may change contexts, or parameters of other effects."""
-    return overrides(effect, "change_contexts") or overrides(effect, "change_values")
-
-
-def _together(loads: list[Load]) -> list[Load]:
-    """The same loads, with nodal forces that have the same coefficients put into one."""
-    found: list[Load] = []
-    place: dict[bytes, int] = {}
-    for load in loads:
-        if load.strain is not None or load.prescribed or load.spread:
-            found.append(load)
-            continue
-        key = load.coefficient.tobytes()
-        if key not in place:
-            place[key] = len(found)
-            found.append(replace(load, forces=dict(load.forces)))
-            continue
-        forces = found[place[key]].forces
-        for node, force in load.forces.items():
-            forces[node] = forces[node] + force if node in forces else force
-    return found
+    return effect.overrides("change_contexts") or effect.overrides("change_values")

@@ -35,6 +35,16 @@ def test_coordinates_become_parameters(nothing_off: Problem) -> None:
     assert (effect.kind, effect.onset) == ("sensor_bias", 600.0)
 
 
+def test_effects_are_those_of_the_model_file(model: Model, nothing_off: Problem) -> None:
+    """What is the same for all coordinates is checked once; no coordinate may tell."""
+    for one in hypotheses(model, list(model.sensors), list(model.context)):
+        for z in (-3.0, 0.4):
+            effect = one.effect([z] * len(one.priors))
+            values = {name: prior.value(z) for name, prior in one.priors.items()}
+            assert effect == one.kind(kind=one.name, **one.place, **values)
+            assert repr(effect) == repr(one.kind(kind=one.name, **one.place, **values))
+
+
 def test_several_places_contain_one_of_them(nothing_off: Problem) -> None:
     several = [one for one in candidates(nothing_off, "member_stiffness") if "member" in one.place]
     one, other = several[:2]

@@ -62,3 +62,21 @@ def test_of_prospects_alike_the_first_candidate_is_first(noisy: Problem) -> None
     last = len(twins) - 1
     assert found[::2] == [min(one, last - one) for one in found[::2]]
     assert found[1::2] == [last - one for one in found[::2]]
+
+
+def test_far_behind_only_the_best_of_each_kind_is_ranked(
+    noisy: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kinds = ("sensor_bias", "sensor_gain", "member_stiffness")
+    screening = Screening(noisy, noisy.simulator, candidates(noisy, *kinds))
+    whole = screening.again(noisy, noisy.simulator, ())
+    ranked = [one.number for one in screening.first]
+    assert [one.number for one in whole][:20] == ranked[:20]
+    monkeypatch.setattr("rga.diagnosis.search.screening.JUDGED", 2)
+    monkeypatch.setattr("rga.diagnosis.search.screening.BEHIND", 3)
+    few = screening.again(noisy, noisy.simulator, ())
+    assert few[0] == whole[0]
+    assert len(few) <= 5 + len(kinds)
+    assert {one.hypothesis.name for one in few} == set(kinds)
+    best = {kind: next(p for p in whole if p.hypothesis.name == kind) for kind in kinds}
+    assert {one.number for one in best.values()} <= {one.number for one in few}
