@@ -13,6 +13,7 @@ from rga.diagnosis.noise.covariance import Covariance
 from rga.diagnosis.search.hypothesis import LATE, Hypothesis, Profile
 from rga.diagnosis.search.late_shares import EveryBeginning, LateShares, OneBeginning
 from rga.diagnosis.search.linearised import Problem
+from rga.diagnosis.search.scores import gained, scored
 from rga.diagnosis.search.signatures import Block, chunks, signature, signatures
 from rga.simulation import Simulator
 
@@ -22,8 +23,6 @@ JUDGED = 100
 BEHIND = 50
 #: d' below which not even the largest of a hypothesis' trial values will ever be named
 HOPELESS = 1.5
-#: d' below which a signature has no size: what rounding leaves of it, which promises nothing
-NO_SIZE = 1e-6
 #: how an effect may begin, in the order in which they are tried
 PROFILES: tuple[Profile, ...] = ("step", "ramp")
 
@@ -315,7 +314,7 @@ def judged_anew(
     for block in chunks(one for one in several if one is not None):
         size = covariance.squares(covariance.reduce(block.values, block.channels))
         sums = block.along(weighted).sum(1)
-        score, start = _scored(block, sums, np.maximum(size, 0.0), block.log_prior)
+        score, start = scored(block, sums, np.maximum(size, 0.0), block.log_prior)
         found += [
             Prospect(number, hypothesis, _coordinates(z, s), float(points), *largest[number], z)
             for (number, hypothesis, z), points, s in zip(block.members, score, start, strict=True)
@@ -359,14 +358,14 @@ def _promises(
     block, time, tare = judged.block, data.time, data.tare
     along = np.stack([block.along(weighted), block.zero_along(weighted)])
     later = block.log_prior + LATE
-    found = [_Promise(block, *_scored(block, along[0].sum(1), judged.size, block.log_prior))]
+    found = [_Promise(block, *scored(block, along[0].sum(1), judged.size, block.log_prior))]
     if beginning is not None and beginning.onset is not None:
         weight, weight_at_zero = data.weights(beginning.effect([0.0] * len(beginning.priors)))
         at_zero = tare.mean_weight(weight_at_zero[None])
         sums, sizes = judged.begun(along, OneBeginning(weight), at_zero)
-        scored = _scored(block, sums[:, 0], sizes[:, 0], later)
+        promised = scored(block, sums[:, 0], sizes[:, 0], later)
         moments = np.full(len(later), beginning.onset)
-        found.append(_Promise(block, *scored, beginning.profile, moments, beginning.end))
+        found.append(_Promise(block, *promised, beginning.profile, moments, beginning.end))
     if beginning is None and not data.belief.passing:
         margin = max(2, len(time) // 50)
         inner = slice(margin, len(time) - margin)
@@ -375,38 +374,10 @@ def _promises(
             weights = EveryBeginning(time, time[inner], profile)
             at_zero = tare.mean_weight(weights.at(tare.time))
             sums, sizes = judged.begun(along, weights, at_zero)
-            row = np.argmax(_gained(sums, sizes), axis=1)
-            scored = _scored(block, sums[every, row], sizes[every, row], later)
-            found.append(_Promise(block, *scored, profile, time[inner][row]))
+            row = np.argmax(gained(sums, sizes), axis=1)
+            promised = scored(block, sums[every, row], sizes[every, row], later)
+            found.append(_Promise(block, *promised, profile, time[inner][row]))
     return found
-
-
-def _gained(along: FloatArray, size: FloatArray) -> FloatArray:
-    """What signatures gain in likelihood at their best amplitude, twice its log."""
-    sized = size > NO_SIZE**2
-    return np.where(sized, along**2 / np.where(sized, size, 1.0), 0.0)
-
-
-def _scored(
-    block: Block, along: FloatArray, size: FloatArray, prior: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Scores of signatures with x' C^-1 r = along and x' C^-1 x = size, and z of their best.
-
-    The latter is float[k], the value of all coordinates, or NaN: those of the trial.
-    """
-    sized = size > NO_SIZE**2
-    size, along = np.where(sized, size, 1.0), np.where(sized, along, 0.0)
-    first = np.where(block.free & block.linear, block.z[:, 0], 1.0)
-    # Linear in z: the evidence is exact.
-    per_z = size / first**2
-    linear = (along / first) ** 2 / (1 + per_z) / 2 - np.log1p(per_z) / 2
-    # A curve: the amplitude may differ a little from that of the trial, not in sign.
-    amplitude = np.clip(along / size, 0.0, 3.0)
-    curve = amplitude * along - amplitude**2 * size / 2 - (block.z**2).sum(1) / 2
-    fixed = along - size / 2
-    score = np.where(block.free, np.where(block.linear, linear, curve), fixed)
-    start = np.where(block.free & block.linear, along / first / (1 + per_z), np.nan)
-    return np.where(sized, score + prior, -np.inf), start
 
 
 def _coordinates(z: tuple[float, ...], start: float) -> tuple[float, ...]:
