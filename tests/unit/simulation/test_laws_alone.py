@@ -42,6 +42,10 @@ def test_what_differs_in_more_is_refused(plain: Structure) -> None:
     gauge.outputs["vector"][0] += 0.1
     warm = stopped(plain, 3e6)
     warm.alpha[0] *= 2.0
+    tied = plain.copy()
+    tied.add_spring(1, 2, 0, 1e6)
+    # The softest stop has a number that the other structure has no spring of.
+    assert laws_alone([one, stopped(tied, 1e6)]) is None
     for other in (elsewhere, softer, gauge, warm):
         assert laws_alone([one, other]) is None
     assert laws_alone([plain, plain]) is None

@@ -2,8 +2,8 @@
 
 The response of a structure to unit loads is a rational function of its parameters, smooth between
 stable structures. So its interpolant in Chebyshev points converges geometrically (Trefethen,
-Approximation Theory and Approximation Practice, 2013, chapter 8); points are doubled until what
-they add is rounding.
+Approximation Theory and Approximation Practice, 2013, chapter 8): each doubling of the points
+squares the factor by which what they miss falls, so that two doublings tell what the last has left.
 """
 
 from collections.abc import Callable
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from rga.simulation.dispatch import Request
 
 #: Chebyshev points to begin with and at most
-FIRST, MOST = 5, 65
-#: share of the largest response that the last doubling may change
-EXACT = 1e-10
+FIRST, MOST = 3, 65
+#: share of the largest response that may be missed, and the part of it that an estimate may be
+EXACT, SAFE = 1e-10, 0.01
 #: places at which that is looked for
 TRIED = 40
 #: values of a parameter that are few, and states on a line that are solved one by one
@@ -149,12 +149,15 @@ def between(
         return found
 
     tried = np.linspace(0.0, 1.0, TRIED)
-    count = FIRST
-    found = interpolant(count)
+    count, found, missed = FIRST, interpolant(FIRST), np.inf
     while count < MOST:
         count = 2 * count - 1
         before, found = found, interpolant(count)
         there = found(tried)
-        if np.abs(there - before(tried)).max() <= EXACT * np.abs(there).max():
+        earlier = missed
+        missed = np.abs(there - before(tried)).max() / max(np.abs(there).max(), 1e-300)
+        # The first estimate would know nothing of how fast it falls.
+        left = missed * (missed / earlier) ** 2 if earlier < np.inf else missed
+        if missed <= EXACT or left <= SAFE * EXACT:
             return found
     return None
