@@ -6,7 +6,7 @@ mod common;
 use std::hint::black_box;
 
 use common::grid::roof;
-use common::{AXIAL, Case, DISPLACEMENT, Output, at};
+use common::{Case, heights_and_forces};
 use criterion::{Criterion, criterion_group, criterion_main};
 use rga_core::{Reanalysis, StiffnessDifference};
 
@@ -24,14 +24,7 @@ fn on_springs(softer: usize) -> Case {
 }
 
 fn bench(criterion: &mut Criterion) {
-    let outputs: Vec<Output> = (0..14)
-        .flat_map(|index| {
-            [
-                at(DISPLACEMENT, index, 2),
-                (AXIAL, index, -1, [0.5, 0.0, 0.0]),
-            ]
-        })
-        .collect();
+    let outputs = heights_and_forces(14);
     let mut group = criterion.benchmark_group("a roof of 85 nodes");
     on_springs(0).lend(&outputs, |structure, loads, wanted| {
         let near = Reanalysis::new(structure, wanted).expect("stable");

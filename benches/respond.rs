@@ -5,7 +5,7 @@ mod common;
 
 use std::hint::black_box;
 
-use common::{AXIAL, Case, DISPLACEMENT, Output, at};
+use common::{Case, heights_and_forces};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// Boxes of 3 m in a row, four nodes a section, on four bearings.
@@ -34,14 +34,7 @@ fn bridge(bays: i64, frame: bool) -> Case {
 }
 
 fn bench(criterion: &mut Criterion) {
-    let outputs: Vec<Output> = (0..14)
-        .flat_map(|index| {
-            [
-                at(DISPLACEMENT, index, 2),
-                (AXIAL, index, -1, [0.5, 0.0, 0.0]),
-            ]
-        })
-        .collect();
+    let outputs = heights_and_forces(14);
     for (name, bays, frame) in [
         ("truss of 32 nodes", 7, false),
         ("frame of 404 nodes", 100, true),

@@ -199,6 +199,17 @@ impl Case {
     }
 }
 
+/// Heights of the first nodes, and axial forces in the middle of the first members.
+pub fn heights_and_forces(count: i64) -> Vec<Output> {
+    let pair = |index| {
+        [
+            at(DISPLACEMENT, index, 2),
+            (AXIAL, index, -1, [0.5, 0.0, 0.0]),
+        ]
+    };
+    (0..count).flat_map(pair).collect()
+}
+
 /// A node's motion or reaction along a global axis.
 pub fn at(kind: i64, node: i64, axis: usize) -> Output {
     let mut vector = [0.0; 3];
