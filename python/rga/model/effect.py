@@ -148,9 +148,11 @@ class Effect(BaseModel):
         return cls.on_sensors or any(mark.of == "sensor" for mark in cls.place_fields().values())
 
     @classmethod
-    @cache
     def overrides(cls, method: str) -> bool:
-        """True where a kind has a method of its own: those of `Effect` do nothing."""
+        """True where a kind has a `change_...` method, or `loads`, of its own.
+
+        Those of this class do nothing.
+        """
         return getattr(cls, method) is not getattr(Effect, method)
 
     @classmethod
@@ -196,7 +198,10 @@ class Effect(BaseModel):
         return [cls.priors(model, place)]
 
     def with_values(self, values: Mapping[str, float | Estimated]) -> Self:
-        """The same effect with other parameter values."""
+        """The same effect with other parameter values, which are taken as they are.
+
+        So a validator of a kind may refuse a parameter, and must not change it.
+        """
         return self.model_copy(update=dict(values))
 
     def weight(self, time: FloatArray) -> FloatArray:

@@ -30,12 +30,13 @@ Built = dict[tuple[int | bytes, ...], tuple[tuple[object, ...], Any]]
 Spread = tuple[int, int, float, float, float, float]
 #: what a structure remembers of effects
 REMEMBERED = 512
-#: where nodes are, which of them members join, and how these stand
-GEOMETRY: tuple[Literal["coordinates", "ends", "frame", "local_y"], ...] = (
+#: where nodes are, which of them members join, how these stand, and which supports are inclined
+GEOMETRY: tuple[Literal["coordinates", "ends", "frame", "local_y", "inclined_node"], ...] = (
     "coordinates",
     "ends",
     "frame",
     "local_y",
+    "inclined_node",
 )
 #: properties that a member has and a node has not
 OF_MEMBERS: tuple[
@@ -190,7 +191,7 @@ class Structure:
         )
 
     def same_geometry(self, other: "Structure") -> bool:
-        """Whether nodes and members stand as those of another structure, and are of its kinds."""
+        """Whether nodes, members and inclined supports stand as those of another structure."""
         # Not by arrays[name]: a copy would hold arrays of its own from then on.
         pairs = [(self.arrays.get(name), other.arrays.get(name)) for name in GEOMETRY]
         return all(one is two or _equal(one, two) for one, two in pairs)

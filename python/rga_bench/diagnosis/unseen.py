@@ -42,11 +42,16 @@ def unseen_gaps(case: Case, found: Mapping[str, Effect]) -> UnseenGaps | None:
     model = read_model({**case.model, "sensors": beyond.sensors}, "challenge")
     given = _gap(beyond, model)
     try:
+        true = _gap(beyond, model.extended(hidden))
+    except InputError:
+        # The true structure slips at members that the model has as a frame.
+        return None
+    try:
         gap = _gap(beyond, model.extended(dict(found)))
     except InputError:
         # What cannot be simulated there gains nothing there.
         gap = given
-    return UnseenGaps(given, gap, _gap(beyond, model.extended(hidden)))
+    return UnseenGaps(given, gap, true)
 
 
 def _gap(beyond: Beyond, model: Model) -> float:

@@ -187,8 +187,9 @@ class Data:
             changed = about.read_with(effect)
         else:
             changed, _ = about.nearly({"trial": effect})
-        difference = changed - about.read
-        # What is not a number counts as touched.
+        with np.errstate(invalid="ignore"):
+            difference = changed - about.read
+        # What is not a number counts as touched: it is true.
         channels = np.flatnonzero(difference[:, self.columns].any(0))
         columns = self.columns[channels]
         difference = difference[:, columns]

@@ -57,7 +57,7 @@ class Hypothesis:
     def _values(self, z: Sequence[float] | FloatArray) -> dict[str, float]:
         """Parameters at coordinates."""
         return {
-            name: prior.value(float(one))
+            name: float(prior.value(float(one)))
             for (name, prior), one in zip(self.priors.items(), z, strict=True)
         }
 

@@ -19,8 +19,9 @@ from rga.simulation import Simulator
 
 #: prospects that are judged anew, by signatures about the simulation as it stands
 JUDGED = 100
-#: prospects behind these that are ranked with them: those judged may fall back
-BEHIND = 50
+#: prospects behind these that are ranked with them, and behind all of them those of every kind:
+#: the ones that are judged may fall back
+BEHIND, OF_KIND = 50, 3
 #: d' below which not even the largest of a hypothesis' trial values will ever be named
 HOPELESS = 1.5
 #: how an effect may begin, in the order in which they are tried
@@ -226,7 +227,7 @@ class Screening:
                 begin at any time.
 
         Returns:
-            Those that were judged anew, some behind them, and the best of every kind.
+            Those that were judged anew, some behind them, and behind these the best of every kind.
         """
         return self._ranked(problem, simulator, taken, beginning, JUDGED + BEHIND)
 
@@ -238,7 +239,7 @@ class Screening:
         beginning: Hypothesis | None,
         most: float,
     ) -> list[Prospect]:
-        """The same, as many as wanted and the best of every kind."""
+        """The same, as many as wanted and behind them the best of every kind."""
         data = problem.data
         base = data.predict(simulator)
         weighted = problem.covariance.inverse_times(problem.residual(base))
@@ -276,18 +277,19 @@ class Screening:
         places = [(promise, k) for promise in promises for k in range(len(promise.scores))]
         kept: list[Prospect] = []
         known: set[tuple[int, Profile | None]] = set()
-        kinds: set[str] = set()
+        behind: dict[str, int] = {}
         for place in np.lexsort((numbers, -scores)).tolist():
             promise, k = places[place]
             number, hypothesis, _ = promise.block.members[k]
             if (number, promise.profile) in known:
                 continue
             known.add((number, promise.profile))
-            if len(kept) >= most and hypothesis.name in kinds:
+            if behind.get(hypothesis.name, 0) == OF_KIND:
                 continue
             if any(hypothesis.same_place(other) for other in taken):
                 continue
-            kinds.add(hypothesis.name)
+            if len(kept) >= most:
+                behind[hypothesis.name] = behind.get(hypothesis.name, 0) + 1
             kept.append(promise.prospect(k, self._largest[number]))
         return kept
 

@@ -121,6 +121,7 @@ def _same_but_stops(one: Structure, other: Structure, stops: IntArray) -> bool:
     known = dict(by_name(other.arrays).items())
     for name, array in by_name(one.arrays).items():
         theirs = known[name]
+        # Stops go by their numbers in the first.
         if other.laws and len(theirs) != len(array):
             return False
         # What is no stop's stiffness, or where there is no stop no stop's at all.

@@ -70,7 +70,11 @@ class Centre:
             apart: effects of the simulation have the values that they had here.
         """
         first = self.near.structure
-        warms = first.same_geometry(structure) and np.array_equal(first.alpha, structure.alpha)
+        warms = (
+            first.same_geometry(structure)
+            and np.array_equal(first.alpha, structure.alpha)
+            and np.array_equal(first.host, structure.host)
+        )
         more = list(effects.values())[len(self.own) :]
         if apart and warms and self.of_geometry and not any(map(loading, more)):
             return self.loads
@@ -109,11 +113,11 @@ class Centre:
         if loads is not self.loads:
             few = _together(loads)
             return coefficients(few) @ respond(structure, few, structure.outputs)
-        q, few_patterns = self._together
+        q, few_patterns = self._few_loads
         return q @ respond_to(structure, few_patterns, structure.outputs)
 
     @cached_property
-    def _together(self) -> tuple[FloatArray, LoadArrays]:
+    def _few_loads(self) -> tuple[FloatArray, LoadArrays]:
         """Coefficients and patterns of the loads, those that go together as one."""
         few = _together(self.loads)
         return coefficients(few), patterns(self.near.structure, few)

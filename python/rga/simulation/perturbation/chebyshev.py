@@ -3,7 +3,7 @@
 The response of a structure to unit loads is a rational function of its parameters, smooth between
 stable structures. So its interpolant in Chebyshev points converges geometrically (Trefethen,
 Approximation Theory and Approximation Practice, 2013, chapter 8): each doubling of the points
-squares the factor by which what they miss falls, so that two doublings tell what the last has left.
+squares the factor by which what they miss falls, so that a few tell what the last has left.
 """
 
 from collections.abc import Callable
@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 
 #: Chebyshev points to begin with and at most
 FIRST, MOST = 3, 65
-#: share of the largest response that may be missed, and the part of it that an estimate may be
+#: share of a response that may be missed, and the part of this that an estimate of it may reach
 EXACT, SAFE = 1e-10, 0.01
+#: share of the largest response of its kind below which a response is not followed more closely
+SMALL = 0.01
 #: places at which that is looked for
 TRIED = 40
 #: values of a parameter that are few, and states on a line that are solved one by one
@@ -69,7 +71,7 @@ def along_line(
             each = np.stack([response_at(state) for state in states])
             part = np.einsum("tp,tpo->to", coefficients[0][rows], each[of_rows])
         else:
-            response = between(ends[0], ends[-1], response_at)
+            response = between(ends[0], ends[-1], response_at, structures[0].outputs["kind"])
             if response is None:
                 return None
             few = [slice(start, start + TOGETHER) for start in range(0, len(rows), TOGETHER)]
@@ -121,13 +123,17 @@ def positions(states: FloatArray) -> FloatArray | None:
 
 
 def between(
-    first: FloatArray, last: FloatArray, solve: Callable[[FloatArray], FloatArray]
+    first: FloatArray,
+    last: FloatArray,
+    solve: Callable[[FloatArray], FloatArray],
+    kinds: IntArray,
 ) -> Callable[[FloatArray], FloatArray] | None:
     """Responses by places between two states; None where few points do not suffice.
 
     Args:
         first, last: the parameters at both ends, float[parameters].
         solve: the response of parameters, float[patterns, outputs].
+        kinds: of the outputs, int[outputs]; those of one kind have one unit.
 
     Returns:
         A function from places float[n] in 0..1 to responses float[n, patterns, outputs].
@@ -149,15 +155,36 @@ def between(
         return found
 
     tried = np.linspace(0.0, 1.0, TRIED)
-    count, found, missed = FIRST, interpolant(FIRST), np.inf
+    count, found = FIRST, interpolant(FIRST)
+    missed: list[float] = []
     while count < MOST:
         count = 2 * count - 1
         before, found = found, interpolant(count)
         there = found(tried)
-        earlier = missed
-        missed = np.abs(there - before(tried)).max() / max(np.abs(there).max(), 1e-300)
-        # The first estimate would know nothing of how fast it falls.
-        left = missed * (missed / earlier) ** 2 if earlier < np.inf else missed
-        if missed <= EXACT or left <= SAFE * EXACT:
+        missed.append(float((np.abs(there - before(tried)).max(0) / _sizes(there, kinds)).max()))
+        if missed[-1] <= EXACT or _left(missed) <= SAFE * EXACT:
             return found
     return None
+
+
+def _sizes(responses: FloatArray, kinds: IntArray) -> FloatArray:
+    """How large responses are, float[patterns, outputs], given some, float[n, patterns, outputs].
+
+    What is small beside others of its kind under the same loads counts as a part of these: it may
+    be rounding.
+    """
+    sizes = np.abs(responses).max(0)
+    largest = np.zeros_like(sizes)
+    for kind in np.unique(kinds):
+        of_kind = kinds == kind
+        largest[:, of_kind] = sizes[:, of_kind].max(1, keepdims=True)
+    return np.asarray(np.maximum(np.maximum(sizes, SMALL * largest), 1e-300))
+
+
+def _left(missed: list[float]) -> float:
+    """What the last points are likely to miss, given what those before have missed in turn."""
+    if len(missed) < 3:
+        return missed[-1]
+    # By the slower of two falls: one alone may be quick by chance.
+    fall = max(missed[-1] / missed[-2], (missed[-2] / missed[-3]) ** 2)
+    return missed[-1] * fall**2
