@@ -2,8 +2,8 @@
 
 The response of a structure to unit loads is a rational function of its parameters, smooth between
 stable structures. So its interpolant in Chebyshev points converges geometrically (Trefethen,
-Approximation Theory and Approximation Practice, 2013, chapter 8): each doubling of the points
-squares the factor by which what they miss falls, so that a few tell what the last has left.
+Approximation Theory and Approximation Practice, 2013, chapter 8); points are doubled until what
+they add is rounding.
 """
 
 from collections.abc import Callable
@@ -19,11 +19,9 @@ if TYPE_CHECKING:
     from rga.simulation.dispatch import Request
 
 #: Chebyshev points to begin with and at most
-FIRST, MOST = 3, 65
-#: share of a response that may be missed, and the part of this that an estimate of it may reach
-EXACT, SAFE = 1e-10, 0.01
-#: share of the largest response of its kind below which a response is not followed more closely
-SMALL = 0.01
+FIRST, MOST = 9, 65
+#: share of the largest response that the last doubling may change
+EXACT = 1e-10
 #: places at which that is looked for
 TRIED = 40
 #: values of a parameter that are few, and states on a line that are solved one by one
@@ -71,7 +69,7 @@ def along_line(
             each = np.stack([response_at(state) for state in states])
             part = np.einsum("tp,tpo->to", coefficients[0][rows], each[of_rows])
         else:
-            response = between(ends[0], ends[-1], response_at, structures[0].outputs["kind"])
+            response = between(ends[0], ends[-1], response_at)
             if response is None:
                 return None
             few = [slice(start, start + TOGETHER) for start in range(0, len(rows), TOGETHER)]
@@ -123,17 +121,13 @@ def positions(states: FloatArray) -> FloatArray | None:
 
 
 def between(
-    first: FloatArray,
-    last: FloatArray,
-    solve: Callable[[FloatArray], FloatArray],
-    kinds: IntArray,
+    first: FloatArray, last: FloatArray, solve: Callable[[FloatArray], FloatArray]
 ) -> Callable[[FloatArray], FloatArray] | None:
     """Responses by places between two states; None where few points do not suffice.
 
     Args:
         first, last: the parameters at both ends, float[parameters].
         solve: the response of parameters, float[patterns, outputs].
-        kinds: of the outputs, int[outputs]; those of one kind have one unit.
 
     Returns:
         A function from places float[n] in 0..1 to responses float[n, patterns, outputs].
@@ -155,36 +149,12 @@ def between(
         return found
 
     tried = np.linspace(0.0, 1.0, TRIED)
-    count, found = FIRST, interpolant(FIRST)
-    missed: list[float] = []
+    count = FIRST
+    found = interpolant(count)
     while count < MOST:
         count = 2 * count - 1
         before, found = found, interpolant(count)
         there = found(tried)
-        missed.append(float((np.abs(there - before(tried)).max(0) / _sizes(there, kinds)).max()))
-        if missed[-1] <= EXACT or _left(missed) <= SAFE * EXACT:
+        if np.abs(there - before(tried)).max() <= EXACT * np.abs(there).max():
             return found
     return None
-
-
-def _sizes(responses: FloatArray, kinds: IntArray) -> FloatArray:
-    """How large responses are, float[patterns, outputs], given some, float[n, patterns, outputs].
-
-    What is small beside others of its kind under the same loads counts as a part of these: it may
-    be rounding.
-    """
-    sizes = np.abs(responses).max(0)
-    largest = np.zeros_like(sizes)
-    for kind in np.unique(kinds):
-        of_kind = kinds == kind
-        largest[:, of_kind] = sizes[:, of_kind].max(1, keepdims=True)
-    return np.asarray(np.maximum(np.maximum(sizes, SMALL * largest), 1e-300))
-
-
-def _left(missed: list[float]) -> float:
-    """What the last points are likely to miss, given what those before have missed in turn."""
-    if len(missed) < 3:
-        return missed[-1]
-    # By the slower of two falls: one alone may be quick by chance.
-    fall = max(missed[-1] / missed[-2], (missed[-2] / missed[-3]) ** 2)
-    return missed[-1] * fall**2
