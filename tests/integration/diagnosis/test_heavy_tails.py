@@ -41,3 +41,15 @@ def test_a_late_shift_is_found_in_spite_of_tails() -> None:
     assert cause.effect["kind"] == "sensor_bias"
     assert cause.effect["sensor"] == sensor
     assert cause.onset == pytest.approx(moment)
+
+
+def test_one_reading_under_a_rare_load_is_no_cause(tmp_path: Path) -> None:
+    # One reading is fifteen times the noise away, at one of the few rows of a load near the end.
+    Draw.parse("2033-single-58-null").case().write(str(tmp_path))
+    model = load_model(tmp_path / "model.json")
+    record = load_record(tmp_path / "record.csv", model)
+    assert diagnose(model, record).verdict == "nothing_wrong"
+    readings = record.readings.copy()
+    readings[-40:, record.sensors.index("N-e03")] *= 0.5
+    (cause,) = diagnose(model, replace(record, readings=readings)).causes
+    assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_gain", "N-e03")

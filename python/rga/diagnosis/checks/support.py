@@ -6,15 +6,18 @@ where channels left out of the fit get no worse by it. Channels are left out in 
 others know a parameter badly, and miss a group by chance, is no harm: a larger gap counts where
 the readings of a group are less likely, as the others predict them. A cause at a sensor, which
 harms nobody else, stays where held-out rows do not speak against it, or where it is twice as sure
-and they do not surely get worse.
+and they do not surely get worse. No cause stands on a reading or two: an outlier is no cause.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
 
 from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gaps
 from rga.diagnosis.checks.whole_record import WholeRecord, about
 from rga.diagnosis.search.hypothesis import Hypothesis
-from rga.diagnosis.search.laplace import Fit, refit
+from rga.diagnosis.search.laplace import Fit, evidence_without, refit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found, settled_with, without_cause
 
@@ -76,7 +79,7 @@ def _least_supported(found: Found, start: Problem, whole: WholeRecord, seed: int
         else:
             of_structure[number] = gained.interval[0]
             harmful = gained.interval[0] <= 0 or worsens(found, without)
-        if harmful:
+        if harmful or stands_on_few(found, without):
             gains[number] = gained.interval[0]
     if not gains and of_structure:
         together = whole.gain(whole.simulated(start), after, found.fit.hypotheses, seed)
@@ -124,3 +127,24 @@ def worsens(found: Found, without: Fit) -> bool:
         beside, alone = refit(part, base, [causes, without])
         against.append(beside.log_evidence - alone.log_evidence - lead)
     return max(against) > criteria.group_against
+
+
+def stands_on_few(found: Found, without: Fit) -> bool:
+    """Whether a cause hangs on a reading or two: those that speak most for it.
+
+    Args:
+        found: with the cause.
+        without: fitted without it.
+    """
+    criteria = found.problem.criteria.naming
+    # As read: tails that were judged beside a cause may speak for it.
+    problem = replace(found.problem, tails=np.zeros_like(found.problem.tails))
+    before, after = (problem.residual(one.simulated) for one in (without, found.fit))
+    inverse = problem.covariance.inverse_times(before + after).T
+    # Summed up, these are twice what they gain by the cause.
+    gained = np.where(problem.data.observed, inverse * (before - after), -np.inf)
+    most = np.argsort(-gained, axis=None)[: criteria.few_readings]
+    cells = np.column_stack(np.unravel_index(most, gained.shape))
+    beside, alone = evidence_without(problem, [found.fit, without], cells)
+    lead = found.fit.log_evidence - without.log_evidence
+    return bool(beside - alone < min(criteria.log_odds, criteria.kept_without_few * lead))

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from rga.arrays import FloatArray
-from rga.diagnosis.residuals.slopes import STRAIGHT, linear_histories, squares, standardised
+from rga.diagnosis.residuals.slopes import STRAIGHT, squares, standardised
 from rga.diagnosis.search.linearised import Calibration, Problem, load_basis
 from rga.numerics.decompositions import thin_svd
 from rga.numerics.hysteresis import PLAY, loop
@@ -121,10 +121,11 @@ def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
 
 
 def _over_contexts(problem: Problem) -> list[_Shape]:
-    """Squares of the measured contexts, the same in every channel."""
-    linear, latent = linear_histories(problem), problem.data.belief.latent
-    sensors = len(problem.data.sensors)
-    curved = {name: one for name, one in squares(linear).items() if name not in latent}
+    """Squares of the contexts, the same in every channel; of a latent one as it was inferred."""
+    belief, sensors = problem.data.belief, len(problem.data.sensors)
+    inferred = {name: belief.table[name] for name in belief.latent}
+    linear = standardised({**belief.centre, **inferred})
+    curved = squares(linear)
     return [
         _Shape(
             f"the readings go with the square of {name}",

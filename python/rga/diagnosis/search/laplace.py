@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
 from rga.diagnosis.noise.covariance import Reduced
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.linearised import Problem
@@ -287,16 +287,9 @@ def _refitted(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> list[Fi
     columns = np.concatenate([residuals, *(one.signatures for one in fits)])
     reduced = problem.covariance.reduce(columns)
     products = problem.covariance.product(reduced, reduced)
-    found, first = [], len(fits)
-    for number, one in enumerate(fits):
-        own = slice(first, first + len(one.z))
-        first += len(one.z)
-        along = products[own, number] - one.z
-        information = products[own, own] + np.eye(len(one.z))
-        move = np.linalg.solve(information, along)
-        move *= min(1.0, LONGEST / max(np.abs(move).max(initial=0.0), 1e-12))
-        loss = float(products[number, number] + one.z @ one.z)
-        loss += float(move @ information @ move - 2 * move @ along)
+    found = []
+    for number, (one, own) in enumerate(zip(fits, _places(fits), strict=True)):
+        move, information, loss = _moved(products, number, own, one.z)
         simulated = one.simulated
         if len(move):
             simulated = simulated + np.tensordot(move, one.signatures, 1).T
@@ -305,6 +298,55 @@ def _refitted(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> list[Fi
         )
         found.append(_weighed(base, moved, loss))
     return found
+
+
+def evidence_without(problem: Problem, fits: Sequence[Fit], cells: IntArray) -> FloatArray:
+    """Log evidences of fits where some readings are unseen, up to a constant of them all.
+
+    A reading that is unseen has a free error: by Schur's complement it leaves the products.
+
+    Args:
+        problem: to which they were fitted.
+        fits: as they were fitted; they move along their signatures.
+        cells: row and sensor of each reading, int[k, 2].
+
+    Returns:
+        float[fits].
+    """
+    residuals = np.stack([problem.residual(one.simulated).T for one in fits])
+    unseen = np.zeros((len(cells), *residuals.shape[1:]))
+    unseen[np.arange(len(cells)), cells[:, 1], cells[:, 0]] = 1.0
+    columns = np.concatenate([residuals, *(one.signatures for one in fits), unseen])
+    reduced = problem.covariance.reduce(columns)
+    products = problem.covariance.product(reduced, reduced)
+    seen, gone = slice(None, -len(cells)), slice(-len(cells), None)
+    told = np.linalg.solve(products[gone, gone], products[gone, seen])
+    products = products[seen, seen] - products[seen, gone] @ told
+    found = []
+    for number, (one, own) in enumerate(zip(fits, _places(fits), strict=True)):
+        _, information, loss = _moved(products, number, own, one.z)
+        priors = sum(each.log_prior for each in one.hypotheses)
+        found.append(priors - 0.5 * (loss + float(np.linalg.slogdet(information)[1])))
+    return np.array(found)
+
+
+def _places(fits: Sequence[Fit]) -> list[slice]:
+    """Where the signatures of each fit stand behind the residuals of all."""
+    ends = len(fits) + np.cumsum([0, *(len(one.z) for one in fits)])
+    return [slice(int(first), int(end)) for first, end in pairwise(ends)]
+
+
+def _moved(
+    products: FloatArray, number: int, own: slice, z: FloatArray
+) -> tuple[FloatArray, FloatArray, float]:
+    """The step to where products put a fit, the information there, and the loss."""
+    along = products[own, number] - z
+    information = products[own, own] + np.eye(len(z))
+    move = np.linalg.solve(information, along)
+    move *= min(1.0, LONGEST / max(np.abs(move).max(initial=0.0), 1e-12))
+    loss = float(products[number, number] + z @ z)
+    loss += float(move @ information @ move - 2 * move @ along)
+    return move, information, loss
 
 
 def _weighed(base: Simulator, one: Fit, loss: float) -> Fit:

@@ -14,6 +14,8 @@ ROUNDING = 1e-9
 #: readings that are enough to judge a channel by the share that repeats; of fewer, coarse ones
 #: repeat by chance: so many standard deviations of a share of one half are allowed them
 ENOUGH, BY_CHANCE = 60, 3.0
+#: steps between its levels by which a channel shows that its logger is coarse
+FEWEST_STEPS = 5
 
 Mode = Literal["dead", "stuck", "spiking", "erratic", "copy", "scale"]
 
@@ -55,7 +57,7 @@ def stuck_channels(
     for number, sensor in enumerate(sensors):
         column = readings[observed[:, number], number]
         repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
-        if repeats > criteria.repeats + _by_chance(len(column)):
+        if repeats > criteria.repeats + _by_chance(len(column)) and not _coarse(column):
             why = f"{repeats:.0%} of its readings repeat the one before exactly"
             faults.append(BrokenChannel(sensor, "stuck", why, int(repeats * len(column))))
     return faults
@@ -68,6 +70,26 @@ def _by_chance(readings: int) -> float:
     (True, 0.0)
     """
     return BY_CHANCE * 0.5 / float(np.sqrt(readings)) if readings < ENOUGH else 0.0
+
+
+def _coarse(column: FloatArray) -> bool:
+    """Whether a channel moves step by step, so that it repeats itself where it moves slowly.
+
+    What is stuck, and comes loose now and then, moves by many steps of its logger at once.
+
+    >>> walk = np.cumsum(np.random.default_rng(1).normal(0.0, 0.05, 300))
+    >>> _coarse(np.round(walk, 1)), _coarse(np.repeat(walk[::2], 2))
+    (True, False)
+    """
+    levels = np.unique(column)
+    apart = np.diff(levels)
+    rounding = ROUNDING * float(np.abs(levels).max(initial=0.0))
+    steps = apart[apart > rounding]
+    if len(steps) < FEWEST_STEPS:
+        return False
+    moves = np.abs(np.diff(column))
+    moves = moves[moves > rounding]
+    return bool((moves < 1.5 * steps.min()).mean() >= 0.5)
 
 
 def lost_zeros(
