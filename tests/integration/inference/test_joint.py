@@ -9,11 +9,14 @@ import pytest
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference import Rows, Unknowns, infer_jointly
+from rga.inference.joint.measured_contexts import MeasuredContexts
+from rga.inference.joint.structural_parameters import GROUP
 from rga.inference.map.identifiability import BLIND, unseen_share
 from rga.inference.map.posterior_mode import posterior_mode
 from rga.inference.map.standard_units import standard
 from rga.model import Model, read_model, write_model
 from rga.simulation import Simulator
+from rga_bench.synthetic.bridges.case_study import case_study_bridge
 
 
 @pytest.fixture(scope="module")
@@ -108,8 +111,8 @@ def other(model: Model) -> Model:
     unknowns = Unknowns(model)
     values = unknowns.centre.copy()
     names = [part.name for part in unknowns.parts]
-    values[names.index("stiffness of bottom chord")] = -0.15
-    values[names.index("stiffness of diagonals")] = 0.1
+    values[names.index("stiffness of bottom chord")] = np.log10(0.85)
+    values[names.index("stiffness of diagonals")] = np.log10(1.1)
     return unknowns.at(values)
 
 
@@ -119,7 +122,7 @@ def test_unknowns_and_contexts_are_found_without_a_label(model: Model, other: Mo
     found = infer_jointly(unknowns, readings, noise, drawn(model, 300, 3))
     names = [part.name for part in unknowns.parts]
     chord = found.values[names.index("stiffness of bottom chord")]
-    assert -0.2 < chord < -0.08
+    assert -0.2 < 10**chord - 1 < -0.08
     twin = Simulator(model)
     alone = posterior_mode(
         lambda c: twin.predict(dict(zip(model.context, c.T, strict=True))),
@@ -296,6 +299,64 @@ def test_intervals_of_other_rows_hold_their_contexts(model: Model, other: Model)
     np.testing.assert_allclose(mode.spread[0], scale, rtol=0.2)
     with pytest.raises(InputError, match="readings have the shape"):
         found.infer(readings[:, :3])
+
+
+def test_intervals_hold_contexts_of_structures_as_the_priors_say(model: Model) -> None:
+    unknowns, noise, source = Unknowns(model), noise_of(model), drawn(model, 300, 27)
+    held = []
+    for seed in range(5):
+        away = np.random.default_rng(seed).standard_normal(len(unknowns.centre))
+        values = unknowns.centre + unknowns.spread * away
+        built = unknowns.at(np.clip(values, unknowns.low, unknowns.high))
+        rows = measured(built, drawn(model, 80, 40 + seed), 50 + seed)
+        contexts = drawn(model, 60, 60 + seed)
+        found = infer_jointly(unknowns, rows, noise, source)
+        mode = found.infer(measured(built, contexts, 70 + seed))
+        held.append(np.abs(mode.value - contexts) <= 1.645 * mode.spread)
+    assert 0.85 < np.mean(held) < 0.97
+
+
+def test_days_without_crowds_leave_the_structure_as_it_is(model: Model) -> None:
+    """Contexts that fill a small part of their ranges are no sign of a stiffer structure."""
+    low, high = np.array([one.range for one in model.context.values()]).T
+    contexts = low + (high - low) * (0.1 + 0.2 * (drawn(model, 160, 80) - low) / (high - low))
+    unknowns = Unknowns(model)
+    readings = measured(model, contexts, 81)
+    found = infer_jointly(unknowns, readings, noise_of(model), drawn(model, 300, 82))
+    stiffness = [k for k, part in enumerate(unknowns.parts) if part.name.startswith("stiffness")]
+    # How stiff all of it is, and how large all loads are, no row tells apart: the prior does.
+    assert np.abs(10.0 ** found.values[stiffness] - 1.0).max() < 2 * GROUP
+    crowd = found.rows.contexts[:, 0] / contexts[:, 0]
+    assert np.median(crowd) == pytest.approx(1.0, abs=2 * GROUP)
+
+
+def test_contexts_that_instruments_read_are_taken_as_read(model: Model, other: Model) -> None:
+    contexts, noise = drawn(model, 40, 83), noise_of(model)
+    contexts[:5, 0] = 5.0  # beyond its range
+    rows, source = measured(other, contexts, 84), drawn(model, 300, 85)
+    read = np.full_like(contexts, np.nan)
+    read[:, 0] = contexts[:, 0] + 0.1 * np.random.default_rng(86).standard_normal(40)
+    read[7, 0] = np.nan
+    ranges = np.array([one.range for one in model.context.values()])
+    instruments = MeasuredContexts.of(read, np.array([0.1, 0.0, 0.0, 0.0]), ranges)
+    unknowns = Unknowns(model)
+    found = infer_jointly(unknowns, rows, noise, source, measured=instruments)
+    assert np.abs(found.rows.contexts[:, 0] - contexts[:, 0]).max() < 0.3
+    chord = found.values[[part.name for part in unknowns.parts].index("stiffness of bottom chord")]
+    assert 10.0**chord == pytest.approx(0.85, abs=0.03)
+    again = found.infer(rows, instruments)
+    assert np.abs(again.value[:, 0] - contexts[:, 0]).max() < 0.3
+    blind = found.infer(np.full_like(rows, np.nan), instruments)
+    known = np.isfinite(read[:, 0])
+    np.testing.assert_allclose(blind.value[known, 0], read[known, 0], atol=0.02)
+    np.testing.assert_allclose(blind.spread[known, 0], 0.1, rtol=0.05)
+
+
+def test_a_group_in_the_middle_of_a_bridge_is_one_unknown() -> None:
+    """The bridge of the case study: trusses on both sides, cross beams between them."""
+    unknowns = Unknowns(read_model(case_study_bridge().model, "case study"))
+    assert len(set(unknowns.names)) == len(unknowns.names)
+    assert unknowns.names.count("stiffness of cross beams") == 1
 
 
 def test_an_earlier_result_is_taken_in_one_way(model: Model) -> None:

@@ -346,7 +346,7 @@ def _moved(
     move *= min(1.0, LONGEST / max(np.abs(move).max(initial=0.0), 1e-12))
     loss = float(products[number, number] + z @ z)
     loss += float(move @ information @ move - 2 * move @ along)
-    return move, information, loss
+    return np.asarray(move), information, loss
 
 
 def _weighed(base: Simulator, one: Fit, loss: float) -> Fit:

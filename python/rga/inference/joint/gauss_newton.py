@@ -1,12 +1,17 @@
 """Gauss-Newton steps of the contexts of all rows and the unknowns of the structure together."""
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
+from rga.inference.joint.measured_contexts import MeasuredContexts
+from rga.inference.joint.population import Population
 from rga.inference.joint.sensor_errors import CorrectedTwin
-from rga.inference.joint.structural_parameters import Unknowns
+from rga.inference.joint.structural_parameters import BENT, Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import posterior_mode
 from rga.inference.map.standard_units import EDGE, standard
@@ -20,10 +25,10 @@ TAILS = 3.0
 #: what parameters have changed by since an earlier result, in units of their priors; what is
 #: thought of it at first, of unknowns and of sensors
 CHANGE, FIRST = 0.03, (0.5, 10.0)
-#: variance that the contexts of the measured rows may have, in that of their ranges
-POPULATION = (0.05, 1.5)
-#: shares of a step that are tried; share of the misfit below which a step is not worth another
-SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 1e-3
+#: shares of a step that are tried; gain in misfit below which a step is not worth another
+SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 0.5
+#: rows by which it is seen how derivatives change with unknowns
+SAMPLE = 32
 #: readings that a sensor's own noise is held against that of all by, and the first guess [spreads]
 HELD_BY, GUESS = 30.0, 5.0
 
@@ -84,6 +89,7 @@ class Search:
         noise: standard deviation of each sensor's noise, float[sensors].
         load_tests: measured rows whose contexts are known.
         prior: of the parameters.
+        measured: contexts that instruments read at the measured rows.
 
     Attributes:
         contexts: of measured rows, then of load tests, float[rows, contexts].
@@ -101,23 +107,27 @@ class Search:
         noise: FloatArray,
         load_tests: Rows | None,
         prior: JointPrior,
+        measured: MeasuredContexts,
     ) -> None:
         self.unknowns, self.noise, self.many = unknowns, noise, len(readings)
-        ranges = np.array([one.range for one in unknowns.model.context.values()])
+        self.measured = measured
+        ranges = measured.within(np.array([one.range for one in unknowns.model.context.values()]))
         self.ranges = ranges
         self.middle, self.scale = standard(ranges)
         known = load_tests or Rows(np.zeros((0, len(ranges))), np.zeros((0, len(noise))))
         self.readings = np.vstack([readings, known.readings])
         self.seen = np.isfinite(self.readings)
-        self.contexts = np.vstack([np.tile(self.middle, (self.many, 1)), known.contexts])
+        self.read = np.isfinite(np.vstack([measured.values, np.full_like(known.contexts, np.nan)]))
+        begin = np.where(np.isfinite(measured.values), measured.values, self.middle)
+        self.contexts = np.vstack([begin, known.contexts])
+        self.told = (self.contexts - self.middle) / self.scale, measured.noise / self.scale
         self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
         self.count = len(unknowns.centre)
         self.unit = np.concatenate([unknowns.spread, np.full(len(noise), GAIN), OFFSET * noise])
         self.prior, self.centre, self.tails = prior, prior.mean, TAILS
         self._suppose(prior.first**2)
         self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
-        self.population = np.zeros(len(ranges)), np.ones(len(ranges))
-        self.seen_population = self.population
+        self.population = Population.unknown(len(ranges))
         self.volume = np.zeros(len(self.unit))
 
     def begin(self, value: FloatArray, variance: FloatArray) -> None:
@@ -138,23 +148,35 @@ class Search:
 
     def _twin(self, value: FloatArray) -> CorrectedTwin:
         unknowns, gains, offsets = self.split(value)
-        return CorrectedTwin(Simulator(self.unknowns.at(unknowns)), gains, offsets)
+        simulator = Simulator(self.unknowns.at(unknowns))
+        return CorrectedTwin(simulator, gains, offsets, time=self.unknowns.time)
 
-    def place(self, source: FloatArray) -> None:
-        """Contexts of the measured rows anew, from two starts, the unknowns as they stand."""
-        twin = self.twin
-        self.population = self.seen_population
+    def place(self, source: FloatArray, near: bool) -> None:
+        """Contexts of the measured rows anew, from two starts, the unknowns as they stand.
+
+        Args:
+            source: contexts to start from, float[m, contexts].
+            near: the unknowns are about right. Far from them the contexts that they give say
+                nothing of where these lie, and all of the ranges is thought possible.
+        """
+        self.near = near
+        twin = self.measured.beside(self.twin)
         simulated = Rows(source, twin.simulate(source))
-        measured = self.readings[: self.many]
-        guess = QuadraticGuess(simulated, np.sqrt(self.variance), self.ranges, seed=0)
+        read = self.measured.behind(self.readings[: self.many])
+        variance = self.measured.behind_noise(np.sqrt(self.variance)) ** 2
+        guess = QuadraticGuess(simulated, np.sqrt(variance), self.ranges, seed=0)
         mode, kept = (
             posterior_mode(
-                twin.simulate, twin.jacobian, measured, np.diag(self.variance), self.ranges, start
+                twin.simulate, twin.jacobian, read, np.diag(variance), self.ranges, start
             )
-            for start in (guess(measured), self.contexts[: self.many])
+            for start in (guess(read), self.contexts[: self.many])
         )
         better = (mode.misfit < kept.misfit)[:, None]
         self.contexts[: self.many] = np.where(better, mode.value, kept.value)
+        if near:
+            inside = np.where(better[:, None], mode.covariance, kept.covariance)
+            z = (self.contexts[: self.many] - self.middle) / self.scale
+            self.population = Population.of(z, np.diagonal(inside, axis1=1, axis2=2))
         self._weigh(self._residual(self.value, self.contexts), 0.0)
         self.volume = self._volume_slope()
 
@@ -163,45 +185,66 @@ class Search:
 
         The mode over contexts and unknowns is off: contexts that vary less please their prior, so
         that a structure that is too soft would be found (Neyman and Scott, Econometrica 16, 1948).
-        The likelihood of the unknowns alone has the determinant beside it (Laplace).
+        The likelihood of the unknowns alone has the determinant beside it (Laplace), at the
+        contexts that each value of them would give.
         """
-        here, slopes = self.unknowns.sample
+        contexts, here, by_unknowns, by_contexts = self._bent
         root = self.scale / np.sqrt(self.variance)[:, None]
-        here, slopes = here * root, slopes * root
+        here, by_unknowns, by_contexts = here * root, by_unknowns * root, by_contexts * root
+        width = np.where(self.read.any(axis=0), self.told[1], self.population.width)
         turned = here.transpose(0, 2, 1)
-        spread = np.linalg.inv(turned @ here + np.diag(1.0 / self.population[1] ** 2))
-        back = here @ spread
-        of_unknowns = np.einsum("nsc,knsc->k", back, slopes, optimize=True)
+        back = here @ np.linalg.inv(turned @ here + np.diag(1.0 / width**2))
+        of_unknowns = np.einsum("nsc,knsc->k", back, by_unknowns, optimize=True)
         of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
         slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])
-        return np.asarray(slope * self.many / len(here))
+        of_contexts = np.einsum("nsc,jnsc->nj", back, by_contexts, optimize=True)
+        slope -= np.einsum("nj,njk->k", of_contexts, self._follow()[contexts], optimize=True)
+        return np.asarray(slope * self.many / len(contexts))
+
+    @cached_property
+    def _bent(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+        """Some rows, derivatives by contexts there, and how unknowns and contexts change these."""
+        chosen = np.unique(np.linspace(0, self.many - 1, SAMPLE).astype(int))
+        contexts, moves = self.contexts[chosen], np.diag(BENT * self.scale)
+        here, by_unknowns = self.unknowns.bend(contexts)
+        there = [self.unknowns.slopes(contexts + move) for move in moves]
+        return chosen, here, by_unknowns, (np.stack(there) - here) / BENT
+
+    def _follow(self) -> FloatArray:
+        """What contexts lose by a parameter, in their units, float[rows, contexts, parameters]."""
+        _, slopes, near = self._linear()
+        turned = near.transpose(0, 2, 1)
+        own = turned @ near + np.eye(near.shape[2]) / self._before()[1][:, :, None] ** 2
+        return np.asarray(np.linalg.solve(own, turned @ slopes))
 
     def step(self) -> bool:
         """A step of contexts and parameters together; False where no more is to be gained."""
-        change, moved = self.solve()
-        here = self._misfit(self.value, self.contexts)
+        change, moved, of_population = self.solve()
+        here = self._misfit(self.value, self.contexts, self.population)
         low, high = self._bounds()
         for share in SHARES:
             value = np.clip(self.value + share * self.unit * change, low, high)
             contexts = self.contexts + share * self.scale * moved
             contexts = np.clip(contexts, *self.ranges.T)
             contexts = np.where(self.free, contexts, self.contexts)
-            there = self._misfit(value, contexts)
+            population = self.population.moved(share * self.near * of_population)
+            there = self._misfit(value, contexts, population)
             if there < here:
-                self.value, self.contexts = value, contexts
+                self.value, self.contexts, self.population = value, contexts, population
                 self._weigh(self._residual(value, contexts), self.freedom)
                 self._trust()
-                return here - there > WORTH * here
+                return here - there > WORTH
         return False
 
-    def solve(self) -> tuple[FloatArray, FloatArray]:
-        """Change of the parameters and of the contexts, in their units.
+    def solve(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Change of the parameters, of the contexts and of their population, in their units.
 
-        The normal equations of the parameters are left by eliminating the contexts of each row.
+        The normal equations of parameters and population are left by eliminating the contexts of
+        each row.
         """
         off, slopes, near = self._linear()
         z = (self.contexts - self.middle) / self.scale
-        middle, width = self.population
+        middle, width = self._before()
         turned = near.transpose(0, 2, 1)
         pull = (turned @ off[:, :, None])[:, :, 0] - (z - middle) / width**2
         pull = np.where(self.free, pull, 0.0)
@@ -209,25 +252,36 @@ class Search:
         held = (np.abs(z) > EDGE * (1.0 - 1e-9)) & (pull * z > 0)
         near, pull = np.where(held[:, None], 0.0, near), np.where(held, 0.0, pull)
         turned = near.transpose(0, 2, 1)
-        own = turned @ near + np.diag(1.0 / width**2)
-        cross = turned @ slopes
-        solved = np.linalg.solve(own, np.concatenate([cross, pull[:, :, None]], axis=2))
-        through, alone = solved[:, :, :-1], solved[:, :, -1]
+        own = turned @ near + np.eye(z.shape[1]) / width[:, :, None] ** 2
+        inside = np.asarray(np.linalg.inv(own))
+        self.inside = np.diagonal(inside, axis1=1, axis2=2)
+        population = self.population.equations(z, self.inside, self._of_population)
+        beside = np.where(held[:, :, None], 0.0, population.cross)
+        cross = np.concatenate([turned @ slopes, beside], axis=2)
+        through, alone = inside @ cross, (inside @ pull[:, :, None])[:, :, 0]
 
+        count = slopes.shape[2]
         table, flat = (part.reshape(-1, part.shape[2]) for part in (slopes, cross))
-        whole = table.T @ table + self.precision - flat.T @ through.reshape(flat.shape)
-        right = table.T @ off.ravel() - flat.T @ alone.ravel()
-        right -= self.precision @ self._standard(self.value) + self.volume
-        self.covariance = np.linalg.inv(whole)
-        change = self.covariance @ right
+        whole = block_diag(table.T @ table + self.precision, population.own)
+        whole -= flat.T @ through.reshape(flat.shape)
+        down = table.T @ off.ravel() - self.precision @ self._standard(self.value) - self.volume
+        right = np.concatenate([down, population.down]) - flat.T @ alone.ravel()
+        covariance = np.linalg.inv(whole)
+        self.covariance = covariance[:count, :count]
+        change = covariance @ right
 
-        self._see_population(np.asarray(np.linalg.inv(own)), through, z)
+        self._see_freedom(width)
         self.slopes = slopes * np.sqrt(self.variance)[:, None]
         # What is wrong with a model stays wrong from row to row: each sensor is one cluster of rows
         # (Liang and Zeger, Biometrika 73, 1986).
-        pulls = np.einsum("nsp,ns->sp", slopes - near @ through, off)
+        pulls = np.einsum("nsp,ns->sp", slopes - near @ through[:, :, :count], off)
         self.pull = pulls.T @ pulls
-        return change, alone - (through @ change)
+        return change[:count], alone - through @ change, change[count:]
+
+    @property
+    def _of_population(self) -> NDArray[np.bool_]:
+        """Contexts by which the population is found, bool[rows, contexts]."""
+        return np.asarray(self.free & ~self.read)
 
     def _linear(self) -> LinearisedRows:
         unknowns, gains, offsets = self.split(self.value)
@@ -241,21 +295,10 @@ class Search:
         heavy = weight[:, :, None]
         return LinearisedRows(off * weight, slopes * self.unit * heavy, near * self.scale * heavy)
 
-    def _see_population(self, inside: FloatArray, through: FloatArray, z: FloatArray) -> None:
-        """Where contexts of measured rows lie, and of how many readings they take the freedom.
-
-        Args:
-            inside: covariance of contexts in their units, were parameters known.
-            through: how contexts follow parameters.
-            z: contexts in their units.
-        """
-        rows = slice(0, self.many)
-        spread = inside + through @ self.covariance @ through.transpose(0, 2, 1)
-        unsure = np.diagonal(spread[rows], axis1=1, axis2=2).mean(axis=0)
-        variance = z[rows].var(axis=0) + unsure
-        self.seen_population = z[rows].mean(axis=0), np.sqrt(np.clip(variance, *POPULATION))
+    def _see_freedom(self, width: FloatArray) -> None:
+        """Of how many readings contexts, of these prior deviations, and parameters take freedom."""
         # Of as many readings the parameters take the freedom that the priors do not.
-        taken = (z.shape[1] - np.trace(inside, axis1=1, axis2=2))[rows].sum()
+        taken = (1.0 - self.inside / width**2)[: self.many].sum()
         left = np.sum(self.precision * self.covariance)
         self.freedom = float(taken + len(self.unit) - left)
 
@@ -263,13 +306,21 @@ class Search:
         simulated = self._twin(value).simulate(contexts)
         return np.where(self.seen, self.readings - simulated, 0.0)
 
-    def _misfit(self, value: FloatArray, contexts: FloatArray) -> float:
+    def _misfit(self, value: FloatArray, contexts: FloatArray, population: Population) -> float:
         off = self._residual(value, contexts)
-        middle, width = self.population
+        middle, width = self._before(population)
         z = np.where(self.free, ((contexts - self.middle) / self.scale - middle) / width, 0.0)
         at = self._standard(value)
         prior = (z**2).sum() + at @ self.precision @ at + 2.0 * self.volume @ at
+        prior += population.cost(self.inside, self._of_population, self.population)
         return float((off**2 / self.variance).sum() + prior)
+
+    def _before(self, population: Population | None = None) -> tuple[FloatArray, FloatArray]:
+        """Prior means and deviations of contexts in their units, float[rows, contexts]."""
+        of = population or self.population
+        pairs = zip(self.told, (of.mean, of.width), strict=True)
+        middle, width = (np.where(self.read, read, others) for read, others in pairs)
+        return middle, width
 
     def _standard(self, value: FloatArray) -> FloatArray:
         """What parameters differ by from their prior means, in their units."""
@@ -278,6 +329,9 @@ class Search:
     def _weigh(self, off: FloatArray, freedom: float) -> None:
         """What noise and model error are left, sensor by sensor, never below the stated noise."""
         counts = self.seen.sum(axis=0)
+        if not self.near:
+            # What is always the same may be an offset yet to be found, and is no noise.
+            off = np.where(self.seen, off - off.sum(axis=0) / np.maximum(counts, 1), 0.0)
         left = max(1.0 - freedom / max(counts.sum(), 1), 0.2)
         own = (off**2).sum(axis=0) / self.noise**2 / left
         all_ = own.sum() / max(counts.sum(), 1)

@@ -19,6 +19,7 @@ from rga.inference.joint.checked_input import (
     table_of,
 )
 from rga.inference.joint.gauss_newton import JointPrior, Search
+from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
@@ -60,22 +61,26 @@ class Joint:
     rows: Rows
     source: FloatArray
 
-    def infer(self, readings: FloatArray) -> Mode:
+    def infer(self, readings: FloatArray, measured: MeasuredContexts | None = None) -> Mode:
         """Contexts of rows, of others than these as well, with their standard deviations.
 
         Args:
             readings: float[n, sensors], NaN where missing.
+            measured: contexts that instruments read at these rows.
 
         Raises:
             InputError: a table of another shape, or no numbers.
         """
-        table, twin = table_of("readings", readings, len(self.gains)), self.twin
+        table = table_of("readings", readings, len(self.gains))
+        known = measured or MeasuredContexts.none(len(table), self.source.shape[1])
+        twin = known.beside(self.twin)
+        ranges = known.within(twin.twin.ranges)
         simulated = Rows(self.source, twin.simulate(self.source))
-        deviation = np.sqrt(np.diagonal(self.covariance))
-        guess = QuadraticGuess(simulated, deviation, twin.ranges, seed=0)
-        return posterior_mode(
-            twin.simulate, twin.jacobian, table, self.covariance, twin.ranges, guess(table)
-        )
+        noise = known.behind_noise(np.sqrt(np.diagonal(self.covariance)))
+        covariance = np.diag(noise**2)
+        covariance[: len(self.gains), : len(self.gains)] = self.covariance
+        guess, read = QuadraticGuess(simulated, noise, ranges, seed=0), known.behind(table)
+        return posterior_mode(twin.simulate, twin.jacobian, read, covariance, ranges, guess(read))
 
     @property
     def parameters(self) -> FloatArray:
@@ -86,7 +91,7 @@ class Joint:
     def twin(self) -> CorrectedTwin:
         """The model with its unknowns as they were found."""
         simulator = Simulator(self.unknowns.at(self.values))
-        return CorrectedTwin(simulator, self.gains, self.offsets)
+        return CorrectedTwin(simulator, self.gains, self.offsets, time=self.unknowns.time)
 
     @property
     def covariance(self) -> FloatArray:
@@ -101,6 +106,7 @@ def infer_jointly(
     source: FloatArray,
     *,
     load_tests: Rows | None = None,
+    measured: MeasuredContexts | None = None,
     start: Joint | None = None,
     prior: Joint | None = None,
     progress: Callable[[float], None] | None = None,
@@ -117,6 +123,7 @@ def infer_jointly(
         noise: standard deviation of each sensor's noise, float[sensors].
         source: contexts to start from, float[m, contexts].
         load_tests: measured rows whose contexts are known.
+        measured: contexts that instruments read at the measured rows.
         start: an earlier result, about which unknowns are looked for again. Its rows are among the
             measured ones: a sensor that has changed since weighs less, and is not corrected.
         prior: an earlier result, taken as prior: the rows that it came from need not be
@@ -136,13 +143,14 @@ def infer_jointly(
     known = JointPrior.fresh(unknowns, len(noise))
     if prior is not None:
         known = JointPrior.later(prior.parameters, prior.sure, len(prior.values))
-    search = Search(unknowns, readings, noise, load_tests, known)
+    read = measured or MeasuredContexts.none(len(readings), source.shape[1])
+    search = Search(unknowns, readings, noise, load_tests, known, read)
     rounds, steps = (ROUNDS, STEPS) if prior is None else LATER
     if start is not None:
         search.begin(start.parameters, start.variance)
         rounds, steps = 1, AGAIN
     for number in range(rounds):
-        search.place(source)
+        search.place(source, near=number > 0 or start is not None)
         for step in range(steps):
             if progress is not None:
                 progress((number + step / steps) / rounds)

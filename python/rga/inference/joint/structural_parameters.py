@@ -1,8 +1,9 @@
 """What a structure may have otherwise than its model says, as parameters to be inferred."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain, count
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,12 @@ from scipy.stats import qmc
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.joint.joint_stiffness_surrogate import BENDING, with_bending
+from rga.inference.map.array_simulator import TwinOnArrays
 from rga.model import Model, model_content, read_model
 from rga.model.parameter import listed
 from rga.simulation import Simulator
 
-#: spread of the stiffness of a whole group of members: decks, joints; and of a stretch of it [-]
+#: relative spread of the stiffness of a whole group of members (decks, joints), and of a stretch
 GROUP, STRETCH = 0.08, 0.04
 #: stretches that a group of so many members is cut into, along the bridge
 STRETCHES, MANY = 5, 12
@@ -75,24 +77,27 @@ class Unknowns:
 
     Args:
         model: as it was given.
+        time: clock [s] that effects with an onset go by; None where there are none.
 
     Raises:
         InputError: the model is one that was found with its unknowns.
 
     Attributes:
         model: as it was given.
+        time: the clock.
         parts: the unknowns.
         centre, spread: of their priors, float[unknowns].
         low, high: bounds, float[unknowns].
     """
 
-    def __init__(self, model: Model) -> None:
-        self.model = model
+    def __init__(self, model: Model, time: float | None = None) -> None:
+        self.model, self.time = model, time
         self._bending = with_bending(model)
-        self.parts = [
+        parts = [
             *_stretches(model), *_joints(self._bending), *_bearings(model), *_settlements(model),
             *_sides(model),
         ]  # fmt: skip
+        self.parts = _apart(parts, model.context)
         twice = [part.name for part in self.parts if part.name in model.effects]
         if twice or BENDING in model.groups:
             raise InputError(
@@ -116,11 +121,6 @@ class Unknowns:
         share = qmc.Sobol(len(low), scramble=True, rng=0).random(SAMPLE)
         return np.asarray(low + (high - low) * share)
 
-    @cached_property
-    def sample(self) -> tuple[FloatArray, FloatArray]:
-        """`bend` at contexts spread over their ranges."""
-        return self.bend(self.spread_contexts)
-
     def at(self, values: FloatArray) -> Model:
         """The model extended by the unknowns at values, float[unknowns]."""
         content = model_content(self._bending)
@@ -143,7 +143,7 @@ class Unknowns:
         Returns:
             float[n, sensors], float[n, sensors, contexts] and float[n, sensors, unknowns].
         """
-        count, rates = contexts.shape[1], self._rates
+        many, rates = contexts.shape[1], self._rates
         linear = [number for number, part in enumerate(self.parts) if part.linear]
         driven = [number for number, part in enumerate(self.parts) if not part.linear]
         readings = self.predict(contexts, values)
@@ -155,7 +155,7 @@ class Unknowns:
         there = self.predict(one, moved)
         by_unknowns[:, :, linear] = (there[1:] - there[0]).T / self.spread[linear]
         slopes = self._of_driven.jacobian(self._table(contexts, values, driven))
-        by_contexts, by_unknowns[:, :, driven] = slopes[:, :, :count].copy(), slopes[:, :, count:]
+        by_contexts, by_unknowns[:, :, driven] = slopes[:, :, :many].copy(), slopes[:, :, many:]
         for number, followed in rates.items():
             by_contexts[:, :, followed] += by_unknowns[:, :, number] * values[number]
             by_unknowns[:, :, number] *= contexts[:, None, followed]
@@ -173,7 +173,8 @@ class Unknowns:
         for number, followed in self._rates.items():
             columns[:, number] *= contexts[:, followed]
         names = [*self.model.context, *(self.parts[number].name for number in chosen)]
-        return dict(zip(names, np.hstack([contexts, columns[:, chosen]]).T, strict=True))
+        table = dict(zip(names, np.hstack([contexts, columns[:, chosen]]).T, strict=True))
+        return table if self.time is None else {**table, "time": np.full(len(contexts), self.time)}
 
     @cached_property
     def _rates(self) -> dict[int, int]:
@@ -181,6 +182,14 @@ class Unknowns:
         names = list(self.model.context)
         followed = {number: part.follows for number, part in enumerate(self.parts)}
         return {number: names.index(name) for number, name in followed.items() if name is not None}
+
+    def slopes(self, contexts: FloatArray, step: FloatArray | float = 0.0) -> FloatArray:
+        """Derivatives by contexts, float[n, contexts], a step away from the unknowns' centre.
+
+        float[n, sensors, contexts].
+        """
+        simulator = Simulator(self.at(self.centre + step))
+        return TwinOnArrays(simulator, time=self.time).jacobian(contexts)
 
     def bend(self, contexts: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives by contexts, and how they change with each unknown about its centre.
@@ -192,14 +201,9 @@ class Unknowns:
             float[n, sensors, contexts] and float[unknowns, n, sensors, contexts], the latter per
             prior spread of the unknown.
         """
-
-        def slopes(values: FloatArray) -> FloatArray:
-            table = dict(zip(self.model.context, contexts.T, strict=True))
-            return Simulator(self.at(values)).jacobian(table)
-
-        here = slopes(self.centre)
+        here = self.slopes(contexts)
         moved = [
-            np.zeros_like(here) if part.linear else slopes(self.centre + step) - here
+            np.zeros_like(here) if part.linear else self.slopes(contexts, step) - here
             for part, step in zip(self.parts, np.diag(BENT * self.spread), strict=True)
         ]
         return here, np.stack(moved) / BENT
@@ -220,6 +224,17 @@ class Unknowns:
             driven = {"context": part.name, **part.driven}
             content["effects"][part.name] = {**part.effect, part.key: driven}
         return Simulator(read_model(content, "the model with its unknowns"))
+
+
+def _apart(parts: Sequence[StructuralParameter], taken: Iterable[str]) -> list[StructuralParameter]:
+    """The parameters, one that has the name of another or of a context numbered."""
+    seen, found = set(taken), []
+    for part in parts:
+        tried = (f"{part.name} ({number})" for number in count(2))
+        name = next(one for one in chain([part.name], tried) if one not in seen)
+        seen.add(name)
+        found.append(replace(part, name=name))
+    return found
 
 
 def _stretches(model: Model) -> Iterator[StructuralParameter]:
@@ -245,14 +260,18 @@ def _stretches(model: Model) -> Iterator[StructuralParameter]:
             share = (middle[along] - lowest[along]) / width[along]
             cut.setdefault(min(int(cuts * share), cuts - 1), []).append(name)
         for number, names in sorted(cut.items()):
-            if len(groups) > len(first) or cuts > 1:
+            # A group in the middle that is not cut is the whole group.
+            if cuts > 1 or group not in first:
                 words = f", stretch {number + 1}" if cuts > 1 else ""
                 yield _stiffness(f"stiffness of {group}{words}", {"member": names}, STRETCH)
 
 
 def _stiffness(name: str, place: dict[str, Any], spread: float) -> StructuralParameter:
-    effect = {"kind": "member_stiffness", **place}
-    return StructuralParameter(name, effect, "factor", {"minus": -1.0}, 0.0, spread, (-0.6, 1.5))
+    # Contexts follow the logarithm of a stiffness in proportion, and so does their volume.
+    effect, bounds = {"kind": "member_stiffness", **place}, (-0.4, 0.4)
+    return StructuralParameter(
+        name, effect, "factor", {"log10": True}, 0.0, spread / float(np.log(10.0)), bounds
+    )
 
 
 def _joints(model: Model) -> Iterator[StructuralParameter]:

@@ -1,6 +1,6 @@
 """A simulator on tables of contexts as numbers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,9 +14,11 @@ class TwinOnArrays:
 
     Attributes:
         simulator: of the model.
+        time: clock [s] that effects with an onset go by; None where there are none.
     """
 
     simulator: Simulator
+    time: float | None = field(default=None, kw_only=True)
 
     @property
     def ranges(self) -> FloatArray:
@@ -36,4 +38,5 @@ class TwinOnArrays:
         return self.simulator.jacobian(self._named(contexts))
 
     def _named(self, contexts: FloatArray) -> dict[str, FloatArray]:
-        return dict(zip(self.simulator.model.context, contexts.T, strict=True))
+        table = dict(zip(self.simulator.model.context, contexts.T, strict=True))
+        return table if self.time is None else {**table, "time": np.full(len(contexts), self.time)}
