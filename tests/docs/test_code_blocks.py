@@ -31,7 +31,9 @@ GIVEN = {
     "noisy = rga.Simulator(given).predict(dict(zip(given.context, contexts.T)))\n"
     "noise = np.array([sensor.noise for sensor in given.sensors.values()])\n"
     "noisy += noise * draw.standard_normal(noisy.shape)\n"
-    "readings, tested, later = noisy, noisy, noisy\n",
+    "readings, tested, later = noisy, noisy, noisy\n"
+    "ranges, values = np.column_stack([low, high]), contexts\n"
+    "context_noise = 0.01 * (high - low)\n",
 }
 
 

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from rga.inference.joint.infer import Joint, infer_jointly
+from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.posterior_mode import Mode, posterior_mode
 from rga.inference.networks.dataset import Samples
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ContextNetwork",
     "Joint",
+    "MeasuredContexts",
     "Mode",
     "Rows",
     "Samples",

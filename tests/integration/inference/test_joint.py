@@ -8,8 +8,7 @@ import pytest
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.inference import Rows, Unknowns, infer_jointly
-from rga.inference.joint.measured_contexts import MeasuredContexts
+from rga.inference import MeasuredContexts, Rows, Unknowns, infer_jointly
 from rga.inference.joint.structural_parameters import GROUP
 from rga.inference.map.identifiability import BLIND, unseen_share
 from rga.inference.map.posterior_mode import posterior_mode
@@ -350,6 +349,25 @@ def test_contexts_that_instruments_read_are_taken_as_read(model: Model, other: M
     known = np.isfinite(read[:, 0])
     np.testing.assert_allclose(blind.value[known, 0], read[known, 0], atol=0.02)
     np.testing.assert_allclose(blind.spread[known, 0], 0.1, rtol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("values", "noise", "problem"),
+    [
+        (np.zeros((3, 4)), np.ones(4), "20 rows of readings and 3 of measured contexts"),
+        (np.zeros((20, 3)), np.ones(4), "measured contexts have the shape"),
+        (np.zeros((20, 4)), np.zeros(4), "noise of measured contexts is not known"),
+        (np.zeros((20, 4)), np.ones(3), "noise of measured contexts is not known"),
+    ],
+)
+def test_measured_contexts_of_another_shape_are_refused(
+    model: Model, values: FloatArray, noise: FloatArray, problem: str
+) -> None:
+    rows, source = measured(model, drawn(model, 20, 87), 88), drawn(model, 40, 89)
+    with pytest.raises(InputError, match=problem):
+        infer_jointly(
+            Unknowns(model), rows, noise_of(model), source, measured=MeasuredContexts(values, noise)
+        )
 
 
 def test_a_group_in_the_middle_of_a_bridge_is_one_unknown() -> None:

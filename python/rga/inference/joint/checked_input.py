@@ -4,6 +4,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
+from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.rows import Rows
 
@@ -61,6 +62,25 @@ def _numbers(name: str, given: FloatArray) -> FloatArray:
     except (TypeError, ValueError):
         raise InputError(f"{name} are no numbers", PLACE, "give an array of floats") from None
     return found.astype(float)
+
+
+def instruments(measured: MeasuredContexts | None, rows: int, contexts: int) -> MeasuredContexts:
+    """What instruments read of the contexts of so many rows; None: nothing.
+
+    Raises:
+        InputError: tables of another shape, or a noise that is not above 0.
+    """
+    if measured is None:
+        return MeasuredContexts.none(rows, contexts)
+    values = table_of("measured contexts", measured.values, contexts)
+    noise = _numbers("standard deviations of measured contexts", measured.noise)
+    if len(values) != rows:
+        problem = f"there are {rows} rows of readings and {len(values)} of measured contexts"
+        raise InputError(problem, PLACE, "give one row of them for each of readings")
+    if noise.shape != (contexts,) or not (np.isfinite(noise) & (noise > 0)).all():
+        remedy = f"give {contexts} standard deviations above 0, or MeasuredContexts.of"
+        raise InputError("the noise of measured contexts is not known", PLACE, remedy)
+    return MeasuredContexts(np.where(np.isfinite(values), values, np.nan), noise)
 
 
 def joint_noise(unknowns: Unknowns, noise: FloatArray) -> FloatArray:

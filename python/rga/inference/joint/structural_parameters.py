@@ -64,7 +64,7 @@ class StructuralParameter:
         """The effect with the unknown at a value."""
         if self.follows is not None:
             return {**self.effect, self.key: {"context": self.follows, "times": value}}
-        moved = self.driven.get("times", 1.0) * (value - self.driven.get("minus", 0.0))
+        moved = self.driven.get("times", 1.0) * value
         return {**self.effect, self.key: 10.0**moved if self.driven.get("log10") else moved}
 
 
