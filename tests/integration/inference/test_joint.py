@@ -358,6 +358,7 @@ def test_contexts_that_instruments_read_are_taken_as_read(model: Model, other: M
         (np.zeros((20, 3)), np.ones(4), "measured contexts have the shape"),
         (np.zeros((20, 4)), np.zeros(4), "noise of measured contexts is not known"),
         (np.zeros((20, 4)), np.ones(3), "noise of measured contexts is not known"),
+        (np.full((20, 4), -9999.0), np.ones(4), "'crowd' reads -9999, and its range is 0 to 4"),
     ],
 )
 def test_measured_contexts_of_another_shape_are_refused(
@@ -368,6 +369,27 @@ def test_measured_contexts_of_another_shape_are_refused(
         infer_jointly(
             Unknowns(model), rows, noise_of(model), source, measured=MeasuredContexts(values, noise)
         )
+
+
+def test_one_row_that_instruments_read_is_one_row(model: Model, other: Model) -> None:
+    contexts, noise = drawn(model, 60, 90), noise_of(model)
+    rows, source, unknowns = measured(other, contexts, 91), drawn(model, 300, 92), Unknowns(model)
+    read = np.full_like(contexts, np.nan)
+    read[0] = contexts[0]
+    once = MeasuredContexts(read, np.full(4, 1e-2))
+    without, beside = (
+        infer_jointly(unknowns, rows, noise, source, measured=one) for one in (None, once)
+    )
+    assert np.abs((beside.values - without.values) / unknowns.spread).max() < 1.0
+    np.testing.assert_allclose(beside.rows.contexts[0], contexts[0], atol=0.05)
+
+
+def test_a_dead_sensor_says_nothing_and_no_row_is_an_answer(model: Model) -> None:
+    rows, source = measured(model, drawn(model, 60, 93), 94), drawn(model, 300, 95)
+    rows[:, 4] = np.nan
+    found = infer_jointly(Unknowns(model), rows, noise_of(model), source)
+    assert found.gains[4] == pytest.approx(1.0, abs=1e-6)
+    assert found.infer(np.zeros((0, 24))).value.shape == (0, 4)
 
 
 def test_a_group_in_the_middle_of_a_bridge_is_one_unknown() -> None:

@@ -142,9 +142,13 @@ def stands_on_few(found: Found, without: Fit) -> bool:
     before, after = (problem.residual(one.simulated) for one in (without, found.fit))
     inverse = problem.covariance.inverse_times(before + after).T
     # Summed up, these are twice what they gain by the cause.
-    gained = np.where(problem.data.observed, inverse * (before - after), -np.inf)
+    gained = np.where(problem.data.observed, inverse * (before - after), 0.0)
     most = np.argsort(-gained, axis=None)[: criteria.few_readings]
-    cells = np.column_stack(np.unravel_index(most, gained.shape))
-    beside, alone = evidence_without(problem, [found.fit, without], cells)
-    lead = found.fit.log_evidence - without.log_evidence
-    return bool(beside - alone < min(criteria.log_odds, criteria.kept_without_few * lead))
+    cells = np.column_stack(np.unravel_index(most[gained.ravel()[most] > 0], gained.shape))
+    with_all, with_fewer = (
+        float(np.subtract(*evidence_without(problem, [found.fit, without], hidden)))
+        for hidden in (cells[:0], cells)
+    )
+    least = min(criteria.log_odds, criteria.kept_without_few * with_all)
+    # As read, outliers elsewhere may speak against a cause; that is another matter.
+    return with_all > 0 and with_fewer < least

@@ -23,6 +23,8 @@ from rga.numerics.hysteresis import PLAY, loop
 
 #: share of the rows that the courses of the loads may take, and of a curve that they must leave
 MOST_COURSES, LEFT = 1 / 12, 1e-3
+#: share of its prior spread by which a latent context must vary to be shown by anything
+SHOWN = 1e-3
 #: correlation from which on two readings drive the same loop
 ALIKE = 0.97
 
@@ -121,9 +123,17 @@ def free_channels(problem: Problem, found: list[Curve]) -> list[Calibration]:
 
 
 def _over_contexts(problem: Problem) -> list[_Shape]:
-    """Squares of the contexts, the same in every channel; of a latent one as it was inferred."""
+    """Squares of the contexts, the same in every channel; of a latent one as it was inferred.
+
+    A latent context that nothing shows is inferred as a constant.
+    """
     belief, sensors = problem.data.belief, len(problem.data.sensors)
-    inferred = {name: belief.table[name] for name in belief.latent}
+    inferred = {
+        name: belief.table[name]
+        if belief.table[name].std() > SHOWN * belief.spread[name]
+        else np.zeros(len(belief.table[name]))
+        for name in belief.latent
+    }
     linear = standardised({**belief.centre, **inferred})
     curved = squares(linear)
     return [

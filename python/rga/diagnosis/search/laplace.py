@@ -308,7 +308,7 @@ def evidence_without(problem: Problem, fits: Sequence[Fit], cells: IntArray) -> 
     Args:
         problem: to which they were fitted.
         fits: as they were fitted; they move along their signatures.
-        cells: row and sensor of each reading, int[k, 2].
+        cells: row and sensor of each reading, none of them missing, int[k, 2].
 
     Returns:
         float[fits].
@@ -319,9 +319,9 @@ def evidence_without(problem: Problem, fits: Sequence[Fit], cells: IntArray) -> 
     columns = np.concatenate([residuals, *(one.signatures for one in fits), unseen])
     reduced = problem.covariance.reduce(columns)
     products = problem.covariance.product(reduced, reduced)
-    seen, gone = slice(None, -len(cells)), slice(-len(cells), None)
-    told = np.linalg.solve(products[gone, gone], products[gone, seen])
-    products = products[seen, seen] - products[seen, gone] @ told
+    seen, gone = np.split(np.arange(len(products)), [len(products) - len(cells)])
+    told = np.linalg.solve(products[np.ix_(gone, gone)], products[np.ix_(gone, seen)])
+    products = products[np.ix_(seen, seen)] - products[np.ix_(seen, gone)] @ told
     found = []
     for number, (one, own) in enumerate(zip(fits, _places(fits), strict=True)):
         _, information, loss = _moved(products, number, own, one.z)

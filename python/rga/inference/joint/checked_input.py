@@ -7,9 +7,10 @@ from rga.errors import InputError
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.rows import Rows
+from rga.model import Model
 
 #: a reading may be so many times the widest range of a sensor, and spreads of its noise, away from
-#: what the model simulates
+#: what the model simulates; a context so many widths of its range away from it
 FAR, FAR_NOISE = 3.0, 100.0
 PLACE = "joint inference"
 
@@ -64,14 +65,19 @@ def _numbers(name: str, given: FloatArray) -> FloatArray:
     return found.astype(float)
 
 
-def instruments(measured: MeasuredContexts | None, rows: int, contexts: int) -> MeasuredContexts:
+def instruments(measured: MeasuredContexts | None, rows: int, model: Model) -> MeasuredContexts:
     """What instruments read of the contexts of so many rows; None: nothing.
 
     Raises:
-        InputError: tables of another shape, or a noise that is not above 0.
+        InputError: tables of another shape, a noise that is not above 0, or a value far from the
+            range of its context.
     """
+    contexts = len(model.context)
     if measured is None:
         return MeasuredContexts.none(rows, contexts)
+    if not isinstance(measured, MeasuredContexts):
+        remedy = "give MeasuredContexts.of(values, noise, ranges)"
+        raise InputError("measured contexts are of another kind", PLACE, remedy)
     values = table_of("measured contexts", measured.values, contexts)
     noise = _numbers("standard deviations of measured contexts", measured.noise)
     if len(values) != rows:
@@ -80,6 +86,18 @@ def instruments(measured: MeasuredContexts | None, rows: int, contexts: int) -> 
     if noise.shape != (contexts,) or not (np.isfinite(noise) & (noise > 0)).all():
         remedy = f"give {contexts} standard deviations above 0, or MeasuredContexts.of"
         raise InputError("the noise of measured contexts is not known", PLACE, remedy)
+    low, high = np.array([one.range for one in model.context.values()]).T
+    reach = FAR * (high - low)
+    far = np.isfinite(values) & ((values < low - reach) | (values > high + reach))
+    if far.any():
+        row, column = (int(one[0]) for one in np.nonzero(far))
+        name = list(model.context)[column]
+        raise InputError(
+            f"context {name!r} reads {values[row, column]:g}, and its range is "
+            f"{low[column]:g} to {high[column]:g}",
+            f"{PLACE}, row {row + 1}",
+            "give NaN where nothing was measured, and contexts in the units of the model",
+        )
     return MeasuredContexts(np.where(np.isfinite(values), values, np.nan), noise)
 
 

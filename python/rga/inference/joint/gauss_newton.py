@@ -190,10 +190,11 @@ class Search:
         """
         contexts, here, by_unknowns, by_contexts = self._bent
         root = self.scale / np.sqrt(self.variance)[:, None]
+        root = np.where(self.seen[contexts][:, :, None], root, 0.0)
         here, by_unknowns, by_contexts = here * root, by_unknowns * root, by_contexts * root
-        width = np.where(self.read.any(axis=0), self.told[1], self.population.width)
+        width = self._before()[1][contexts]
         turned = here.transpose(0, 2, 1)
-        back = here @ np.linalg.inv(turned @ here + np.diag(1.0 / width**2))
+        back = here @ np.linalg.inv(turned @ here + np.eye(width.shape[1]) / width[:, :, None] ** 2)
         of_unknowns = np.einsum("nsc,knsc->k", back, by_unknowns, optimize=True)
         of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
         slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])

@@ -73,7 +73,7 @@ class Joint:
             InputError: a table of another shape, or no numbers.
         """
         table = table_of("readings", readings, len(self.gains))
-        known = instruments(measured, len(table), self.source.shape[1])
+        known = instruments(measured, len(table), self.unknowns.model)
         twin = known.beside(self.twin)
         ranges = known.within(twin.twin.ranges)
         simulated = Rows(self.source, twin.simulate(self.source))
@@ -144,7 +144,7 @@ def infer_jointly(
     known = JointPrior.fresh(unknowns, len(noise))
     if prior is not None:
         known = JointPrior.later(prior.parameters, prior.sure, len(prior.values))
-    read = instruments(measured, len(readings), source.shape[1])
+    read = instruments(measured, len(readings), unknowns.model)
     search = Search(unknowns, readings, noise, load_tests, known, read)
     rounds, steps = (ROUNDS, STEPS) if prior is None else LATER
     if start is not None:

@@ -48,6 +48,8 @@ class MeasuredContexts:
 
     def within(self, ranges: FloatArray) -> FloatArray:
         """Ranges widened to what was read, float[contexts, 2]."""
+        if not len(self.columns):
+            return ranges
         read = self.values[:, self.columns]
         wide, reach = ranges.astype(float), 4.0 * self.noise[self.columns]
         low, high = np.nanmin(read, axis=0) - reach, np.nanmax(read, axis=0) + reach

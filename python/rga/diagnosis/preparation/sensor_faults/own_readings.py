@@ -57,7 +57,7 @@ def stuck_channels(
     for number, sensor in enumerate(sensors):
         column = readings[observed[:, number], number]
         repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
-        if repeats > criteria.repeats + _by_chance(len(column)) and not _coarse(column):
+        if repeats > criteria.repeats + _by_chance(len(column)) and not _coarse(column, criteria):
             why = f"{repeats:.0%} of its readings repeat the one before exactly"
             faults.append(BrokenChannel(sensor, "stuck", why, int(repeats * len(column))))
     return faults
@@ -72,14 +72,17 @@ def _by_chance(readings: int) -> float:
     return BY_CHANCE * 0.5 / float(np.sqrt(readings)) if readings < ENOUGH else 0.0
 
 
-def _coarse(column: FloatArray) -> bool:
+def _coarse(column: FloatArray, criteria: ChannelCriteria) -> bool:
     """Whether a channel moves step by step, so that it repeats itself where it moves slowly.
 
-    What is stuck, and comes loose now and then, moves by many steps of its logger at once.
+    What is stuck, and comes loose now and then, moves by many steps of its logger at once, or
+    stands still for much longer than it does elsewhere.
 
-    >>> walk = np.cumsum(np.random.default_rng(1).normal(0.0, 0.05, 300))
-    >>> _coarse(np.round(walk, 1)), _coarse(np.repeat(walk[::2], 2))
-    (True, False)
+    >>> fine = np.cumsum(np.random.default_rng(1).normal(0.0, 0.05, 300))
+    >>> walk = np.round(fine, 1)
+    >>> frozen = np.where(np.arange(300) < 200, walk[0], walk)
+    >>> [_coarse(one, ChannelCriteria()) for one in (walk, frozen, np.repeat(fine[::2], 2))]
+    [True, False, False]
     """
     levels = np.unique(column)
     apart = np.diff(levels)
@@ -88,8 +91,21 @@ def _coarse(column: FloatArray) -> bool:
     if len(steps) < FEWEST_STEPS:
         return False
     moves = np.abs(np.diff(column))
-    moves = moves[moves > rounding]
-    return bool((moves < 1.5 * steps.min()).mean() >= 0.5)
+    still = moves <= rounding
+    first, end = _longest(still)
+    elsewhere = (
+        float(np.delete(still, slice(first, end)).mean()) if end - first < len(still) else 1.0
+    )
+    if end - first > criteria.still_chance * _run_by_chance(elsewhere, len(column)):
+        return False
+    return bool((moves[~still] < 1.5 * steps.min()).mean() >= 0.5)
+
+
+def _run_by_chance(repeats: float, readings: int) -> float:
+    """Readings that repeat in a row by chance, where a share of all does."""
+    if repeats >= 1:
+        return float("inf")
+    return 1 + float(np.log(readings) / np.log(1 / max(repeats, 1e-3)))
 
 
 def lost_zeros(
@@ -144,9 +160,7 @@ def silent(
     first = int(changes[-1]) + 1 if len(changes) else 0
     # Readings of coarse steps repeat themselves by chance, the more the coarser.
     repeats = float((np.diff(measured[: first + 1]) == 0).mean()) if first else 1.0
-    by_chance = np.inf
-    if repeats < 1:
-        by_chance = 1 + np.log(len(measured)) / np.log(1 / max(repeats, 1e-3))
+    by_chance = _run_by_chance(repeats, len(measured))
     silent = len(measured) - first
     if silent < max(criteria.still_rows, criteria.still_chance * by_chance):
         return None

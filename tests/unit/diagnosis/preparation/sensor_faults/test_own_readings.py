@@ -138,3 +138,13 @@ def test_a_channel_in_another_unit_answers_otherwise_than_its_like(
     readings = simulated + 0.01 * DRAW.standard_normal(simulated.shape)
     readings[:, 2] *= factor
     assert of_scaled(model, readings, simulated) == found
+
+
+@pytest.mark.parametrize("frozen", [slice(0, 0), slice(0, 160), slice(20, 180)])
+def test_a_coarse_channel_is_stuck_where_it_stands_still_for_too_long(frozen: slice) -> None:
+    """A logger of coarse steps repeats itself under slow loads; a channel that freezes is stuck."""
+    walk = np.round(np.cumsum(np.random.default_rng(3).normal(0.0, 0.07, 240)), 1)
+    assert np.mean(np.diff(walk) == 0) > CRITERIA.repeats
+    walk[frozen] = walk[frozen.start]
+    faults = stuck_channels(("A",), walk[:, None], np.ones((240, 1), dtype=bool), CRITERIA)
+    assert [one.mode for one in faults] == ["stuck"] * (frozen.stop > 0)
