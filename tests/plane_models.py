@@ -1,8 +1,11 @@
-"""Plane models of one material, and parts of them, for tests of large displacements."""
+"""Plane models of one material, parts of them, and rows of contexts and readings of a model."""
 
 from typing import Any
 
+import numpy as np
+
 import rga
+from rga.arrays import FloatArray
 from rga.model import read_model
 
 E, ALPHA = 2e11, 1.2e-5
@@ -34,3 +37,20 @@ def moves(node: str, direction: list[float]) -> dict[str, Any]:
 
 def reacts(node: str, direction: list[float]) -> dict[str, Any]:
     return {"kind": "reaction", "node": node, "direction": direction, "unit": "N"}
+
+
+def drawn(model: rga.Model, rows: int, seed: int) -> FloatArray:
+    """Contexts spread evenly over their ranges."""
+    low, high = np.array([one.range for one in model.context.values()]).T
+    return np.asarray(low + (high - low) * np.random.default_rng(seed).random((rows, len(low))))
+
+
+def measured(model: rga.Model, contexts: FloatArray, seed: int) -> FloatArray:
+    """Readings of contexts, with the noise of `noise_of`."""
+    clean = rga.Simulator(model).predict(dict(zip(model.context, contexts.T, strict=True)))
+    return np.asarray(clean + 0.02 * np.random.default_rng(seed).standard_normal(clean.shape))
+
+
+def noise_of(model: rga.Model) -> FloatArray:
+    """Standard deviation of each sensor's noise."""
+    return np.full(len(model.sensors), 0.02)

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from plane_models import drawn, measured, noise_of
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.inference import MeasuredContexts, Rows, Unknowns, infer_jointly
+from rga.inference import Rows, Unknowns, infer_jointly
 from rga.inference.joint.structural_parameters import GROUP
 from rga.inference.map.identifiability import BLIND, unseen_share
 from rga.inference.map.posterior_mode import posterior_mode
@@ -18,101 +19,9 @@ from rga.simulation import Simulator
 from rga_bench.synthetic.bridges.case_study import case_study_bridge
 
 
-@pytest.fixture(scope="module")
-def model() -> Model:
-    """A plane truss of six panels with two latent contexts and vertical displacements."""
-    panels, nodes, members = 6, {}, {}
-    for i in range(panels + 1):
-        nodes[f"L{i}"] = [4.0 * i, 0, 0]
-        nodes[f"U{i}"] = [4.0 * i, 0, 4.0]
-
-    def add(one: str, other: str, group: str) -> None:
-        bar = {"nodes": [one, other], "section": "bar", "material": "steel", "groups": [group]}
-        members[f"{one}-{other}"] = {**bar, "kind": "truss"}
-
-    for i in range(panels):
-        add(f"L{i}", f"L{i + 1}", "bottom chord")
-        add(f"U{i}", f"U{i + 1}", "top chord")
-        add(f"L{i}", f"U{i + 1}", "diagonals")
-    for i in range(panels + 1):
-        add(f"L{i}", f"U{i}", "verticals")
-    forces = {f"L{i}": [0, 0, -2e4] for i in range(1, panels)}
-    lean = {f"L{i}": [0, 0, -1e4 * i] for i in range(1, panels)}
-    sensors = {
-        f"{node} {way}": {
-            "kind": "displacement",
-            "node": node,
-            "direction": direction,
-            "unit": "mm",
-            "noise": 0.02,
-        }
-        for node in nodes
-        for way, direction in (("z", [0, 0, 1]), ("x", [1, 0, 0]))
-        if node not in ("L0", f"L{panels}")
-    }
-    groups = {m["groups"][0]: 1.0 for m in members.values()}
-    content = {
-        "rga_model": 1,
-        "name": "six panels",
-        "plane": "xz",
-        "materials": {"steel": {"E": 2.0e11, "nu": 0.3, "alpha": 1.2e-5, "density": 7850}},
-        "sections": {"bar": {"A": 0.004, "Iy": 8e-6, "Iz": 8e-6, "J": 1e-6}},
-        "nodes": nodes,
-        "members": members,
-        "supports": {
-            "west": {"node": "L0", "fixed": ["ux", "uz"]},
-            "east": {"node": f"L{panels}", "fixed": ["uz"]},
-        },
-        "context": {
-            "crowd": {"unit": "kPa", "range": [0, 4]},
-            "lean": {"unit": "-", "range": [0, 1]},
-            "warmth": {"unit": "K", "range": [-20, 20]},
-            "bearing": {"unit": "log10 N/m", "range": [6, 8]},
-        },
-        "effects": {
-            "load": {"kind": "nodal_load", "forces": forces, "factor": {"context": "crowd"}},
-            "more": {"kind": "nodal_load", "forces": lean, "factor": {"context": "lean"}},
-            "warm": {"kind": "temperature", "groups": groups, "delta": {"context": "warmth"}},
-            "spring": {
-                "kind": "support_spring",
-                "support": "east",
-                "dof": "ux",
-                "stiffness": {"context": "bearing", "log10": True},
-            },
-        },
-        "sensors": sensors,
-    }
-    return read_model(json.loads(json.dumps(content)), "six panels")
-
-
-def drawn(model: Model, rows: int, seed: int) -> FloatArray:
-    low, high = np.array([one.range for one in model.context.values()]).T
-    return np.asarray(low + (high - low) * np.random.default_rng(seed).random((rows, len(low))))
-
-
-def measured(model: Model, contexts: FloatArray, seed: int) -> FloatArray:
-    clean = Simulator(model).predict(dict(zip(model.context, contexts.T, strict=True)))
-    return np.asarray(clean + 0.02 * np.random.default_rng(seed).standard_normal(clean.shape))
-
-
-def noise_of(model: Model) -> FloatArray:
-    return np.full(len(model.sensors), 0.02)
-
-
 def error(model: Model, found: FloatArray, truth: FloatArray) -> float:
     _, scale = standard(np.array([one.range for one in model.context.values()]))
     return float((((found - truth) / scale) ** 2).mean())
-
-
-@pytest.fixture(scope="module")
-def other(model: Model) -> Model:
-    """The structure as it is: a softer bottom chord, a stiffer stretch of diagonals."""
-    unknowns = Unknowns(model)
-    values = unknowns.centre.copy()
-    names = [part.name for part in unknowns.parts]
-    values[names.index("stiffness of bottom chord")] = np.log10(0.85)
-    values[names.index("stiffness of diagonals")] = np.log10(1.1)
-    return unknowns.at(values)
 
 
 def test_unknowns_and_contexts_are_found_without_a_label(model: Model, other: Model) -> None:
@@ -327,61 +236,6 @@ def test_days_without_crowds_leave_the_structure_as_it_is(model: Model) -> None:
     assert np.abs(10.0 ** found.values[stiffness] - 1.0).max() < 2 * GROUP
     crowd = found.rows.contexts[:, 0] / contexts[:, 0]
     assert np.median(crowd) == pytest.approx(1.0, abs=2 * GROUP)
-
-
-def test_contexts_that_instruments_read_are_taken_as_read(model: Model, other: Model) -> None:
-    contexts, noise = drawn(model, 40, 83), noise_of(model)
-    contexts[:5, 0] = 5.0  # beyond its range
-    rows, source = measured(other, contexts, 84), drawn(model, 300, 85)
-    read = np.full_like(contexts, np.nan)
-    read[:, 0] = contexts[:, 0] + 0.1 * np.random.default_rng(86).standard_normal(40)
-    read[7, 0] = np.nan
-    ranges = np.array([one.range for one in model.context.values()])
-    instruments = MeasuredContexts.of(read, np.array([0.1, 0.0, 0.0, 0.0]), ranges)
-    unknowns = Unknowns(model)
-    found = infer_jointly(unknowns, rows, noise, source, measured=instruments)
-    assert np.abs(found.rows.contexts[:, 0] - contexts[:, 0]).max() < 0.3
-    chord = found.values[[part.name for part in unknowns.parts].index("stiffness of bottom chord")]
-    assert 10.0**chord == pytest.approx(0.85, abs=0.03)
-    again = found.infer(rows, instruments)
-    assert np.abs(again.value[:, 0] - contexts[:, 0]).max() < 0.3
-    blind = found.infer(np.full_like(rows, np.nan), instruments)
-    known = np.isfinite(read[:, 0])
-    np.testing.assert_allclose(blind.value[known, 0], read[known, 0], atol=0.02)
-    np.testing.assert_allclose(blind.spread[known, 0], 0.1, rtol=0.05)
-
-
-@pytest.mark.parametrize(
-    ("values", "noise", "problem"),
-    [
-        (np.zeros((3, 4)), np.ones(4), "20 rows of readings and 3 of measured contexts"),
-        (np.zeros((20, 3)), np.ones(4), "measured contexts have the shape"),
-        (np.zeros((20, 4)), np.zeros(4), "noise of measured contexts is not known"),
-        (np.zeros((20, 4)), np.ones(3), "noise of measured contexts is not known"),
-        (np.full((20, 4), -9999.0), np.ones(4), "'crowd' reads -9999, and its range is 0 to 4"),
-    ],
-)
-def test_measured_contexts_of_another_shape_are_refused(
-    model: Model, values: FloatArray, noise: FloatArray, problem: str
-) -> None:
-    rows, source = measured(model, drawn(model, 20, 87), 88), drawn(model, 40, 89)
-    with pytest.raises(InputError, match=problem):
-        infer_jointly(
-            Unknowns(model), rows, noise_of(model), source, measured=MeasuredContexts(values, noise)
-        )
-
-
-def test_one_row_that_instruments_read_is_one_row(model: Model, other: Model) -> None:
-    contexts, noise = drawn(model, 60, 90), noise_of(model)
-    rows, source, unknowns = measured(other, contexts, 91), drawn(model, 300, 92), Unknowns(model)
-    read = np.full_like(contexts, np.nan)
-    read[0] = contexts[0]
-    once = MeasuredContexts(read, np.full(4, 1e-2))
-    without, beside = (
-        infer_jointly(unknowns, rows, noise, source, measured=one) for one in (None, once)
-    )
-    assert np.abs((beside.values - without.values) / unknowns.spread).max() < 1.0
-    np.testing.assert_allclose(beside.rows.contexts[0], contexts[0], atol=0.05)
 
 
 def test_a_dead_sensor_says_nothing_and_no_row_is_an_answer(model: Model) -> None:
