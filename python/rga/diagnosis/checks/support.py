@@ -149,6 +149,5 @@ def stands_on_few(found: Found, without: Fit) -> bool:
         float(np.subtract(*evidence_without(problem, [found.fit, without], hidden)))
         for hidden in (cells[:0], cells)
     )
-    least = min(criteria.log_odds, criteria.kept_without_few * with_all)
     # As read, outliers elsewhere may speak against a cause; that is another matter.
-    return with_all > 0 and with_fewer < least
+    return with_all > 0 >= with_fewer

@@ -47,15 +47,8 @@ class NamingCriteria(CriteriaGroup):
     few_readings: Count = criterion(
         2,
         "readings",
-        "a cause must stand without so many readings, those that speak most for it",
+        "a cause must be likelier than none without so many readings, those that speak most for it",
         "a spike lasts two rows at most (channels.longest_spike)",
-    )
-    kept_without_few: Share = criterion(
-        0.5,
-        "-",
-        "share of its log-odds, log_odds at most, that it must keep without them",
-        "measured: true causes of the challenge keep six tenths and more, one that an outlier made "
-        "none",
     )
     worse_gap: Multiple = criterion(
         1.01,
