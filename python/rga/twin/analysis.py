@@ -83,12 +83,12 @@ class RealityGapAnalysis:
         standing, calibration = self.standing, self._calibration
         standing.calibrated = standing.row
         calibration.estimate_noise()
-        calibration.learn([(0, standing.row)], afresh=True)
+        chosen = calibration.calibrate(standing.row)
         calibration.follow(0, standing.row)
         self._begin_again(0)
         standing.interval = self._policy.interval
         standing.share = calibration.scatter_share(0, standing.row)
-        words = f"calibrated on {standing.row} rows, scatter of the model {standing.share:.1%}"
+        words = f"calibrated on {standing.row} rows; {chosen}"
         words = "; ".join([words, *self.synchrony.warnings])
         self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
         standing.stage = "watch"
@@ -116,7 +116,7 @@ class RealityGapAnalysis:
             standing.stage = "close"
 
     def recalibrate(self, last: bool) -> None:
-        """T1: refine the networks on the latest rows; if the gap stays, the model is in doubt.
+        """T1: learn from the latest rows; what contexts do not explain puts the model in doubt.
 
         Args:
             last: no more rows will come.
@@ -126,29 +126,54 @@ class RealityGapAnalysis:
         assert first is not None
         recent = (first, standing.row)
         open_alarm = self._policy.waits(standing, last)
+        usual = calibration.usual_gap(standing.calibrated, recent[1] - recent[0], standing.share)
         before, expected = calibration.gap(*recent), calibration.gap(*recent, standing.share)
-        if calibration.learned is not None:
-            self._refine(recent)
+        known = calibration.learned
+        self._refine(recent)
         after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
-        recovered = left <= settings.recovered
-        done = "recalibrated" if calibration.learned is not None else "all contexts are measured"
-        ended = "the gap stays, the model is in doubt"
-        if recovered:
-            ended = "the gap is what noise and scatter let expect"
-        interval = self._policy.next_interval(standing.interval, expected - left)
+        doubted, ended = self._judged(expected, left, usual, calibration.changes(known))
+        interval = self._policy.next_interval(standing.interval, expected - left, usual - 1.0)
         if interval != standing.interval:
             ended += f"; the interval is now {interval} rows"
         standing.interval = interval
-        words = f"{done}, rows {recent[0]} to {recent[1] - 1}: {ended}"
+        words = f"rows {recent[0]} to {recent[1] - 1}: {ended}"
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
-        if settings.level == "C" and recovered and not open_alarm:
-            self._integrate(*recent)
+        if not doubted:
+            calibration.sound = calibration.learned
+            if settings.level == "C" and not open_alarm:
+                self._integrate(*recent)
         self._begin_again(None)
-        standing.doubted = standing.doubted or not recovered
+        standing.doubted = standing.doubted or doubted
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
         else:
             self._go_on(last, open_alarm)
+
+    def _judged(
+        self, before: float, after: float, usual: float, changes: tuple[str, ...]
+    ) -> tuple[bool, str]:
+        """Whether the model is in doubt after a recalibration, and what came of it in words.
+
+        Args:
+            before, after: gap over the gap to expect [-].
+            usual: what it stays below on stretches of the calibration [-].
+            changes: of structure and sensors, by which the gap came down.
+        """
+        below = f"as in the calibration, whose own stretches stay below {usual:.2f}"
+        if before <= usual and after <= usual:
+            return False, f"contexts explain them, the gap is {after:.2f} of what is expected, {below}"
+        if after > usual:
+            return True, (
+                f"contexts do not explain them, the gap is {after:.2f} of what is expected, and "
+                f"stretches of the calibration stay below {usual:.2f}: the model is in doubt"
+            )
+        if changes:
+            return True, (
+                f"contexts alone leave {before:.2f} of the expected gap, more than the "
+                f"{usual:.2f} of the calibration. With {', '.join(changes)} it is {after:.2f}: "
+                "something may have changed, and the diagnosis is to say what"
+            )
+        return False, f"learned anew, the gap fell from {before:.2f} to {after:.2f} of what is expected, {below}"
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
@@ -209,8 +234,10 @@ class RealityGapAnalysis:
             self._event("novel context", int(rows[0]), f"stored: {words}{more}")
 
     def _refine(self, recent: tuple[int, int]) -> None:
-        """Fine-tune on the latest rows; where that makes the gap larger, return to what was."""
+        """Learn from the latest rows; where that makes the gap larger, return to what was."""
         calibration = self._calibration
+        if calibration.learned is None:
+            return
         stored = self._archive.run.simulated(
             version=self._exchange.twin.state.version, origin="novel"
         ).contexts
@@ -219,10 +246,11 @@ class RealityGapAnalysis:
             wanted = self._settings.design_rows // 8
             calibration.supply(around, wanted, requested=True)
         kept, before = (calibration.learned, calibration.ledger.copy()), calibration.gap(*recent)
-        calibration.learn([(0, self.standing.calibrated), recent], afresh=False)
+        calibration.recalibrate(self.standing.calibrated, recent)
         calibration.follow(*recent)
         if not calibration.gap(*recent) < before:
-            calibration.learned, calibration.ledger = kept
+            learned, calibration.ledger = kept
+            calibration.restore(learned)
             calibration.send(*recent)
 
     def _change_version(self, **change: Any) -> None:
@@ -230,21 +258,21 @@ class RealityGapAnalysis:
         standing, calibration = self.standing, self._calibration
         recent = (self._under_the_same(change.get("effects", {})), standing.row)
         before, old = calibration.gap(*recent), self._exchange.twin.state.version
-        kept = calibration.learned, calibration.ledger.copy()
+        kept = calibration.learned, calibration.sound, calibration.ledger.copy()
         answer = self._ask_twin(**change)
         if not answer.adequate:
             words = f"the update of the model was refused: {'; '.join(answer.missing)}"
             self._event("version", standing.row - 1, words)
             return
         self._design()
-        calibration.learn([recent], afresh=True)
+        calibration.learn_version(recent)
         calibration.follow(*recent)
         standing.changed = standing.row
         after = calibration.gap(*recent)
         words = f"version {answer.version} of the model is in force"
         self._event("version", standing.row - 1, words, before=before, after=after)
         if "restore" not in change and after > WORSE * before:
-            calibration.learned, calibration.ledger = kept
+            calibration.learned, calibration.sound, calibration.ledger = kept
             self._ask_twin(restore=old)
             calibration.send(*recent)
             words = f"the gap rose: version {old} is in force again"
@@ -282,9 +310,11 @@ class RealityGapAnalysis:
         self.standing.stage = "close" if last else "watch"
 
     def _may_ask(self) -> bool:
-        """The diagnosis is slow: it is asked again when the record has grown enough."""
-        asked = self.standing.diagnosed
-        return asked is None or self.standing.row >= self._settings.growth * asked
+        """The diagnosis is slow: it is asked of a new alarm, or when the record has grown enough."""
+        standing, asked = self.standing, self.standing.diagnosed
+        if asked is None or (standing.alarm is not None and standing.alarm >= asked):
+            return True
+        return standing.row >= self._settings.growth * asked
 
     def _latent(self) -> tuple[list[int], FloatArray]:
         columns = self._calibration.latent

@@ -9,6 +9,7 @@ from rga.errors import InputError
 from rga.inference.networks.design_samples import design
 from rga.model import Model
 from rga.simulation import Simulator
+from rga.twin.correction import Correction
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q1, Q3, Q5, R1, R3, R5, Response
 from rga.twin.simulation_model import SimulationModel, mounted
@@ -25,6 +26,7 @@ class TwinState:
     Attributes:
         version: number of the model version in force; 0 before the first response.
         versions: effects of every version beyond the model as given.
+        corrections: what the last calibration of each version has found of structure and sensors.
         latent: context variables that are inferred.
         row: row of the record at which the twin stands.
         context, simulated: of that row, by name.
@@ -32,6 +34,7 @@ class TwinState:
 
     version: int = 0
     versions: Mapping[int, Effects] = field(default_factory=dict)
+    corrections: Mapping[int, Correction | None] = field(default_factory=dict)
     latent: tuple[str, ...] = ()
     row: int | None = None
     context: Mapping[str, float] = field(default_factory=dict)
@@ -41,8 +44,14 @@ class TwinState:
 def follow(state: TwinState, response: Response, channels: tuple[str, ...]) -> TwinState:
     """The state after a response. Nothing else changes the twin."""
     if isinstance(response, R1) and response.adequate:
-        versions = {**state.versions, response.version: response.effects}
-        return replace(state, version=response.version, versions=versions, latent=response.latent)
+        number = response.version
+        return replace(
+            state,
+            version=number,
+            versions={**state.versions, number: response.effects},
+            corrections={**state.corrections, number: response.correction},
+            latent=response.latent,
+        )
     if isinstance(response, R5):
         last = response.simulated[-1].tolist() if len(response.simulated) else []
         simulated = dict(zip(channels, last, strict=bool(last)))
@@ -67,6 +76,8 @@ class DigitalTwin:
 
     def accept(self, response: Response) -> None:
         """Take a response over."""
+        if isinstance(response, R1) and response.correction != self.correction(response.version):
+            self._simulations.pop(response.version, None)
         self.state = follow(self.state, response, self.station.channels)
 
     def answer(self, query: Q1 | Q3 | Q5) -> R1 | R3 | R5:
@@ -77,23 +88,31 @@ class DigitalTwin:
         return simulation.draw(query) if isinstance(query, Q3) else simulation.follow(query)
 
     def model(self, version: int | None = None) -> Model:
-        """The model of a version, of the one in force by default."""
+        """The model of a version, of the one in force by default, without its correction."""
         return extended(self.given, self.state.versions[version or self.state.version])
+
+    def correction(self, version: int | None = None) -> Correction | None:
+        """What was found of structure and sensors under a version, the one in force by default."""
+        return self.state.corrections.get(version or self.state.version)
 
     def simulation(self, version: int | None = None) -> "SimulationModel":
         """The simulation model of a version, of the one in force by default."""
         number = version or self.state.version
         if number not in self._simulations:
-            self._simulations[number] = SimulationModel(self.model(number), self.station)
+            self._simulations[number] = SimulationModel(
+                self.model(number), self.station, self.correction(number)
+            )
         return self._simulations[number]
 
     def _adequacy(self, query: Q1) -> R1:
         state = self.state
         number, effects = max(1, state.version), state.versions.get(state.version, {})
+        correction = query.correction or state.corrections.get(number)
         if query.restore is not None:
             number, effects = query.restore, state.versions.get(query.restore, {})
+            correction = state.corrections.get(number)
         elif query.effects is not None:
-            number, effects = max(state.versions) + 1, query.effects
+            number, effects, correction = max(state.versions) + 1, query.effects, None
         latent: tuple[str, ...] = ()
         blind: tuple[str, ...] = ()
         missing: list[str] = []
@@ -109,6 +128,7 @@ class DigitalTwin:
             row=query.row,
             version=number,
             effects=effects,
+            correction=correction,
             adequate=not missing,
             missing=tuple(missing),
             latent=latent,

@@ -4,6 +4,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from rga.twin.settings import Inference
+
 Stage = Literal[
     "initialise", "gather", "calibrate", "watch", "recalibrate", "diagnose", "close", "report",
     "done",
@@ -22,6 +24,7 @@ class Standing(BaseModel):
         synchronised: rows when the twin was last calibrated, recalibrated or given a version.
         interval: rows from there to the next recalibration by the clock.
         draws: seeds drawn so far.
+        inference: the way to infer contexts; "auto" until one is chosen.
         share: by which the model was off on the rows of the first calibration [-].
         distinct: least distance of a novel context, in shares of the ranges.
         diagnosed: rows of the last diagnosis.
@@ -38,6 +41,7 @@ class Standing(BaseModel):
     synchronised: int = 0
     interval: int = 0
     draws: int = 0
+    inference: Inference = "auto"
     share: float = 0.0
     distinct: float = 0.0
     diagnosed: int | None = None

@@ -14,7 +14,8 @@ from rga.records import Record
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
-from rga.twin.calibration.data_driven import DataDrivenModel
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.learning import read, written as stored
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
@@ -26,6 +27,8 @@ from rga.twin.settings import Settings
 from rga.twin.versions import beyond, written
 
 Progress = Callable[[str, float], None]
+#: estimators that the calibration holds, by the names under which they are kept
+ESTIMATORS = ("learned", "sound")
 WRITTEN = ("findings.json", "model.json", "report.html")
 
 
@@ -100,7 +103,7 @@ class Running:
         self._middleware.subscribe(self.calibration.receive)
         self._closing: Findings | None = None
         self.resumed_at: int | None = None
-        self._learned_kept: DataDrivenModel | None = None
+        self._kept: dict[str, ContextEstimator | None] = {}
         self._recall()
 
     @property
@@ -249,13 +252,14 @@ class Running:
 
     def _checkpoint(self) -> None:
         standing, row = self.analysis.standing, max(0, self.row - 1)
-        standing.draws = self.calibration.draws
+        standing.draws, standing.inference = self.calibration.draws, self.calibration.inference
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
         self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
-        learned = self.calibration.learned
-        if learned is not None and learned is not self._learned_kept:
-            self._archive.keep("learned", learned.to_bytes(), row)
-            self._learned_kept = learned
+        for name in ESTIMATORS:
+            estimator: ContextEstimator | None = getattr(self.calibration, name)
+            if estimator is not None and estimator is not self._kept.get(name):
+                self._archive.keep(name, stored(estimator), row)
+                self._kept[name] = estimator
 
     def _recall(self) -> None:
         """Go on where the repository says that the run stands."""
@@ -271,12 +275,10 @@ class Running:
         ledger = ledger_of(
             view, len(station.channels), len(station.measured), len(self._model.context)
         )
-        learned = view.kept("learned")
+        simulation = self._twin.simulation()
+        for name in ESTIMATORS:
+            content = view.kept(name)
+            self._kept[name] = None if content is None else read(content, simulation)
         self.calibration.recall(
-            ledger,
-            self.analysis.standing,
-            None
-            if learned is None
-            else DataDrivenModel.from_bytes(learned, self._twin.simulation()),
+            ledger, self.analysis.standing, self._kept["learned"], self._kept["sound"]
         )
-        self._learned_kept = self.calibration.learned

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from rga.findings.criteria import Criteria
 from rga.inference.networks.settings import TrainingSettings
 
+Inference = Literal["auto", "joint", "networks", "amortised"]
 Level = Literal["A", "B", "C"]
 PolicyName = Literal["event", "time", "hybrid", "adaptive"]
 Count = Annotated[int, Field(ge=1, strict=True)]
@@ -19,6 +20,10 @@ class Settings(BaseModel):
     Attributes:
         level: A calibrates once; B also detects out-of-sync states and recalibrates (T1); C also
             stores novel contexts (T2).
+        inference: of contexts: `joint`, the joint posterior of contexts and structure, by which the
+            twin is corrected; `networks`, the paper's, on the model as it is; `amortised`, networks
+            on the corrected twin; or `auto`, the joint posterior where it can be had and predicts
+            rows held out better than the model as given, networks otherwise.
         calibration_rows: rows of the first calibration; None: a third of the record, 200 at most.
         packet: rows that arrive together; None: a 24th of the record.
         detector: of T1: `monitor`, whose false alarms come as rarely as `arl0` asks, or `window`,
@@ -33,9 +38,10 @@ class Settings(BaseModel):
             of the adaptive ones; None: a sixth of the record. `event` has none.
         settle: rows that are gathered after an alarm before a recalibration, and that one learns
             from at the least; None: a twelfth of the record.
-        recovered: a recalibration has brought the gap down when the gap is below this multiple of
-            what noise and the model's scatter, as of the first calibration, let expect.
-        growth: the diagnosis is asked again when the record has grown by this factor.
+        usual: a gap is as it was in the first calibration when it is less than in this share of
+            stretches of as many rows, drawn from that calibration [-].
+        growth: the diagnosis is asked again of a change that is in doubt when the record has grown
+            by this factor; of a new alarm it is asked at once.
         design_rows: simulations of the design phase.
         repository_z: width of the bound of T2 on the gap, in standard deviations.
         distinct: least distance of a novel context from all stored ones, in shares of the ranges
@@ -46,6 +52,7 @@ class Settings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     level: Level = "C"
+    inference: Inference = "auto"
     calibration_rows: Count | None = None
     packet: Count | None = None
     detector: Literal["monitor", "window"] = "monitor"
@@ -56,7 +63,7 @@ class Settings(BaseModel):
     policy: PolicyName = "event"
     interval: Count | None = None
     settle: Count | None = None
-    recovered: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.8
+    usual: Annotated[float, Field(gt=0.5, lt=1)] = 0.99
     growth: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 2.0
     design_rows: Annotated[int, Field(ge=128, le=10_000_000)] = 4096
     repository_z: Annotated[float, Field(gt=0, le=1e6)] = 4.0

@@ -7,6 +7,7 @@ from rga.arrays import FloatArray
 from rga.inference.networks.design_samples import design
 from rga.model import Model
 from rga.simulation import Simulator
+from rga.twin.correction import Correction
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q3, Q5, R3, R5, sha256
 
@@ -14,17 +15,31 @@ from rga.twin.messages.queries import Q3, Q5, R3, R5, sha256
 class SimulationModel:
     """What the channels of a station read.
 
+    Args:
+        model: a version of the twin's model.
+        station: what is mounted on the structure.
+        correction: of structure and sensors, by a calibration; None: there was none.
+
     Attributes:
-        model: a version of the twin's model, with the channels of the station as its sensors.
+        model: that version, with the channels of the station as its sensors, not corrected.
         latent: context variables that nothing measures.
-        simulator: of that model.
+        corrected: the model with its structure as it was found.
+        simulator: of the corrected model.
+        gains: factor of every channel on what the simulator says, float[channels].
     """
 
-    def __init__(self, model: Model, station: Station) -> None:
+    def __init__(
+        self, model: Model, station: Station, correction: Correction | None = None
+    ) -> None:
         self.model = mounted(model, station.channels)
         self.station = station
         self.latent = tuple(name for name in model.context if name not in station.measured)
-        self.simulator = Simulator(self.model)
+        self.corrected, self.gains = self.model, np.ones(len(station.channels))
+        self._offsets: FloatArray | None = None
+        if correction is not None:
+            self.corrected = correction.corrected(self.model)
+            self.gains, self._offsets = correction.of_sensors(station.channels)
+        self.simulator = Simulator(self.corrected)
         self._remembers = any(effect.remembers for effect in model.effects.values())
 
     def draw(self, query: Q3) -> R3:
@@ -33,14 +48,15 @@ class SimulationModel:
             zip(self.model.context, zip(query.box.low, query.box.high, strict=True), strict=True)
         )
         drawn = design(
-            self.model,
+            self.corrected,
             query.rows,
             latent=self.latent,
             seed=query.seed,
             box={name: ends for name, ends in box.items() if ends[0] < ends[1]},
             time=query.clock,
         )
-        readings = drawn.readings - self.zero(np.full(1, query.clock), drawn.contexts[:1])
+        offsets = self.offsets(np.full(1, query.clock), drawn.contexts[:1])
+        readings = self.gains * drawn.readings + offsets
         return R3(
             row=query.row,
             version=query.version,
@@ -79,7 +95,18 @@ class SimulationModel:
         """
         table = dict(zip(self.model.context, contexts.T, strict=True))
         readings = self.simulator.predict({**table, "time": clock})
-        return np.asarray(readings - self.zero(clock, contexts))
+        return np.asarray(self.gains * readings + self.offsets(clock, contexts))
+
+    def offsets(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
+        """What the channels read beside their gains times what the simulator says.
+
+        Args:
+            clock, contexts: of rows at which the channels are read, float[n], float[n, contexts].
+
+        Returns:
+            float[channels].
+        """
+        return -self.zero(clock, contexts) if self._offsets is None else self._offsets
 
     def zero(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
         """Mean of the channels over the rows that the logger took for unloaded, float[channels].

@@ -77,8 +77,14 @@ class Twin:
 
     @property
     def model(self) -> Model:
-        """The model version in force."""
+        """The model version in force, without what a calibration has corrected."""
         return extended(self.given, self.state.versions[self.version])
+
+    @property
+    def corrected(self) -> Model:
+        """The model version in force, its structure as the last calibration has found it."""
+        correction = self.state.corrections.get(self.version)
+        return self.model if correction is None else correction.corrected(self.model)
 
     @property
     def context(self) -> Mapping[str, float]:
@@ -115,7 +121,7 @@ class Twin:
         """
         record = record_of(self._view)
         now = {"time": float(record.origin + record.time[-1])} if len(record) else {}
-        answer = whatif(self.model, settings, add, base={**self.context, **now}, spread=self.spread)
+        answer = whatif(self.corrected, settings, add, base={**self.context, **now}, spread=self.spread)
         far = self._distance(answer.contexts)
         allowed = standing_of(self._view).distinct
         if far is not None and far > allowed:

@@ -98,7 +98,7 @@ def _measured(task: PolicyTask, view: RunView, seconds: float) -> PolicyResult:
         steps=_steps(trained, kinds.count("recalibration"), task.settings),
         simulations=sum(simulated[1:]),
         seconds=seconds,
-        **_gaps(history, standing_of(view).share, task.settings.recovered),
+        **_gaps(history, standing_of(view).share, SYNCHRONOUS),
     )
 
 

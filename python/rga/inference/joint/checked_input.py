@@ -1,16 +1,17 @@
 """What a joint inference is given, as arrays of the right shape, or one clear error."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.inference.joint.measured_contexts import MeasuredContexts
+from rga.inference.joint.measured_contexts import BEYOND, MeasuredContexts
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.rows import Rows
 from rga.model import Model
 
 #: a reading may be so many times the widest range of a sensor, and spreads of its noise, away from
-#: what the model simulates; a context so many widths of its range away from it
+#: what the model simulates
 FAR, FAR_NOISE = 3.0, 100.0
 PLACE = "joint inference"
 
@@ -87,7 +88,7 @@ def instruments(measured: MeasuredContexts | None, rows: int, model: Model) -> M
         remedy = f"give {contexts} standard deviations above 0, or MeasuredContexts.of"
         raise InputError("the noise of measured contexts is not known", PLACE, remedy)
     low, high = np.array([one.range for one in model.context.values()]).T
-    reach = FAR * (high - low)
+    reach = BEYOND * (high - low)
     far = np.isfinite(values) & ((values < low - reach) | (values > high + reach))
     if far.any():
         row, column = (int(one[0]) for one in np.nonzero(far))
@@ -120,14 +121,8 @@ def check_plausible(unknowns: Unknowns, readings: FloatArray, noise: FloatArray)
     Raises:
         InputError: a reading is far from what the model simulates.
     """
-    simulated = unknowns.predict(unknowns.spread_contexts, unknowns.centre)
-    low, high = simulated.min(axis=0), simulated.max(axis=0)
-    units = np.array([sensor.unit for sensor in unknowns.model.sensors.values()])
-    widest = np.array([(high - low)[units == one].max() for one in units])
-    reach = FAR * widest + FAR_NOISE * noise
-    with np.errstate(invalid="ignore"):
-        far = (readings < low - reach) | (readings > high + reach)
-    far &= np.isfinite(readings)
+    low, high, reach = _simulated(unknowns, noise)
+    far = _outside(readings, low - reach, high + reach)
     if far.any():
         row, sensor = (int(one[0]) for one in np.nonzero(far))
         name = list(unknowns.model.sensors)[sensor]
@@ -137,3 +132,26 @@ def check_plausible(unknowns: Unknowns, readings: FloatArray, noise: FloatArray)
             f"{PLACE}, row {row + 1}",
             "give NaN where nothing was measured, and readings in the units of the sensors",
         )
+
+
+def plausible(unknowns: Unknowns, readings: FloatArray, noise: FloatArray) -> FloatArray:
+    """Readings, float[n, sensors], NaN where one is far from what the model simulates."""
+    low, high, reach = _simulated(unknowns, noise)
+    return np.where(_outside(readings, low - reach, high + reach), np.nan, readings)
+
+
+def _outside(readings: FloatArray, low: FloatArray, high: FloatArray) -> NDArray[np.bool_]:
+    with np.errstate(invalid="ignore"):
+        far = (readings < low) | (readings > high)
+    return np.asarray(far & np.isfinite(readings))
+
+
+def _simulated(
+    unknowns: Unknowns, noise: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Smallest and largest reading simulated, and how far beyond one may lie, float[sensors]."""
+    simulated = unknowns.predict(unknowns.spread_contexts, unknowns.centre)
+    low, high = simulated.min(axis=0), simulated.max(axis=0)
+    units = np.array([sensor.unit for sensor in unknowns.model.sensors.values()])
+    widest = np.array([(high - low)[units == one].max() for one in units])
+    return low, high, FAR * widest + FAR_NOISE * noise

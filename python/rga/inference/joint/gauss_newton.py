@@ -13,7 +13,7 @@ from rga.inference.joint.population import Population
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import BENT, Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
-from rga.inference.map.posterior_mode import posterior_mode
+from rga.inference.map.posterior_mode import CLOSE, REACH, mode_beyond
 from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.rows import Rows
 from rga.simulation import Simulator
@@ -127,6 +127,7 @@ class Search:
         self.prior, self.centre, self.tails = prior, prior.mean, TAILS
         self._suppose(prior.first**2)
         self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
+        self.reach = self._reached()
         self.population = Population.unknown(len(ranges))
         self.volume = np.zeros(len(self.unit))
 
@@ -166,19 +167,25 @@ class Search:
         variance = self.measured.behind_noise(np.sqrt(self.variance)) ** 2
         guess = QuadraticGuess(simulated, np.sqrt(variance), self.ranges, seed=0)
         mode, kept = (
-            posterior_mode(
+            mode_beyond(
                 twin.simulate, twin.jacobian, read, np.diag(variance), self.ranges, start
             )
             for start in (guess(read), self.contexts[: self.many])
         )
         better = (mode.misfit < kept.misfit)[:, None]
         self.contexts[: self.many] = np.where(better, mode.value, kept.value)
+        self.reach = self._reached()
         if near:
             inside = np.where(better[:, None], mode.covariance, kept.covariance)
             z = (self.contexts[: self.many] - self.middle) / self.scale
             self.population = Population.of(z, np.diagonal(inside, axis1=1, axis2=2))
         self._weigh(self._residual(self.value, self.contexts), 0.0)
         self.volume = self._volume_slope()
+
+    def _reached(self) -> FloatArray:
+        """Half widths of its range that each row's context may reach, float[rows, contexts]."""
+        beyond = np.abs(self.contexts - self.middle) > EDGE * self.scale * (2.0 - CLOSE)
+        return np.where(beyond, REACH, 1.0)
 
     def _volume_slope(self) -> FloatArray:
         """Half the slope of the log determinant of the rows' precision along the parameters.
@@ -226,7 +233,8 @@ class Search:
         for share in SHARES:
             value = np.clip(self.value + share * self.unit * change, low, high)
             contexts = self.contexts + share * self.scale * moved
-            contexts = np.clip(contexts, *self.ranges.T)
+            farthest = EDGE * self.reach * self.scale
+            contexts = np.clip(contexts, self.middle - farthest, self.middle + farthest)
             contexts = np.where(self.free, contexts, self.contexts)
             population = self.population.moved(share * self.near * of_population)
             there = self._misfit(value, contexts, population)
@@ -250,7 +258,7 @@ class Search:
         pull = (turned @ off[:, :, None])[:, :, 0] - (z - middle) / width**2
         pull = np.where(self.free, pull, 0.0)
         # A context at an end of its range that would leave stays there.
-        held = (np.abs(z) > EDGE * (1.0 - 1e-9)) & (pull * z > 0)
+        held = (np.abs(z) > EDGE * self.reach * CLOSE) & (pull * z > 0)
         near, pull = np.where(held[:, None], 0.0, near), np.where(held, 0.0, pull)
         turned = near.transpose(0, 2, 1)
         own = turned @ near + np.eye(z.shape[1]) / width[:, :, None] ** 2

@@ -23,8 +23,9 @@ from rga.inference.joint.gauss_newton import JointPrior, Search
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
+from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
-from rga.inference.map.posterior_mode import Mode, posterior_mode
+from rga.inference.map.posterior_mode import Mode, mode_beyond
 from rga.inference.rows import Rows
 from rga.simulation import Simulator
 
@@ -74,14 +75,26 @@ class Joint:
         """
         table = table_of("readings", readings, len(self.gains))
         known = instruments(measured, len(table), self.unknowns.model)
-        twin = known.beside(self.twin)
-        ranges = known.within(twin.twin.ranges)
-        simulated = Rows(self.source, twin.simulate(self.source))
-        noise = known.behind_noise(np.sqrt(np.diagonal(self.covariance)))
-        covariance = np.diag(noise**2)
-        covariance[: len(self.gains), : len(self.gains)] = self.covariance
-        guess, read = QuadraticGuess(simulated, noise, ranges, seed=0), known.behind(table)
-        return posterior_mode(twin.simulate, twin.jacobian, read, covariance, ranges, guess(read))
+        return RowModes(self.twin, self.covariance, self.source, known)(table, known)
+
+    def about(self, unknowns: Unknowns) -> tuple[FloatArray, FloatArray]:
+        """Parameters and their covariance, as of a model with other effects or sensors.
+
+        What was not looked for is as its prior says.
+
+        Returns:
+            float[parameters] and, in units of the priors, float[parameters, parameters].
+        """
+        mine, theirs = _labels(self.unknowns), _labels(unknowns)
+        place = {label: number for number, label in enumerate(mine)}
+        shared = np.array([number for number, label in enumerate(theirs) if label in place], int)
+        taken = [place[theirs[number]] for number in shared]
+        sensors = len(unknowns.model.sensors)
+        value = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
+        sure = np.eye(len(value))
+        value[shared] = self.parameters[taken]
+        sure[np.ix_(shared, shared)] = self.sure[np.ix_(taken, taken)]
+        return value, sure
 
     @property
     def parameters(self) -> FloatArray:
@@ -91,13 +104,64 @@ class Joint:
     @property
     def twin(self) -> CorrectedTwin:
         """The model with its unknowns as they were found."""
+        return self.twin_at(self.unknowns.time)
+
+    def twin_at(self, time: float | None) -> CorrectedTwin:
+        """The same at a clock [s] that effects with an onset go by."""
         simulator = Simulator(self.unknowns.at(self.values))
-        return CorrectedTwin(simulator, self.gains, self.offsets, time=self.unknowns.time)
+        return CorrectedTwin(simulator, self.gains, self.offsets, time=time)
 
     @property
     def covariance(self) -> FloatArray:
         """Of what readings differ by from the twin, float[sensors, sensors]."""
         return np.asarray(np.diag(self.variance) + self.uncertainty)
+
+
+class RowModes:
+    """Contexts of single rows under a twin.
+
+    Args:
+        twin: it.
+        covariance: of what readings may differ by from it, float[sensors, sensors].
+        source: contexts to start from, float[m, contexts].
+        measured: contexts that instruments read; which, and how well.
+    """
+
+    def __init__(
+        self,
+        twin: TwinOnArrays,
+        covariance: FloatArray,
+        source: FloatArray,
+        measured: MeasuredContexts,
+    ) -> None:
+        sensors, self._bare = len(covariance), twin
+        self._twin, self._ranges = measured.beside(twin), measured.within(twin.ranges)
+        noise = measured.behind_noise(np.sqrt(np.diagonal(covariance)))
+        self._covariance = np.diag(noise**2)
+        self._covariance[:sensors, :sensors] = covariance
+        simulated = Rows(source, self._twin.simulate(source))
+        self._guess = QuadraticGuess(simulated, noise, self._ranges, seed=0)
+
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """Readings of the sensors without noise, float[n, sensors], of float[n, contexts]."""
+        return self._bare.simulate(contexts)
+
+    def __call__(self, readings: FloatArray, measured: MeasuredContexts) -> Mode:
+        """Contexts of rows, with their standard deviations.
+
+        Args:
+            readings: float[n, sensors], NaN where missing.
+            measured: contexts that instruments read at these rows, the same ones.
+        """
+        read = measured.behind(readings)
+        return mode_beyond(
+            self._twin.simulate,
+            self._twin.jacobian,
+            read,
+            self._covariance,
+            self._ranges,
+            self._guess(read),
+        )
 
 
 def infer_jointly(
@@ -127,8 +191,8 @@ def infer_jointly(
         measured: contexts that instruments read at the measured rows.
         start: an earlier result, about which unknowns are looked for again. Its rows are among the
             measured ones: a sensor that has changed since weighs less, and is not corrected.
-        prior: an earlier result, taken as prior: the rows that it came from need not be
-            among the measured ones. Since then unknowns may have moved, and sensors may lie.
+        prior: an earlier result, taken as prior, of this model or of one with other effects or
+            sensors: the rows that it came from need not be among the measured ones. Since then unknowns may have moved, and sensors may lie.
         progress: called with the share that is done.
 
     Raises:
@@ -143,7 +207,7 @@ def infer_jointly(
         check_plausible(unknowns, table, noise)
     known = JointPrior.fresh(unknowns, len(noise))
     if prior is not None:
-        known = JointPrior.later(prior.parameters, prior.sure, len(prior.values))
+        known = JointPrior.later(*prior.about(unknowns), len(unknowns.centre))
     read = instruments(measured, len(readings), unknowns.model)
     search = Search(unknowns, readings, noise, load_tests, known, read)
     rounds, steps = (ROUNDS, STEPS) if prior is None else LATER
@@ -167,10 +231,28 @@ def _check_earlier(unknowns: Unknowns, start: Joint | None, prior: Joint | None)
     for earlier in (start, prior):
         if earlier is None:
             continue
-        if not isinstance(earlier, Joint) or earlier.unknowns.names != unknowns.names:
+        if not isinstance(earlier, Joint) or not _fits(earlier, unknowns, whole=earlier is start):
             raise InputError(
                 "the earlier result is not of this model", PLACE, "give what was found for it"
             )
+
+
+def _fits(earlier: Joint, unknowns: Unknowns, whole: bool) -> bool:
+    """Whether an earlier result has all parameters of a model, or some of its structure's."""
+    if whole:
+        return _labels(earlier.unknowns) == _labels(unknowns)
+    shared = {part.name for part in earlier.unknowns.parts} & {part.name for part in unknowns.parts}
+    return bool(shared) and list(earlier.unknowns.model.context) == list(unknowns.model.context)
+
+
+def _labels(unknowns: Unknowns) -> list[tuple[str, str]]:
+    """What each parameter is of: unknowns, then gains, then offsets of sensors."""
+    sensors = unknowns.model.sensors
+    return [
+        *(("structure", part.name) for part in unknowns.parts),
+        *(("gain", name) for name in sensors),
+        *(("offset", name) for name in sensors),
+    ]
 
 
 def _told(search: Search, source: FloatArray) -> Joint:

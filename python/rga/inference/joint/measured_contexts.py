@@ -11,6 +11,8 @@ from rga.inference.map.array_simulator import TwinOnArrays
 
 #: least noise of an instrument, as a share of the range of its context
 EXACT = 1e-4
+#: widths of its range by which a context that is read may lie beyond it
+BEYOND = 3.0
 
 
 @dataclass(frozen=True)
@@ -47,14 +49,13 @@ class MeasuredContexts:
         return np.flatnonzero(np.isfinite(self.values).any(axis=0))
 
     def within(self, ranges: FloatArray) -> FloatArray:
-        """Ranges widened to what was read, float[contexts, 2]."""
-        if not len(self.columns):
-            return ranges
-        read = self.values[:, self.columns]
-        wide, reach = ranges.astype(float), 4.0 * self.noise[self.columns]
-        low, high = np.nanmin(read, axis=0) - reach, np.nanmax(read, axis=0) + reach
-        wide[self.columns, 0] = np.minimum(wide[self.columns, 0], low)
-        wide[self.columns, 1] = np.maximum(wide[self.columns, 1], high)
+        """Ranges widened by what may be read, whatever was read in these rows.
+
+        float[contexts, 2].
+        """
+        wide, read = ranges.astype(float), self.columns
+        reach = BEYOND * np.ptp(ranges[read], axis=1)[:, None] + 4.0 * self.noise[read][:, None]
+        wide[read] += reach * [-1.0, 1.0]
         return wide
 
     def beside(self, twin: TwinOnArrays) -> "WithInstruments":

@@ -12,6 +12,9 @@ from rga.numerics.gauss_newton import minimise
 
 #: steps at most; gain of a step [chi square] below which a row rests
 STEPS, GAIN = 20, 1e-2
+#: half widths of a range that a context reaches at most, gain [chi square] for which a row leaves a
+#: range, and share of the half width from which on a context stands at an end
+REACH, LEAVES, CLOSE = 3.0, 10.0, 1.0 - 1e-9
 
 OfContexts = Callable[[FloatArray], FloatArray]
 
@@ -41,11 +44,12 @@ def posterior_mode(
     ranges: FloatArray,
     start: FloatArray,
     steps: int = STEPS,
+    reach: float = 1.0,
 ) -> Mode:
     """Gauss-Newton steps inside the ranges, damped as their success asks.
 
     Contexts are counted in standard units z, of which the prior is normal with unit variance, cut
-    off at the ends of the range.
+    off at the ends of the range, or beyond them.
 
     Args:
         simulate: contexts, float[k, contexts] -> readings without noise, float[k, sensors].
@@ -55,6 +59,7 @@ def posterior_mode(
         ranges: smallest and largest of each context, float[contexts, 2].
         start: contexts to start from, float[n, contexts].
         steps: at most; 0 gives the spread at the start.
+        reach: half widths of the ranges at which the prior is cut off.
 
     >>> slopes = np.array([[1.0, 2.0], [0.5, -1.0], [0.0, 1.0]])
     >>> found = posterior_mode(
@@ -80,7 +85,35 @@ def posterior_mode(
     def slope(z: FloatArray, rows: IntArray) -> FloatArray:
         return whiten(jacobian(middle + scale * z) * scale, rows)
 
-    found = minimise(residual, slope, (start - middle) / scale, EDGE, steps, GAIN)
+    found = minimise(residual, slope, (start - middle) / scale, reach * EDGE, steps, GAIN)
     spread = np.asarray(np.linalg.inv(found.normal), dtype=float)
     deviation: FloatArray = np.sqrt(np.diagonal(spread, axis1=1, axis2=2))
     return Mode(middle + scale * found.z, scale * deviation, spread, found.misfit)
+
+
+def mode_beyond(
+    simulate: OfContexts,
+    jacobian: OfContexts,
+    readings: FloatArray,
+    covariance: FloatArray,
+    ranges: FloatArray,
+    start: FloatArray,
+) -> Mode:
+    """The same, in which a row leaves the ranges where it cannot be explained inside.
+
+    Ranges are what is expected, and a structure sees a crowd that nobody expected. Rows that stand
+    at an end of a range are tried beyond it, and stay there where that explains them far better.
+    """
+    inside = posterior_mode(simulate, jacobian, readings, covariance, ranges, start)
+    middle, scale = standard(ranges)
+    stuck = np.flatnonzero((np.abs(inside.value - middle) > scale * EDGE * CLOSE).any(axis=1))
+    if not len(stuck):
+        return inside
+    begun = inside.value[stuck]
+    beyond = posterior_mode(
+        simulate, jacobian, readings[stuck], covariance, ranges, begun, reach=REACH
+    )
+    better = beyond.misfit < inside.misfit[stuck] - LEAVES
+    for own, other in zip(vars(inside).values(), vars(beyond).values(), strict=True):
+        own[stuck[better]] = other[better]
+    return inside

@@ -1,28 +1,49 @@
 """Context capture: simulations, learning, inference, and the twin at the inferred context."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.model import Model
 from rga.twin.archive import Archive
 from rga.twin.calibration.channel_noise import noise_of
-from rga.twin.calibration.data_driven import DataDrivenModel
-from rga.twin.calibration.expectation import against_expected, scatter_share
+from rga.twin.calibration.choice import choose
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.expectation import (
+    against_expected,
+    rows_against_expected,
+    scatter_share,
+    usual_bound,
+)
+from rga.twin.calibration.joint_posterior import changes, why_not
+from rga.twin.calibration.learning import learn
+from rga.twin.calibration.lesson import Lesson
 from rga.twin.messages.hardware import Packet, Station
-from rga.twin.messages.queries import Q2, Q3, Q4, Q5, Box, sha256
+from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Q5, Box, sha256
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
-from rga.twin.settings import Settings
+from rga.twin.settings import Inference, Settings
 
 Progress = Callable[[str, float], None]
 
 
 class ContextCapture:
     """What is known of the contexts, and how it comes about.
+
+    Attributes:
+        ledger: the rows so far.
+        learned: what infers contexts now; None before the first calibration, or where none is
+            inferred.
+        sound: what did so when nothing was in doubt: a new version of the model begins there.
+        inference: the way to infer; "auto" until the first calibration has chosen one.
+        draws: seeds drawn so far.
+        ranges: smallest and largest of each context, float[contexts, 2].
+        noise: standard deviation of each channel's noise, float[channels].
 
     Args:
         exchange: takes queries to the twin and to the repository.
@@ -47,7 +68,9 @@ class ContextCapture:
         self.ledger = RowBuffer.empty(
             len(station.channels), len(station.measured), len(model.context)
         )
-        self.learned: DataDrivenModel | None = None
+        self.learned: ContextEstimator | None = None
+        self.sound: ContextEstimator | None = None
+        self.inference: Inference = settings.inference
         self.draws = 0
         self._exchange, self._archive, self._station = exchange, archive, station
         self._settings, self._seed, self._progress = settings, seed, progress
@@ -62,10 +85,15 @@ class ContextCapture:
         self.ledger.append(packet)
 
     def recall(
-        self, ledger: RowBuffer, standing: Standing, learned: DataDrivenModel | None
+        self,
+        ledger: RowBuffer,
+        standing: Standing,
+        learned: ContextEstimator | None,
+        sound: ContextEstimator | None,
     ) -> None:
         """Go on where a run stood."""
-        self.ledger, self.draws, self.learned = ledger, standing.draws, learned
+        self.ledger, self.draws, self.inference = ledger, standing.draws, standing.inference
+        self.learned, self.sound = learned, sound
         if standing.calibrated:
             self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
 
@@ -88,6 +116,26 @@ class ContextCapture:
         return against_expected(
             self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise, share
         )
+
+    def usual_gap(self, calibrated: int, rows: int, share: float) -> float:
+        """What the gap of so many rows stays below, were they as those of the calibration [-].
+
+        Args:
+            calibrated: rows of the first calibration.
+            rows: how many.
+            share: by which the model was off on these.
+        """
+        ledger, first = self.ledger, slice(0, calibrated)
+        by_row = rows_against_expected(
+            ledger.gaps[first], ledger.simulated[first], self.noise, share
+        )
+        return usual_bound(by_row, rows, self._settings.usual, self._seed)
+
+    def changes(self, before: ContextEstimator | None) -> tuple[str, ...]:
+        """What structure and sensors have changed by most since an estimator, in words."""
+        if self.learned is None or before is None:
+            return ()
+        return changes(before.found, self.learned.found)
 
     def scatter_share(self, first: int, end: int) -> float:
         """Share by which the model is off on calibrated rows [-]."""
@@ -118,27 +166,85 @@ class ContextCapture:
                 )
             )
 
-    def learn(self, rows: Sequence[tuple[int, int]], afresh: bool) -> None:
-        """Q4: learn from all simulations of the version in force and from measured rows.
+    def calibrate(self, rows: int) -> str:
+        """Q4: learn for the first time, from all simulations and so many measured rows.
+
+        Returns:
+            How contexts are inferred, and why, in words.
+
+        Raises:
+            InputError: the way to infer that the settings name cannot be had.
+        """
+        if not self._exchange.twin.state.latent:
+            return "all contexts are measured"
+        lesson, begun = self._lesson([(0, rows)]), None
+        words = f"contexts by inference {self.inference!r}, as the settings have it"
+        if self.inference == "auto":
+            chosen = choose(lesson)
+            self.inference, words, begun = chosen.inference, chosen.words, chosen.begun
+        elif self.inference != "networks" and (reason := why_not(lesson)):
+            raise InputError(
+                f"the joint posterior cannot be had: {reason}",
+                f"setting inference = {self.inference!r}",
+                "take 'auto' or 'networks'",
+            )
+        self._take(learn(self.inference, lesson, begun=begun))
+        self.sound = self.learned
+        return words
+
+    def recalibrate(self, calibrated: int, recent: tuple[int, int]) -> None:
+        """Q4: refine what was learned, on the latest rows beside those of the first calibration.
 
         Args:
-            rows: (first, end) of blocks of measured rows.
-            afresh: from new networks, not from those in use.
+            calibrated: rows of the first calibration.
+            recent: (first, end) of the latest rows.
         """
-        state = self._exchange.twin.state
-        if not state.latent:
-            return
-        row = max(0, len(self.ledger) - 1)
+        if self.learned is not None:
+            lesson = replace(self._lesson([(0, calibrated), recent]), new=calibrated)
+            self._take(self.learned.refined(lesson))
+
+    def learn_version(self, recent: tuple[int, int]) -> None:
+        """Q4: learn about a version of the model that has come into force.
+
+        Args:
+            recent: (first, end) of the rows that stand under it.
+        """
+        if self._exchange.twin.state.latent:
+            earlier = None if self.sound is None else self.sound.found
+            self._take(learn(self.inference, self._lesson([recent]), earlier=earlier))
+            self.sound = self.learned
+
+    def restore(self, learned: ContextEstimator | None) -> None:
+        """Take up an earlier estimator, and correct the twin as it did."""
+        self._take(learned)
+
+    def _lesson(self, rows: Sequence[tuple[int, int]]) -> Lesson:
+        """All simulations of the version in force, and blocks of measured rows."""
+        state, row = self._exchange.twin.state, max(0, len(self.ledger) - 1)
         data = self._exchange.ask(Q4(row=row, version=state.version, measured=tuple(rows)))
-        self.learned = DataDrivenModel.learn(
-            data,
-            state.latent,
+        return Lesson(
+            data=data,
+            latent=state.latent,
             noise=self.noise,
-            settings=self._settings.training,
-            seed=self._draw(),
-            start=None if afresh else self.learned,
             clock=float(self.clock(slice(-1, None))[0]),
+            seed=self._draw(),
+            training=self._settings.training,
             progress=lambda done: self._progress("learning contexts", done),
+        )
+
+    def _take(self, learned: ContextEstimator | None) -> None:
+        """Infer by an estimator from now on; the twin takes over what it found (Q1)."""
+        self.learned = learned
+        if learned is None or learned.correction is None:
+            return
+        station, row = self._station, max(0, len(self.ledger) - 1)
+        self._exchange.ask(
+            Q1(
+                row=row,
+                channels=station.channels,
+                measured=station.measured,
+                correction=learned.correction,
+            )
         )
 
     def follow(self, first: int, end: int) -> None:

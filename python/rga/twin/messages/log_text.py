@@ -73,6 +73,8 @@ def _adequacy(query: Q1, response: R1) -> str:
     asked = f"calibration on {len(query.channels)} channels"
     if query.restore is not None:
         asked = f"return to version {query.restore}"
+    elif query.correction is not None:
+        asked = "structure and sensors corrected by a calibration"
     elif query.effects is not None:
         asked = "update of the model: " + ", ".join(query.effects)
     if not response.adequate:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, model_validator
 
 from rga.arrays import FloatArray
+from rga.twin.correction import Correction
 
 Rows = Annotated[int, Field(ge=0)]
 Flags = NDArray[np.bool_]
@@ -63,6 +64,7 @@ class Q1(Message):
             given, as they stand in a model file; None: the model stays.
         gain, gain_ci90: of that update on held-out rows, as the diagnosis found it [-].
         restore: with a rollback: the version to return to.
+        correction: with a calibration: what it has found of structure and sensors.
     """
 
     kind: Literal["Q1"] = "Q1"
@@ -72,11 +74,13 @@ class Q1(Message):
     gain: FiniteFloat | None = None
     gain_ci90: tuple[FiniteFloat, FiniteFloat] | None = None
     restore: VersionNumber | None = None
+    correction: Correction | None = None
 
     @model_validator(mode="after")
     def _one_change(self) -> "Q1":
-        if self.effects is not None and self.restore is not None:
-            raise ValueError("an update and a rollback at once")
+        changes = (self.effects, self.restore, self.correction)
+        if sum(one is not None for one in changes) > 1:
+            raise ValueError("an update, a rollback or a correction, one at a time")
         return self
 
 
@@ -86,6 +90,7 @@ class R1(Message):
     Attributes:
         version: number of the model version.
         effects: its effects beyond the model as given.
+        correction: of its structure and of the sensors; None where no calibration has found any.
         adequate: whether a calibration can go on.
         missing: what the model lacks, in words.
         latent: context variables to infer.
@@ -95,6 +100,7 @@ class R1(Message):
     kind: Literal["R1"] = "R1"
     version: VersionNumber
     effects: dict[str, dict[str, Any]]
+    correction: Correction | None = None
     adequate: bool
     missing: tuple[str, ...]
     latent: tuple[str, ...]

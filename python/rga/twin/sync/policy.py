@@ -27,7 +27,6 @@ class Policy:
         adapts: the interval follows what recalibrations were worth.
         settle: rows that a recalibration learns from at the least.
         interval: that the clock begins with, in rows.
-        allowed: gap that may stay beyond the one to expect, as a multiple of that [-].
     """
 
     alarms: bool
@@ -35,7 +34,6 @@ class Policy:
     adapts: bool
     settle: int
     interval: int
-    allowed: float
 
     @classmethod
     def of(cls, settings: Settings, pace: Pace) -> Self:
@@ -47,7 +45,6 @@ class Policy:
             adapts=kind == "adaptive",
             settle=pace.settle,
             interval=pace.interval,
-            allowed=settings.recovered - 1.0,
         )
 
     def due(self, standing: Standing, last: bool) -> int | None:
@@ -70,7 +67,7 @@ class Policy:
             return False
         return not last and standing.row - standing.alarm < self.settle
 
-    def next_interval(self, interval: int, gain: float) -> int:
+    def next_interval(self, interval: int, gain: float, allowed: float) -> int:
         """The interval after a recalibration.
 
         A twin that drifts away at a steady rate has a squared gap that grows with the square of
@@ -81,15 +78,16 @@ class Policy:
         Args:
             interval: before it, in rows.
             gain: what it took off the gap, as a multiple of the gap to expect [-].
+            allowed: what may stay beyond the gap to expect, as a multiple of that [-].
 
         >>> policy = Policy.of(Settings(policy="adaptive"), Settings().pace(480))
-        >>> [policy.next_interval(80, gain) for gain in (0.0, 0.8, 1.6, 100.0)]
+        >>> [policy.next_interval(80, gain, 0.8) for gain in (0.0, 0.8, 1.6, 100.0)]
         [160, 80, 57, 40]
-        >>> policy.next_interval(320, 0.0)
+        >>> policy.next_interval(320, 0.0, 0.8)
         320
         """
         if not self.adapts:
             return interval
-        factor = np.sqrt(self.allowed / gain) if gain > 0 else STEP
+        factor = np.sqrt(allowed / gain) if gain > 0 else STEP
         wanted = interval * float(np.clip(factor, 1 / STEP, STEP))
         return round(float(np.clip(wanted, max(1, self.interval / REACH), self.interval * REACH)))

@@ -1,7 +1,8 @@
 """The data-driven model: from live readings to the contexts that nothing measures."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import Self
 
 import numpy as np
 import torch
@@ -9,25 +10,24 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from rga.arrays import FloatArray
-from rga.inference import ContextNetwork, Samples, TrainingSettings, Variables, train
+from rga.inference import ContextNetwork, Samples, Variables, train
 from rga.inference.laws.mixture import Candidates, joined
 from rga.inference.laws.over_time import follow_law
 from rga.inference.laws.refine import polish_line
 from rga.inference.map.laplace import birge_ratio, covering_factor, laplace_spread
 from rga.inference.networks.travel_direction import EitherWay
 from rga.model import ContextVariable, Model
-from rga.twin.messages.queries import R4
+from rga.twin.calibration.blocks import BLOCK, block, blocks
+from rga.twin.calibration.lesson import Lesson
 from rga.twin.simulation_model import SimulationModel, broken
 
 #: one simulation in so many is held out from training, to measure how far intervals must reach
 HELD_OUT = 8
-#: rows are inferred in blocks of this size, so that packets of any size give the same bits
-BLOCK = 32
 #: rows on which lines are compared
 ROWS_COMPARED = 200
 
 
-class DataDrivenModel:
+class NetworkEstimator:
     """Encoder and context predictor, with what their intervals must be stretched by.
 
     Args:
@@ -37,6 +37,8 @@ class DataDrivenModel:
         noise: standard deviation of channels, then of contexts that are not inferred.
         factor: on the spread of each latent context, float[latent].
     """
+
+    kind = "networks"
 
     def __init__(
         self,
@@ -51,32 +53,15 @@ class DataDrivenModel:
         self._known: dict[int, Candidates] = {}
 
     @classmethod
-    def learn(
-        cls,
-        data: R4,
-        latent: tuple[str, ...],
-        *,
-        noise: FloatArray,
-        settings: TrainingSettings,
-        seed: int,
-        start: "DataDrivenModel | None",
-        clock: float,
-        progress: Callable[[float], None],
-    ) -> "DataDrivenModel":
-        """Learn from a data set (R4).
+    def learn(cls, lesson: Lesson, start: Self | None = None) -> Self:
+        """Learn from simulated and measured rows.
 
         Args:
-            data: simulated and measured rows.
-            latent: contexts to infer.
-            noise: standard deviation of each channel's noise, float[channels]; NaN for one that
-                is not to be looked at.
-            settings: of the training.
-            seed: of everything random.
+            lesson: what to learn from.
             start: a model to refine; None: from new networks.
-            clock: time [s] that effects with an onset go by.
-            progress: called with the share that is done.
         """
-        simulation: SimulationModel = data.simulation
+        data, simulation, latent = lesson.data, lesson.simulation, lesson.latent
+        noise, settings, clock = lesson.noise, lesson.training, lesson.clock
         model = simulation.model
         variables = Variables.of(model, latent)
         faulty = broken(data.readings) | np.isnan(noise)
@@ -107,14 +92,28 @@ class DataDrivenModel:
             settings,
             variables=variables,
             noise=level,
-            seed=seed,
+            seed=lesson.seed,
             physics=physics,
             start=None if start is None else start._network,
-            progress=progress,
+            progress=lesson.progress,
         )
         learned = cls(network, simulation, faulty, level, np.ones(len(latent)))
-        learned._stretch(source.rows(~unheld), clock, seed)
+        learned._stretch(source.rows(~unheld), clock, lesson.seed)
         return learned
+
+    def refined(self, lesson: Lesson) -> Self:
+        """What it becomes by a lesson."""
+        return self.learn(lesson, self)
+
+    @property
+    def found(self) -> None:
+        """None: networks take the model as it is."""
+        return None
+
+    @property
+    def correction(self) -> None:
+        """None: networks take the model as it is."""
+        return None
 
     def infer(
         self,
@@ -124,18 +123,7 @@ class DataDrivenModel:
         time: FloatArray,
         laws: Sequence[ContextVariable],
     ) -> tuple[FloatArray, FloatArray]:
-        """Latent contexts from a row on, and their standard deviations.
-
-        Args:
-            first: number of the first row to infer.
-            readings: of all rows so far, float[rows, channels], NaN where missing.
-            contexts: all contexts of these rows; latent ones are not looked at.
-            time: of these rows [s].
-            laws: how each latent context moves.
-
-        Returns:
-            float[rows - first, latent] each.
-        """
+        """Latent contexts from a row on, and their standard deviations (`ContextEstimator`)."""
         moving = [number for number, one in enumerate(laws) if one.law != "independent"]
         alone = [number for number, one in enumerate(laws) if one.law == "independent"]
         several = self._several(0 if moving else first, readings, contexts)
@@ -172,7 +160,7 @@ class DataDrivenModel:
         return json.dumps(head).encode() + b"\n" + self._network.to_bytes()
 
     @classmethod
-    def from_bytes(cls, content: bytes, simulation: SimulationModel) -> "DataDrivenModel":
+    def from_bytes(cls, content: bytes, simulation: SimulationModel) -> Self:
         """What `to_bytes` wrote, about the same simulation."""
         head, network = content.split(b"\n", 1)
         known = json.loads(head)
@@ -188,18 +176,18 @@ class DataDrivenModel:
         """What the network holds possible for rows from `first` on, each from its own readings."""
         measured = contexts[:, self._network.variables.measured_columns]
         seen = np.where(self._faulty, np.nan, readings)
-        blocks = []
-        for number in range(first // BLOCK, -(-len(readings) // BLOCK)):
+        parts = []
+        for number in blocks(first, len(readings)):
             if number not in self._known:
-                rows = _block(number, len(readings))
+                rows = block(number, len(readings))
                 found = self._network.candidates(seen[rows], measured[rows])
                 if (number + 1) * BLOCK > len(readings):
-                    blocks.append(found)
+                    parts.append(found)
                     break
                 self._known[number] = found
-            blocks.append(self._known[number])
+            parts.append(self._known[number])
         lead = first % BLOCK
-        return joined(blocks).rows(slice(lead, lead + len(readings) - first))
+        return joined(parts).rows(slice(lead, lead + len(readings) - first))
 
     def _arrived(
         self,
@@ -259,8 +247,8 @@ class DataDrivenModel:
         seen = np.isfinite(np.where(self._faulty, np.nan, readings))
         whole = np.concatenate([np.zeros((first, value.shape[1])), value])
         parts = []
-        for number in range(first // BLOCK, -(-len(readings) // BLOCK)):
-            rows = np.maximum(_block(number, len(readings)), first)
+        for number in blocks(first, len(readings)):
+            rows = np.maximum(block(number, len(readings)), first)
             spread = laplace_spread(
                 self._simulation.simulator,
                 variables,
@@ -298,11 +286,6 @@ class DataDrivenModel:
         self._known.clear()
 
 
-def _block(number: int, rows: int) -> NDArray[np.int64]:
-    """Rows of a block; behind the last row it stands again."""
-    return np.minimum(np.arange(number * BLOCK, (number + 1) * BLOCK), rows - 1)
-
-
 def _slow(model: Model, latent: tuple[str, ...]) -> bool:
     """Whether every row has a structure of its own: then a simulation takes a solve a row."""
     structural = (effect for effect in model.effects.values() if effect.structural)
@@ -323,6 +306,7 @@ class _Exact(nn.Module):
     def forward(self, contexts: Tensor) -> Tensor:
         found = contexts.detach().numpy()
         time = np.full(len(found), self._clock)
-        zero = torch.from_numpy(self._simulation.zero(time[:1], found[:1]))
-        readings: Tensor = self._layer(contexts, time) - zero
+        offsets = torch.from_numpy(self._simulation.offsets(time[:1], found[:1]))
+        gains = torch.from_numpy(self._simulation.gains)
+        readings: Tensor = gains * self._layer(contexts, time) + offsets
         return torch.where(self._faulty, 0.0, readings)
