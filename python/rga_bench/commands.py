@@ -60,6 +60,7 @@ Generator = Annotated[
 Splits = Annotated[int, typer.Option("--splits", min=1, help="Random splits of the full gap.")]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
+FewStreams = Annotated[bool, typer.Option("--quick", help="One stream of each sort.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
 Least = Annotated[bool, typer.Option("--quick", help="One split, few methods and drifts.")]
 Stored = Annotated[
@@ -234,6 +235,14 @@ def policies(quick: Few = False, seed: Seed = 0) -> Experiment[Any]:
     from rga_bench.policies.experiment import PoliciesExperiment
 
     return PoliciesExperiment.of(seed, quick=quick)
+
+
+@_experiment(WORKERS, DASK, MINUTES, KEPT)
+def streams(quick: FewStreams = False, seed: Seed = 1) -> Experiment[Any]:
+    """The twin as it is shipped, on streams in which something changes or nothing does."""
+    from rga_bench.streams.experiment import StreamsExperiment
+
+    return StreamsExperiment.of(seed, quick=quick)
 
 
 @_experiment(WORKERS, WRITTEN)

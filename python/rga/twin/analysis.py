@@ -27,6 +27,8 @@ from rga.twin.sync.policy import Policy
 Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version
 WORSE = 1.25
+#: of the gap to expect, that may stay after a recalibration whatever the calibration left [-]
+LEAST_ALLOWED = 0.1
 
 
 class RealityGapAnalysis:
@@ -110,7 +112,7 @@ class RealityGapAnalysis:
                 self._integrate(first, end)
         if self._policy.due(standing, last) is not None:
             standing.stage = "recalibrate"
-        elif standing.doubted and self._may_ask():
+        elif standing.doubted and standing.alarm is None and self._may_ask():
             standing.stage = "diagnose"
         elif last:
             standing.stage = "close"
@@ -132,7 +134,9 @@ class RealityGapAnalysis:
         self._refine(recent)
         after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
         doubted, ended = self._judged(expected, left, usual, calibration.changes(known))
-        interval = self._policy.next_interval(standing.interval, expected - left, usual - 1.0)
+        interval = self._policy.next_interval(
+            standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
+        )
         if interval != standing.interval:
             ended += f"; the interval is now {interval} rows"
         standing.interval = interval
@@ -159,21 +163,22 @@ class RealityGapAnalysis:
             usual: what it stays below on stretches of the calibration [-].
             changes: of structure and sensors, by which the gap came down.
         """
-        below = f"as in the calibration, whose own stretches stay below {usual:.2f}"
-        if before <= usual and after <= usual:
-            return False, f"contexts explain them, the gap is {after:.2f} of what is expected, {below}"
+        own = f"in the calibration, stretches as long stay below {usual:.2f}"
         if after > usual:
             return True, (
-                f"contexts do not explain them, the gap is {after:.2f} of what is expected, and "
-                f"stretches of the calibration stay below {usual:.2f}: the model is in doubt"
+                f"contexts do not explain them: the gap is {after:.2f} of what noise and scatter "
+                f"let expect, {own}; the model is in doubt"
             )
-        if changes:
+        if before > usual and changes:
             return True, (
-                f"contexts alone leave {before:.2f} of the expected gap, more than the "
-                f"{usual:.2f} of the calibration. With {', '.join(changes)} it is {after:.2f}: "
-                "something may have changed, and the diagnosis is to say what"
+                f"contexts alone leave {before:.2f} of the gap that noise and scatter let expect, "
+                f"{own}; with {' and '.join(changes)} it is {after:.2f}. Has the structure "
+                "changed? The diagnosis is to say"
             )
-        return False, f"learned anew, the gap fell from {before:.2f} to {after:.2f} of what is expected, {below}"
+        healed = f"learned from them, the gap fell from {before:.2f} to {after:.2f}"
+        explained = f"contexts explain them, the gap is {after:.2f}"
+        words = explained if before <= usual else healed
+        return False, f"{words} of what noise and scatter let expect, {own}"
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
@@ -310,7 +315,7 @@ class RealityGapAnalysis:
         self.standing.stage = "close" if last else "watch"
 
     def _may_ask(self) -> bool:
-        """The diagnosis is slow: it is asked of a new alarm, or when the record has grown enough."""
+        """The diagnosis is slow: it is asked of a new alarm, or when the record has grown."""
         standing, asked = self.standing, self.standing.diagnosed
         if asked is None or (standing.alarm is not None and standing.alarm >= asked):
             return True

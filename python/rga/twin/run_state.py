@@ -25,6 +25,7 @@ class Standing(BaseModel):
         interval: rows from there to the next recalibration by the clock.
         draws: seeds drawn so far.
         inference: the way to infer contexts; "auto" until one is chosen.
+        optimism: gap of rows that the calibration did not learn from, over that of its own [-].
         share: by which the model was off on the rows of the first calibration [-].
         distinct: least distance of a novel context, in shares of the ranges.
         diagnosed: rows of the last diagnosis.
@@ -42,6 +43,7 @@ class Standing(BaseModel):
     interval: int = 0
     draws: int = 0
     inference: Inference = "auto"
+    optimism: float = 1.0
     share: float = 0.0
     distinct: float = 0.0
     diagnosed: int | None = None

@@ -15,7 +15,8 @@ from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.calibration.estimator import ContextEstimator
-from rga.twin.calibration.learning import read, written as stored
+from rga.twin.calibration.learning import read
+from rga.twin.calibration.learning import written as stored
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
@@ -252,11 +253,13 @@ class Running:
 
     def _checkpoint(self) -> None:
         standing, row = self.analysis.standing, max(0, self.row - 1)
-        standing.draws, standing.inference = self.calibration.draws, self.calibration.inference
+        calibration = self.calibration
+        standing.draws, standing.inference = calibration.draws, calibration.inference
+        standing.optimism = calibration.optimism
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
         self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
         for name in ESTIMATORS:
-            estimator: ContextEstimator | None = getattr(self.calibration, name)
+            estimator: ContextEstimator | None = getattr(calibration, name)
             if estimator is not None and estimator is not self._kept.get(name):
                 self._archive.keep(name, stored(estimator), row)
                 self._kept[name] = estimator

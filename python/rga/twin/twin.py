@@ -26,6 +26,7 @@ from rga.twin.restore import (
     station_of,
     story_of,
 )
+from rga.twin.settings import Inference
 from rga.twin.versions import extended
 
 
@@ -87,6 +88,11 @@ class Twin:
         return self.model if correction is None else correction.corrected(self.model)
 
     @property
+    def inference(self) -> Inference:
+        """How contexts are inferred; "auto" as long as nothing is calibrated."""
+        return standing_of(self._view).inference
+
+    @property
     def context(self) -> Mapping[str, float]:
         """The contexts at which the twin stands."""
         return self.state.context
@@ -121,7 +127,9 @@ class Twin:
         """
         record = record_of(self._view)
         now = {"time": float(record.origin + record.time[-1])} if len(record) else {}
-        answer = whatif(self.corrected, settings, add, base={**self.context, **now}, spread=self.spread)
+        answer = whatif(
+            self.corrected, settings, add, base={**self.context, **now}, spread=self.spread
+        )
         far = self._distance(answer.contexts)
         allowed = standing_of(self._view).distinct
         if far is not None and far > allowed:

@@ -12,6 +12,8 @@ STREAMS: dict[str, dict[str, Any]] = {
     "sudden drift": {},
     "slow drift": {"slow": True},
 }
+#: a row is out of sync where its gap is more than what noise and scatter let expect by this factor
+OUT_OF_SYNC = 1.8
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class PolicySetting:
     rows: int = 480
     seed: int = 0
     clocks: tuple[int, ...] = (12, 6, 3)
-    settings: Settings = field(default_factory=Settings)
+    settings: Settings = field(default_factory=lambda: Settings(inference="networks"))
 
     def policies(self) -> dict[str, Settings]:
         """Settings of the twins, by the name of their policy."""
@@ -80,5 +82,5 @@ class PolicyTask:
 def shorter(seed: int) -> PolicySetting:
     """What takes less than a minute: one stream of each sort, and networks that learn little."""
     training = TrainingSettings(steps=700, reduced_steps=500)
-    settings = Settings(design_rows=2048, training=training)
+    settings = Settings(inference="networks", design_rows=2048, training=training)
     return PolicySetting(streams=1, rows=240, seed=seed, clocks=(6,), settings=settings)

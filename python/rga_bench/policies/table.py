@@ -28,8 +28,9 @@ a twin requested, because a recalibration did not bring the gap down, are counte
 
 The gap is the mean over rows and sensors of the squared gap over the variance of the noise, RG the
 mean of the squared gap over displacement sensors, both as the twin stood at the time, before a
-recalibration looked back. A row is out of sync where its gap is beyond what a recalibration may
-leave (`recovered`). On the null twin nothing drifts: all that is spent there is waste."""
+recalibration looked back. A row is out of sync where its gap is 1.8 times what noise and scatter
+let expect. Contexts are inferred by networks. On the null twin nothing drifts: all that is spent
+there is waste."""
 
 
 def page(played: Sequence[PolicyResult], command: str) -> MarkdownPage:

@@ -16,7 +16,7 @@ from rga.twin.repository import Repository, RunView
 from rga.twin.restore import history_of, log_of, standing_of
 from rga.twin.runner import taken_up
 from rga.twin.settings import Settings
-from rga_bench.policies.setting import STREAMS, PolicyTask
+from rga_bench.policies.setting import OUT_OF_SYNC, STREAMS, PolicyTask
 from rga_bench.synthetic import draw_stream
 
 
@@ -98,7 +98,7 @@ def _measured(task: PolicyTask, view: RunView, seconds: float) -> PolicyResult:
         steps=_steps(trained, kinds.count("recalibration"), task.settings),
         simulations=sum(simulated[1:]),
         seconds=seconds,
-        **_gaps(history, standing_of(view).share, SYNCHRONOUS),
+        **_gaps(history, standing_of(view).share, OUT_OF_SYNC),
     )
 
 

@@ -60,7 +60,7 @@ def test_messages_are_validated(wrong: dict[str, Any]) -> None:
 
 
 def test_a_question_asks_one_change_only(small_bridge: dict[str, Any]) -> None:
-    with pytest.raises(ValidationError, match="at once"):
+    with pytest.raises(ValidationError, match="one at a time"):
         first_question(station(small_bridge), effects={}, restore=1)
 
 

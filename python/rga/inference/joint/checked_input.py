@@ -146,9 +146,7 @@ def _outside(readings: FloatArray, low: FloatArray, high: FloatArray) -> NDArray
     return np.asarray(far & np.isfinite(readings))
 
 
-def _simulated(
-    unknowns: Unknowns, noise: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _simulated(unknowns: Unknowns, noise: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Smallest and largest reading simulated, and how far beyond one may lie, float[sensors]."""
     simulated = unknowns.predict(unknowns.spread_contexts, unknowns.centre)
     low, high = simulated.min(axis=0), simulated.max(axis=0)

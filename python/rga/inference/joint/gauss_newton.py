@@ -13,7 +13,7 @@ from rga.inference.joint.population import Population
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import BENT, Unknowns
 from rga.inference.map.initial_guess import QuadraticGuess
-from rga.inference.map.posterior_mode import CLOSE, REACH, mode_beyond
+from rga.inference.map.posterior_mode import CLOSE, REACH, mode_beyond, posterior_mode
 from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.rows import Rows
 from rga.simulation import Simulator
@@ -43,25 +43,32 @@ class JointPrior(NamedTuple):
         covariance: float[parameters, parameters].
         change: scale of what each has changed by, float[parameters].
         first: what is thought of it at first.
+        earlier: whether it is an earlier result.
     """
 
     mean: FloatArray
     covariance: FloatArray
     change: FloatArray
     first: FloatArray
+    earlier: bool
 
     @classmethod
     def fresh(cls, unknowns: Unknowns, sensors: int) -> "JointPrior":
         """Unknowns as their priors say; sensors are sound, but for some."""
         own = np.repeat([1.0, 0.0], [len(unknowns.centre), 2 * sensors])
         mean = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
-        return cls(mean, np.diag(own), 1.0 - own, 1.0 - own)
+        return cls(mean, np.diag(own), 1.0 - own, 1.0 - own, earlier=False)
 
     @classmethod
     def later(cls, mean: FloatArray, covariance: FloatArray, unknowns: int) -> "JointPrior":
         """What was found earlier, with its covariance."""
         first = np.repeat(FIRST, [unknowns, len(mean) - unknowns])
-        return cls(mean, covariance, np.full(len(mean), CHANGE), first)
+        return cls(mean, covariance, np.full(len(mean), CHANGE), first, earlier=True)
+
+
+def parameter_units(unknowns: Unknowns, noise: FloatArray) -> FloatArray:
+    """Prior spreads of unknowns, gains and offsets, float[unknowns + 2 sensors]."""
+    return np.concatenate([unknowns.spread, np.full(len(noise), GAIN), OFFSET * noise])
 
 
 class LinearisedRows(NamedTuple):
@@ -123,7 +130,7 @@ class Search:
         self.told = (self.contexts - self.middle) / self.scale, measured.noise / self.scale
         self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
         self.count = len(unknowns.centre)
-        self.unit = np.concatenate([unknowns.spread, np.full(len(noise), GAIN), OFFSET * noise])
+        self.unit = parameter_units(unknowns, noise)
         self.prior, self.centre, self.tails = prior, prior.mean, TAILS
         self._suppose(prior.first**2)
         self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
@@ -166,10 +173,10 @@ class Search:
         read = self.measured.behind(self.readings[: self.many])
         variance = self.measured.behind_noise(np.sqrt(self.variance)) ** 2
         guess = QuadraticGuess(simulated, np.sqrt(variance), self.ranges, seed=0)
+        # That contexts lie in their ranges says how stiff a structure is that is not known yet.
+        infer = mode_beyond if self.prior.earlier else posterior_mode
         mode, kept = (
-            mode_beyond(
-                twin.simulate, twin.jacobian, read, np.diag(variance), self.ranges, start
-            )
+            infer(twin.simulate, twin.jacobian, read, np.diag(variance), self.ranges, start)
             for start in (guess(read), self.contexts[: self.many])
         )
         better = (mode.misfit < kept.misfit)[:, None]

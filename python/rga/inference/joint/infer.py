@@ -5,9 +5,10 @@ sensors outnumber contexts. Rows whose contexts are known, load tests, join in w
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -19,8 +20,9 @@ from rga.inference.joint.checked_input import (
     joint_rows,
     table_of,
 )
-from rga.inference.joint.gauss_newton import JointPrior, Search
+from rga.inference.joint.gauss_newton import JointPrior, Search, parameter_units
 from rga.inference.joint.measured_contexts import MeasuredContexts
+from rga.inference.joint.row_spread import row_spread
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.array_simulator import TwinOnArrays
@@ -47,6 +49,7 @@ class Joint:
         offsets: of the sensors, in their units, float[sensors].
         sure: covariance of unknowns, gains and offsets in units of their priors,
             float[parameters, parameters].
+        noise: standard deviation of the noise of each sensor, as it was given, float[sensors].
         variance: of what readings still differ by from the twin, float[sensors].
         uncertainty: covariance of readings because unknowns are not sure, float[sensors, sensors].
         rows: measured rows with the contexts found; load tests are not among them.
@@ -58,6 +61,7 @@ class Joint:
     gains: FloatArray
     offsets: FloatArray
     sure: FloatArray
+    noise: FloatArray
     variance: FloatArray
     uncertainty: FloatArray
     rows: Rows
@@ -75,7 +79,39 @@ class Joint:
         """
         table = table_of("readings", readings, len(self.gains))
         known = instruments(measured, len(table), self.unknowns.model)
-        return RowModes(self.twin, self.covariance, self.source, known)(table, known)
+        found = RowModes(self.twin, self.covariance, self.source, known)(table, known)
+        variance = np.tile(self.variance, (len(table), 1))
+        unsure = self.spread(found.value, np.isfinite(table), known, variance)
+        return replace(found, spread=np.maximum(found.spread, unsure))
+
+    def spread(
+        self,
+        contexts: FloatArray,
+        observed: NDArray[np.bool_],
+        measured: MeasuredContexts,
+        variance: FloatArray,
+    ) -> FloatArray:
+        """Standard deviations of contexts, what is unsure of the structure as large as there.
+
+        Args:
+            contexts: float[n, contexts].
+            observed: readings that they were found by, bool[n, sensors].
+            measured: contexts that instruments read at these rows.
+            variance: of what readings differ by from the twin, float[n, sensors].
+
+        Returns:
+            float[n, contexts].
+        """
+        if not len(contexts):
+            return np.zeros(contexts.shape)
+        root = self.units[:, None] * np.linalg.cholesky(self.sure)
+        parameters = (self.values, self.gains, self.offsets)
+        return row_spread(self.unknowns, parameters, root, variance, contexts, observed, measured)
+
+    @property
+    def units(self) -> FloatArray:
+        """What `sure` counts unknowns, gains and offsets in, float[unknowns + 2 sensors]."""
+        return parameter_units(self.unknowns, self.noise)
 
     def about(self, unknowns: Unknowns) -> tuple[FloatArray, FloatArray]:
         """Parameters and their covariance, as of a model with other effects or sensors.
@@ -135,7 +171,7 @@ class RowModes:
         measured: MeasuredContexts,
     ) -> None:
         sensors, self._bare = len(covariance), twin
-        self._twin, self._ranges = measured.beside(twin), measured.within(twin.ranges)
+        self._twin, self._ranges = measured.beside(twin), measured.widest(twin.ranges)
         noise = measured.behind_noise(np.sqrt(np.diagonal(covariance)))
         self._covariance = np.diag(noise**2)
         self._covariance[:sensors, :sensors] = covariance
@@ -192,7 +228,8 @@ def infer_jointly(
         start: an earlier result, about which unknowns are looked for again. Its rows are among the
             measured ones: a sensor that has changed since weighs less, and is not corrected.
         prior: an earlier result, taken as prior, of this model or of one with other effects or
-            sensors: the rows that it came from need not be among the measured ones. Since then unknowns may have moved, and sensors may lie.
+            sensors: the rows that it came from need not be among the measured ones. Since then
+            unknowns may have moved, and sensors may lie.
         progress: called with the share that is done.
 
     Raises:
@@ -268,6 +305,7 @@ def _told(search: Search, source: FloatArray) -> Joint:
         gains=gains,
         offsets=offsets,
         sure=sure,
+        noise=search.noise,
         variance=search.variance,
         uncertainty=moved @ moved.T / max(len(search.slopes), 1),
         rows=Rows(search.contexts[: search.many], search.readings[: search.many]),

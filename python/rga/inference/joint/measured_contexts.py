@@ -49,10 +49,18 @@ class MeasuredContexts:
         return np.flatnonzero(np.isfinite(self.values).any(axis=0))
 
     def within(self, ranges: FloatArray) -> FloatArray:
-        """Ranges widened by what may be read, whatever was read in these rows.
+        """Ranges widened to what was read, float[contexts, 2]."""
+        if not len(self.columns):
+            return ranges
+        read = self.values[:, self.columns]
+        wide, reach = ranges.astype(float), 4.0 * self.noise[self.columns]
+        low, high = np.nanmin(read, axis=0) - reach, np.nanmax(read, axis=0) + reach
+        wide[self.columns, 0] = np.minimum(wide[self.columns, 0], low)
+        wide[self.columns, 1] = np.maximum(wide[self.columns, 1], high)
+        return wide
 
-        float[contexts, 2].
-        """
+    def widest(self, ranges: FloatArray) -> FloatArray:
+        """Ranges widened to what may be read, whatever these rows hold, float[contexts, 2]."""
         wide, read = ranges.astype(float), self.columns
         reach = BEYOND * np.ptp(ranges[read], axis=1)[:, None] + 4.0 * self.noise[read][:, None]
         wide[read] += reach * [-1.0, 1.0]

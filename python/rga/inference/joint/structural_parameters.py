@@ -13,7 +13,7 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.joint.joint_stiffness_surrogate import BENDING, with_bending
 from rga.inference.map.array_simulator import TwinOnArrays
-from rga.model import Model, model_content, read_model
+from rga.model import Model, model_content, read_effect, read_model
 from rga.model.parameter import listed
 from rga.simulation import Simulator
 
@@ -66,6 +66,17 @@ class StructuralParameter:
             return {**self.effect, self.key: {"context": self.follows, "times": value}}
         moved = self.driven.get("times", 1.0) * value
         return {**self.effect, self.key: 10.0**moved if self.driven.get("log10") else moved}
+
+    def changed(self, before: float, after: float) -> str:
+        """A change of it in words.
+
+        >>> sunk = StructuralParameter("settlement of east", {}, "displacement", {}, 0, 1, (-1, 1))
+        >>> sunk.changed(0.0, -0.0011)
+        'settlement of east -0.0011 m'
+        """
+        if self.driven.get("log10"):
+            return f"{self.name} {10.0 ** (after - before) - 1.0:+.2%}"
+        return f"{self.name} {after - before:+.2g}" + ("" if self.follows else " m")
 
 
 class Unknowns:
@@ -123,13 +134,12 @@ class Unknowns:
 
     def at(self, values: FloatArray) -> Model:
         """The model extended by the unknowns at values, float[unknowns]."""
-        content = model_content(self._bending)
         # They come first: what does not vary is put on the structure once.
         found = {
-            part.name: part.at(float(value)) for part, value in zip(self.parts, values, strict=True)
+            part.name: read_effect(part.at(float(value)), part.name)
+            for part, value in zip(self.parts, values, strict=True)
         }
-        content["effects"] = {**found, **content["effects"]}
-        return read_model(content, "the model with its unknowns")
+        return self._bending.model_copy(update={"effects": {**found, **self._bending.effects}})
 
     def linearise(
         self, contexts: FloatArray, values: FloatArray

@@ -41,6 +41,7 @@ class ContextCapture:
             inferred.
         sound: what did so when nothing was in doubt: a new version of the model begins there.
         inference: the way to infer; "auto" until the first calibration has chosen one.
+        optimism: gap of rows that the calibration did not learn from, over that of its own [-].
         draws: seeds drawn so far.
         ranges: smallest and largest of each context, float[contexts, 2].
         noise: standard deviation of each channel's noise, float[channels].
@@ -71,6 +72,7 @@ class ContextCapture:
         self.learned: ContextEstimator | None = None
         self.sound: ContextEstimator | None = None
         self.inference: Inference = settings.inference
+        self.optimism = 1.0
         self.draws = 0
         self._exchange, self._archive, self._station = exchange, archive, station
         self._settings, self._seed, self._progress = settings, seed, progress
@@ -92,7 +94,8 @@ class ContextCapture:
         sound: ContextEstimator | None,
     ) -> None:
         """Go on where a run stood."""
-        self.ledger, self.draws, self.inference = ledger, standing.draws, standing.inference
+        self.ledger, self.draws = ledger, standing.draws
+        self.inference, self.optimism = standing.inference, standing.optimism
         self.learned, self.sound = learned, sound
         if standing.calibrated:
             self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
@@ -129,7 +132,7 @@ class ContextCapture:
         by_row = rows_against_expected(
             ledger.gaps[first], ledger.simulated[first], self.noise, share
         )
-        return usual_bound(by_row, rows, self._settings.usual, self._seed)
+        return self.optimism * usual_bound(by_row, rows, self._settings.usual, self._seed)
 
     def changes(self, before: ContextEstimator | None) -> tuple[str, ...]:
         """What structure and sensors have changed by most since an estimator, in words."""
@@ -182,6 +185,7 @@ class ContextCapture:
         if self.inference == "auto":
             chosen = choose(lesson)
             self.inference, words, begun = chosen.inference, chosen.words, chosen.begun
+            self.optimism = max(chosen.optimism, 1.0)
         elif self.inference != "networks" and (reason := why_not(lesson)):
             raise InputError(
                 f"the joint posterior cannot be had: {reason}",

@@ -33,11 +33,13 @@ class Choice:
         inference: the way to infer.
         words: what, and why.
         begun: what the joint posterior has found of a part of the rows.
+        optimism: gap of rows that nothing was learned from, over that of the others [-].
     """
 
     inference: Inference
     words: str
     begun: Joint | None = None
+    optimism: float = 1.0
 
 
 def choose(lesson: Lesson) -> Choice:
@@ -71,12 +73,23 @@ def choose(lesson: Lesson) -> Choice:
         f"held out, to {mine:.2g} times their noise, the model as given to {others:.2g} times"
     )
     if mine <= AS_GOOD * others:
-        return Choice("joint", f"contexts by the joint posterior: {words}", found)
+        optimism = _gap(joint, *unseen, own) / _gap(
+            joint, readings[~held], _rows(measured, ~held), own
+        )
+        return Choice("joint", f"contexts by the joint posterior: {words}", found, optimism)
     return Choice("networks", f"contexts by networks: {words}")
 
 
 def _rows(measured: MeasuredContexts, chosen: NDArray[np.bool_]) -> MeasuredContexts:
     return MeasuredContexts(measured.values[chosen], measured.noise)
+
+
+def _gap(
+    modes: RowModes, readings: FloatArray, measured: MeasuredContexts, noise: FloatArray
+) -> float:
+    """Gap of rows at their contexts: the median of mean squares [variances of the noise]."""
+    off = (readings - modes.simulate(modes(readings, measured).value)) / noise
+    return float(np.median(np.nanmean(off[np.isfinite(off).any(axis=1)] ** 2, axis=1)))
 
 
 def _off_by(

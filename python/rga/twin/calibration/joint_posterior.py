@@ -14,9 +14,8 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference import Joint, MeasuredContexts, Rows, Unknowns, infer_jointly
 from rga.inference.joint.checked_input import plausible
-from rga.inference.joint.measured_contexts import BEYOND
-from rga.inference.joint.gauss_newton import GAIN, OFFSET
 from rga.inference.joint.infer import RowModes
+from rga.inference.joint.measured_contexts import BEYOND
 from rga.inference.laws.over_time import follow_law
 from rga.inference.map.laplace import BROKEN, birge_ratio
 from rga.model import ContextVariable, Model
@@ -34,7 +33,7 @@ LEAST_ROWS, LEAST_CHANNELS = 20, 2
 SHOWN, CHANGED = 2, 4.0
 #: fields of a joint posterior that are stored as arrays
 KEPT = (
-    "values", "gains", "offsets", "sure", "variance", "uncertainty", "source",
+    "values", "gains", "offsets", "sure", "noise", "variance", "uncertainty", "source",
 )  # fmt: skip
 
 
@@ -187,9 +186,11 @@ class JointEstimator:
             if np.isnan(sound).sum() > np.isnan(readings).sum():
                 found = infer(sound, measured)
             gaps = (sound - infer.simulate(found.value)) ** 2
+            variance = self.found.variance * birge_ratio(gaps, deviation)[:, None] ** 2
+            unsure = self.found.spread(found.value, np.isfinite(sound), measured, variance)
             own = phase == number
             value[own] = found.value[own]
-            spread[own] = (found.spread * birge_ratio(gaps, deviation)[:, None])[own]
+            spread[own] = np.maximum(found.spread, unsure)[own]
         return value, spread
 
     def _inference(self, phase: int, measured: MeasuredContexts) -> RowModes:
@@ -259,17 +260,22 @@ def changes(before: Joint | None, after: Joint | None) -> tuple[str, ...]:
     """
     if before is None or after is None or before.unknowns.names != after.unknowns.names:
         return ()
-    sensors = list(after.unknowns.model.sensors)
-    if sensors != list(before.unknowns.model.sensors):
+    sensors = after.unknowns.model.sensors
+    if list(sensors) != list(before.unknowns.model.sensors):
         return ()
-    structure = [part.name for part in after.unknowns.parts]
-    names = [*structure, *(f"gain of {one}" for one in sensors), *(f"zero of {one}" for one in sensors)]
-    unit = np.concatenate([after.unknowns.spread, np.full(len(sensors), GAIN), OFFSET * np.sqrt(after.variance)])
-    moved = (after.parameters - before.parameters) / unit
-    unsure = np.sqrt(np.diagonal(before.sure) + np.diagonal(after.sure))
-    sure = np.abs(moved) / unsure
-    order = np.argsort(-sure)
-    return tuple(names[one] for one in order[:SHOWN] if sure[one] > CHANGED)
+    moved = after.parameters - before.parameters
+    sure = np.abs(moved / after.units) / np.sqrt(np.diagonal(before.sure) + np.diagonal(after.sure))
+    parts = zip(after.unknowns.parts, before.values, after.values, strict=True)
+    gains, offsets = np.split(moved[len(after.values) :], 2)
+    words = [
+        *(part.changed(old, new) for part, old, new in parts),
+        *(f"gain of {name} {gain:+.2%}" for name, gain in zip(sensors, gains, strict=True)),
+        *(
+            f"zero of {name} {offset:+.2g} {sensor.unit}"
+            for (name, sensor), offset in zip(sensors.items(), offsets, strict=True)
+        ),
+    ]
+    return tuple(words[one] for one in np.argsort(-sure)[:SHOWN] if sure[one] > CHANGED)
 
 
 def readings_of(lesson: Lesson, unknowns: Unknowns) -> FloatArray:
