@@ -161,7 +161,8 @@ class Unknowns:
         # Where readings are linear, a difference is the derivative. That it changes with
         # contexts is left out: it hardly does.
         moved = np.vstack([values, values + np.diag(self.spread)[linear]])
-        one = np.tile(contexts.mean(axis=0), (len(moved), 1))
+        middle = [np.mean(one.range) for one in self.model.context.values()]
+        one = np.tile(middle, (len(moved), 1))
         there = self.predict(one, moved)
         by_unknowns[:, :, linear] = (there[1:] - there[0]).T / self.spread[linear]
         slopes = self._of_driven.jacobian(self._table(contexts, values, driven))

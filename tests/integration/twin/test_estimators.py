@@ -1,0 +1,243 @@
+"""What infers contexts in a run: the joint posterior, networks, and the choice between them."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+import rga
+from rga.errors import InputError
+from rga.inference import TrainingSettings
+from rga.model import Model, read_model
+from rga.records import Record
+from rga.twin import Settings
+from rga.twin.calibration.choice import choose
+from rga.twin.calibration.expectation import usual_bound
+from rga.twin.calibration.joint_posterior import JointEstimator, changes, why_not
+from rga.twin.calibration.learning import learn, read, written
+from rga.twin.calibration.lesson import Lesson
+from rga.twin.messages.hardware import HardwareInterface
+from rga.twin.messages.queries import Q3, R4, Box, sha256
+from rga.twin.simulation_model import SimulationModel
+
+Stream = Callable[..., Path]
+LATENT = ("west load", "east load")
+TRAINING = TrainingSettings(
+    steps=60, fine_steps=20, reduced_steps=60, width=24, features=8, reduced_width=24
+)
+
+
+class Drawn(NamedTuple):
+    """A model and a record of it."""
+
+    model: Model
+    record: Record
+
+    def lesson(self, rows: slice = slice(0, 40), model: Model | None = None) -> Lesson:
+        """What an estimator learns from."""
+        given = model or self.model
+        station = HardwareInterface(self.record, given).station
+        simulation = SimulationModel(given, station)
+        low, high = np.array([one.range for one in given.context.values()]).T.tolist()
+        query = Q3(
+            row=0, version=1, box=Box(low=tuple(low), high=tuple(high)), clock=0.0, rows=256,
+            origin="design", seed=0,
+        )  # fmt: skip
+        drawn = simulation.draw(query)
+        real, contexts = self.record.readings[rows], self.contexts[rows][:, :1]
+        data = R4(
+            row=0,
+            simulation=simulation,
+            contexts=drawn.contexts,
+            readings=drawn.readings,
+            falling=drawn.falling,
+            real=real,
+            real_contexts=contexts,
+            simulated_rows=256,
+            measured_rows=len(real),
+            sha256=sha256(real),
+        )
+        noise = np.array([sensor.noise for sensor in given.sensors.values()], dtype=float)
+        return Lesson(data, LATENT, noise, 0.0, 0, TRAINING, lambda done: None)
+
+    @property
+    def contexts(self) -> Any:
+        """As they were measured, latent ones in the middle, float[rows, contexts]."""
+        middle = np.array([np.mean(one.range) for one in self.model.context.values()])
+        table = np.tile(middle, (len(self.record), 1))
+        table[:, 0] = self.record.contexts["temperature"]
+        return table
+
+    def infer(self, estimator: Any, first: int, end: int) -> Any:
+        laws = [self.model.context[name] for name in LATENT]
+        seen = slice(0, end)
+        return estimator.infer(
+            first, self.record.readings[seen], self.contexts[seen], self.record.time[seen], laws
+        )
+
+
+@pytest.fixture(scope="module")
+def drawn(small_stream: Stream) -> Drawn:
+    """A heavy load comes in rows 60 to 89, 10 to 38 kN otherwise; nothing else changes."""
+    folder = small_stream(sinks=False)
+    model = rga.load_model(folder / "model.json")
+    assert list(model.context) == ["temperature", *LATENT]
+    return Drawn(model, rga.load_record(folder / "record.csv", model))
+
+
+@pytest.fixture(scope="module")
+def learned(drawn: Drawn) -> JointEstimator:
+    return JointEstimator.learn(drawn.lesson())
+
+
+@pytest.mark.parametrize("inference", ["joint", "networks", "amortised"])
+def test_packets_of_any_size_give_the_same_bits(drawn: Drawn, inference: Any) -> None:
+    estimator = learn(inference, drawn.lesson())
+    whole = drawn.infer(estimator, 0, 75)
+    for size in (1, 7, 40):
+        parts = [
+            drawn.infer(estimator, first, min(first + size, 75)) for first in range(0, 75, size)
+        ]
+        for one, of_whole in zip(zip(*parts, strict=True), whole, strict=True):
+            np.testing.assert_array_equal(np.concatenate(one), of_whole)
+
+
+@pytest.mark.parametrize("inference", ["joint", "networks", "amortised"])
+def test_what_is_stored_infers_the_same(drawn: Drawn, inference: Any) -> None:
+    estimator = learn(inference, drawn.lesson())
+    station = HardwareInterface(drawn.record, drawn.model).station
+    simulation = SimulationModel(drawn.model, station, estimator.correction)
+    again = read(written(estimator), simulation)
+    assert again.correction == estimator.correction
+    for one, other in zip(drawn.infer(again, 30, 50), drawn.infer(estimator, 30, 50), strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert written(again) == written(estimator)
+
+
+@pytest.mark.parametrize("content", [b"", b"joint\nPK", b"joint\n\x80\x04N.", b"tree\n{}"])
+def test_bytes_that_hold_no_estimator_are_refused(drawn: Drawn, content: bytes) -> None:
+    station = HardwareInterface(drawn.record, drawn.model).station
+    with pytest.raises(InputError, match="these bytes hold no"):
+        read(content, SimulationModel(drawn.model, station))
+
+
+def test_the_twin_is_corrected_as_the_joint_posterior_has_it(
+    drawn: Drawn, learned: JointEstimator
+) -> None:
+    station = HardwareInterface(drawn.record, drawn.model).station
+    simulation = SimulationModel(drawn.model, station, learned.correction)
+    contexts, found = drawn.contexts[:5], learned.found
+    expected = found.twin.simulate(contexts)
+    np.testing.assert_allclose(
+        simulation.readings(drawn.record.time[:5], contexts), expected, rtol=1e-10, atol=1e-12
+    )
+    bare = SimulationModel(drawn.model, station).readings(drawn.record.time[:5], contexts)
+    assert np.abs(bare - expected).max() > 1e-4
+
+
+def test_a_load_beyond_its_range_is_found_there(drawn: Drawn, learned: JointEstimator) -> None:
+    """What no row explains inside the ranges is looked for outside; the rest stays inside."""
+    low, _ = drawn.model.context["west load"].range
+    narrow = drawn.model.context["west load"].model_copy(update={"range": (low, 60.0)})
+    model = drawn.model.model_copy(update={"context": {**drawn.model.context, "west load": narrow}})
+    estimator = JointEstimator.learn(Drawn(model, drawn.record).lesson(model=model))
+    value, _ = drawn.infer(estimator, 0, 90)
+    expected, _ = drawn.infer(learned, 0, 90)
+    assert value[60:, 0].min() > 60.0
+    assert np.abs(value[60:, 0] / expected[60:, 0] - 1).max() < 0.1
+    assert value[:60, 0].max() <= 60.0
+
+
+def test_a_channel_that_breaks_does_not_move_the_contexts(
+    drawn: Drawn, learned: JointEstimator
+) -> None:
+    value, spread = drawn.infer(learned, 40, 60)
+    broken = drawn.record.readings.copy()
+    broken[45:, 2] += 30.0
+    off = replace(drawn.record, readings=broken)
+    moved, _ = Drawn(drawn.model, off).infer(learned, 40, 60)
+    assert (np.abs(moved - value) < 2 * spread).all()
+
+
+def test_auto_takes_the_joint_posterior_and_says_why(drawn: Drawn) -> None:
+    chosen = choose(drawn.lesson())
+    assert chosen.inference == "joint"
+    assert "half of the channels" in chosen.words
+    assert "8 rows held out" in chosen.words
+    assert chosen.begun is not None
+    assert 0.5 < chosen.optimism < 2.0
+
+
+def _line(model: Model) -> Model:
+    line = model.context["west load"].model_copy(update={"law": "linear"})
+    return model.model_copy(update={"context": {**model.context, "west load": line}})
+
+
+@pytest.mark.parametrize(
+    ("change", "rows", "reason"),
+    [
+        (lambda model: model, 19, "19 rows are too few"),
+        (_line, 40, "'west load' moves along a line"),
+        (
+            lambda model: model.with_sensors(dict(list(model.sensors.items())[:3])),
+            40,
+            "3 channels do not outnumber 2 contexts by far",
+        ),
+    ],
+)
+def test_where_the_joint_posterior_cannot_be_had_networks_are_taken(
+    drawn: Drawn, change: Callable[[Model], Model], rows: int, reason: str
+) -> None:
+    model = change(drawn.model)
+    record = replace(
+        drawn.record,
+        sensors=tuple(model.sensors),
+        readings=drawn.record.readings[:, : len(model.sensors)],
+    )
+    lesson = Drawn(model, record).lesson(slice(0, rows))
+    told = why_not(lesson)
+    assert told is not None
+    assert reason in told
+    found = choose(lesson)
+    assert found.inference == "networks"
+    assert reason in found.words
+
+
+def test_an_inference_that_cannot_be_had_is_refused(small_stream: Stream, tmp_path: Path) -> None:
+    folder = small_stream(drifts=False, sinks=False)
+    content = json.loads((folder / "model.json").read_text(encoding="utf-8"))
+    content["context"]["west load"] |= {"law": "linear", "rate": [0.0, 1.0]}
+    model = read_model(content, "small bridge")
+    wanted = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+    settings = Settings.model_validate({**wanted, "inference": "joint"})
+    record = rga.load_record(folder / "record.csv", model)
+    with pytest.raises(InputError, match="take 'auto' or 'networks'"):
+        rga.run(model, record, tmp_path, settings=settings)
+
+
+def test_what_has_changed_is_said(drawn: Drawn, learned: JointEstimator) -> None:
+    """A gauge whose zero moves by far, and the null twin, where nothing does."""
+    assert changes(None, learned.found) == ()
+    later = drawn.lesson(slice(40, 60))
+    assert changes(learned.found, learned.refined(later).found) == ()
+    moved = later.data.real.copy()
+    moved[:, 6] += 30.0
+    data = later.data.model_copy(update={"real": moved})
+    name = list(drawn.model.sensors)[6]
+    told = changes(learned.found, learned.refined(replace(later, data=data)).found)
+    assert any(one.startswith(f"zero of {name} +") for one in told)
+
+
+def test_a_gap_is_usual_only_as_far_as_the_calibration_has_it() -> None:
+    draw = np.random.default_rng(0)
+    calm = 1.0 + 0.1 * draw.standard_normal(160)
+    # Stretches vary less the longer they are.
+    assert 1.0 < usual_bound(calm, 60, 0.99, 0) < usual_bound(calm, 10, 0.99, 0) < 1.2
+    assert usual_bound(np.full(160, np.nan), 10, 0.99, 0) == float("inf")
+    # Rows that are alike come together.
+    slow = 1.0 + 0.3 * np.sin(np.arange(160) / 25)
+    assert usual_bound(slow, 30, 0.99, 0) > 1.2
