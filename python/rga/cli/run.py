@@ -116,6 +116,8 @@ class _News:
 
 def _line(event: "Event") -> str:
     change = ""
+    if event.kind == "recalibration":  # its words have the figures that decide
+        return f"{event.time}  {event.kind}: {event.words}"
     if event.gap_before is not None and event.gap_after is not None:
         change = f" (gap {event.gap_before:.3g} -> {event.gap_after:.3g})"
     elif event.gap_after is not None:

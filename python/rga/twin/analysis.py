@@ -71,6 +71,11 @@ class RealityGapAnalysis:
                 latent, width = self._latent()
                 near = spacing(stored[:, latent], width)
                 self.standing.distinct = self._settings.distinct or near
+            if answer.blind:
+                words = (
+                    f"no channel sees {', '.join(answer.blind)}: held in the middle of the range"
+                )
+                self._event("calibration", 0, words)
             self.standing.stage = "gather"
         return answer
 
@@ -90,9 +95,14 @@ class RealityGapAnalysis:
         self._begin_again(0)
         standing.interval = self._policy.interval
         standing.share = calibration.scatter_share(0, standing.row)
-        words = f"calibrated on {standing.row} rows; {chosen}"
-        words = "; ".join([words, *self.synchrony.warnings])
-        self._event("calibration", standing.row - 1, words, after=calibration.gap(0, standing.row))
+        known = calibration.known(standing.row)
+        words = [f"calibrated on {standing.row} rows", chosen, *known, *self.synchrony.warnings]
+        self._event(
+            "calibration",
+            standing.row - 1,
+            "; ".join(words),
+            after=calibration.gap(0, standing.row),
+        )
         standing.stage = "watch"
 
     def watch(self, last: bool) -> None:
@@ -164,21 +174,23 @@ class RealityGapAnalysis:
             changes: of structure and sensors, by which the gap came down.
         """
         own = f"in the calibration, stretches as long stay below {usual:.2f}"
+        expected = f"of what noise and scatter let expect; {own}"
         if after > usual:
             return True, (
-                f"contexts do not explain them: the gap is {after:.2f} of what noise and scatter "
-                f"let expect, {own}; the model is in doubt"
+                f"no contexts explain them, nor does learning from them: the gap is {after:.2f} "
+                f"{expected}. The model is in doubt"
             )
         if before > usual and changes:
             return True, (
-                f"contexts alone leave {before:.2f} of the gap that noise and scatter let expect, "
-                f"{own}; with {' and '.join(changes)} it is {after:.2f}. Has the structure "
-                "changed? The diagnosis is to say"
+                f"no contexts explain them: the gap is {before:.2f} {expected}. It falls to "
+                f"{after:.2f} with {' and '.join(changes)}: the model is in doubt"
             )
-        healed = f"learned from them, the gap fell from {before:.2f} to {after:.2f}"
-        explained = f"contexts explain them, the gap is {after:.2f}"
-        words = explained if before <= usual else healed
-        return False, f"{words} of what noise and scatter let expect, {own}"
+        if before > usual:
+            return (
+                False,
+                f"learned from them, and the gap fell from {before:.2f} to {after:.2f} {expected}",
+            )
+        return False, f"contexts explain them: the gap is {after:.2f} {expected}"
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""

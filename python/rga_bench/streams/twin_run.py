@@ -11,7 +11,7 @@ import numpy as np
 
 from rga.jobs.run import run
 from rga.model import Model, load_model
-from rga.model.parameter import listed
+from rga.model.parameter import NORMAL_90, listed
 from rga.records import load_record
 from rga.twin import Twin
 from rga.twin.history import Event, History
@@ -23,8 +23,6 @@ from rga_bench.synthetic.noise import stream
 
 #: a broken gauge is off by so many spreads of its noise, from this share of the rows on
 BROKEN, BREAKS = (5.0, 20.0), (0.68, 0.74)
-#: half a 90 % interval, in standard deviations
-NINETY = 1.6448536269514722
 
 
 @dataclass(frozen=True)
@@ -163,7 +161,7 @@ def _contexts(history: History, case: Case, model: Model) -> tuple[float, float]
     true = np.column_stack([case.truth["contexts"][name] for name in history.contexts])[watched]
     width = np.ptp([model.context[name].range for name in history.contexts], axis=1)
     off = np.abs(history.inferred[watched] - true)
-    held = off <= NINETY * history.spread[watched]
+    held = off <= NORMAL_90 * history.spread[watched]
     return float((off**2 / (width**2 / 12)).mean()), float(held.mean())
 
 

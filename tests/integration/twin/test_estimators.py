@@ -166,7 +166,7 @@ def test_a_channel_that_breaks_does_not_move_the_contexts(
 def test_auto_takes_the_joint_posterior_and_says_why(drawn: Drawn) -> None:
     chosen = choose(drawn.lesson())
     assert chosen.inference == "joint"
-    assert "half of the channels" in chosen.words
+    assert "predicts half of the channels" in chosen.words
     assert "8 rows held out" in chosen.words
     assert chosen.begun is not None
     assert 0.5 < chosen.optimism < 2.0

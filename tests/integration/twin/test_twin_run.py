@@ -87,7 +87,7 @@ def test_the_story_of_a_stream(finished: tuple[Path, Outcome]) -> None:
     assert recalibration.gap_before is not None
     assert version.gap_after is not None
     assert version.gap_after < 0.1 * recalibration.gap_before
-    assert "contexts do not explain them" in recalibration.words
+    assert "no contexts explain them" in recalibration.words
     causes = [cause.effect for cause in outcome.findings.causes]
     assert [(c["kind"], c["support"], c["dof"]) for c in causes] == [
         ("support_settlement", "east", "uz")

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
+from rga.model.parameter import NORMAL_90
 from rga.twin.archive import Archive
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.choice import choose
@@ -30,6 +31,8 @@ from rga.twin.run_state import Standing
 from rga.twin.settings import Inference, Settings
 
 Progress = Callable[[str, float], None]
+#: a context is hardly seen where its interval is this share of what its range alone would give
+HARDLY = 0.7
 
 
 class ContextCapture:
@@ -133,6 +136,21 @@ class ContextCapture:
             ledger.gaps[first], ledger.simulated[first], self.noise, share
         )
         return self.optimism * usual_bound(by_row, rows, self._settings.usual, self._seed)
+
+    def known(self, rows: int) -> list[str]:
+        """In words, how well the contexts of the first so many rows are known."""
+        columns = self.latent
+        if not columns or self.learned is None:
+            return []
+        half = NORMAL_90 * np.sqrt(np.mean(self.ledger.spread[:rows, columns] ** 2, axis=0))
+        share = half / (NORMAL_90 * np.ptp(self.ranges[columns], axis=1) / np.sqrt(12))
+        units = [self._laws[column].unit for column in columns]
+        words = [
+            f"{self._names[column]} to {wide:.2g} {unit}".removesuffix(" -")
+            + (" (hardly seen)" if hidden > HARDLY else "")
+            for column, wide, unit, hidden in zip(columns, half, units, share, strict=True)
+        ]
+        return [f"known within (90 %): {', '.join(words)}"]
 
     def changes(self, before: ContextEstimator | None) -> tuple[str, ...]:
         """What structure and sensors have changed by most since an estimator, in words."""

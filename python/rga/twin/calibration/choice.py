@@ -69,15 +69,20 @@ def choose(lesson: Lesson) -> Choice:
     unseen = readings[held], _rows(measured, held)
     mine, others = (_off_by(one, *unseen, own) for one in (joint, given))
     words = (
-        f"from half of the channels the joint posterior predicts the others, on {held.sum()} rows "
-        f"held out, to {mine:.2g} times their noise, the model as given to {others:.2g} times"
+        f"on {held.sum()} rows held out it predicts half of the channels from the others to "
+        f"{mine:.2g} times their noise, the model as given to {others:.2g} times"
     )
     if mine <= AS_GOOD * others:
         optimism = _gap(joint, *unseen, own) / _gap(
             joint, readings[~held], _rows(measured, ~held), own
         )
-        return Choice("joint", f"contexts by the joint posterior: {words}", found, optimism)
-    return Choice("networks", f"contexts by networks: {words}")
+        return Choice(
+            "joint",
+            f"contexts by the joint posterior, which corrects the structure as well: {words}",
+            found,
+            optimism,
+        )
+    return Choice("networks", f"contexts by networks, not by the joint posterior: {words}")
 
 
 def _rows(measured: MeasuredContexts, chosen: NDArray[np.bool_]) -> MeasuredContexts:
