@@ -87,8 +87,12 @@ def run_twin(task: StreamTask) -> StreamResult:
     history = outcome.history
     error, covered = _contexts(history, case, model)
     gaps = history.gaps[history.calibration_rows :] / history.noise**2
-    wrong = {number for number, effects in versions.items() if any(_false(effects.values(), case))}
-    right = {number for number, one in versions.items() if _names(one.values(), case)}
+    wrong = [one for one in versions.values() if any(is_false(e, case) for e in one.values())]
+    right = {
+        number
+        for number, one in versions.items()
+        if any(is_hidden(effect, case) for effect in one.values())
+    }
     named = [one.row for one in history.versions if one.number in right]
     alarms = [one.row for one in history.events if one.kind == "alarm" and change is not None]
     return StreamResult(
@@ -100,7 +104,7 @@ def run_twin(task: StreamTask) -> StreamResult:
         named=_after(named, change),
         false_versions=len(wrong),
         verdict=outcome.findings.verdict,
-        false_causes=sum(_false([one.effect for one in outcome.findings.causes], case)),
+        false_causes=sum(is_false(one.effect, case) for one in outcome.findings.causes),
         versions=len(versions) - 1,
         seconds=seconds,
         gap=float(np.median(np.nanmean(gaps, axis=1))),
@@ -136,17 +140,13 @@ def _after(rows: Iterable[int], change: int | None) -> int | None:
     return min((row - change + 1 for row in rows if row >= change), default=None)
 
 
-def _names(effects: Iterable[Mapping[str, Any]], case: Case) -> bool:
-    """Whether some effect is what is hidden, kind and place."""
-    return any(_hidden(effect, case) for effect in effects)
+def is_false(effect: Mapping[str, Any], case: Case) -> bool:
+    """Whether an effect is none of a stream; the stiff joints of the frame are true."""
+    return not is_hidden(effect, case) and effect["kind"] not in STIFF_JOINTS
 
 
-def _false(effects: Iterable[Mapping[str, Any]], case: Case) -> list[bool]:
-    """Of each effect, whether it is none of the stream. Stiff joints are true of the frame."""
-    return [not _hidden(effect, case) and effect["kind"] not in STIFF_JOINTS for effect in effects]
-
-
-def _hidden(effect: Mapping[str, Any], case: Case) -> bool:
+def is_hidden(effect: Mapping[str, Any], case: Case) -> bool:
+    """Whether an effect is what is hidden in a stream, by kind and place."""
     truth = case.truth
     if "broken" in truth:
         return listed(effect.get("sensor", [])) == [truth["broken"]]
