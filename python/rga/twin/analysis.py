@@ -79,6 +79,11 @@ class RealityGapAnalysis:
             self.standing.stage = "gather"
         return answer
 
+    def take_up_version(self) -> None:
+        """Learn about a version that was put in force by hand, from the calibration's rows."""
+        self._design()
+        self._calibration.learn_version((0, self.standing.calibrated))
+
     def gather(self) -> None:
         """Wait until enough rows are there for the first calibration."""
         self.standing.row = len(self._calibration.ledger)
@@ -262,20 +267,19 @@ class RealityGapAnalysis:
             around = np.stack([stored.min(axis=0), stored.max(axis=0)], axis=1)
             wanted = self._settings.design_rows // 8
             calibration.supply(around, wanted, requested=True)
-        kept, before = (calibration.learned, calibration.ledger.copy()), calibration.gap(*recent)
+        kept, before = calibration.learned, calibration.gap(*recent)
         calibration.recalibrate(self.standing.calibrated, recent)
         calibration.follow(*recent)
         if not calibration.gap(*recent) < before:
-            learned, calibration.ledger = kept
-            calibration.restore(learned)
-            calibration.send(*recent)
+            calibration.restore(kept, calibration.sound)
+            calibration.follow(*recent)
 
     def _change_version(self, **change: Any) -> None:
         """Q1 with an update or a rollback; a gap that rises by a quarter takes an update back."""
         standing, calibration = self.standing, self._calibration
         recent = (self._under_the_same(change.get("effects", {})), standing.row)
         before, old = calibration.gap(*recent), self._exchange.twin.state.version
-        kept = calibration.learned, calibration.sound, calibration.ledger.copy()
+        kept = calibration.learned, calibration.sound
         answer = self._ask_twin(**change)
         if not answer.adequate:
             words = f"the update of the model was refused: {'; '.join(answer.missing)}"
@@ -289,9 +293,9 @@ class RealityGapAnalysis:
         words = f"version {answer.version} of the model is in force"
         self._event("version", standing.row - 1, words, before=before, after=after)
         if "restore" not in change and after > WORSE * before:
-            calibration.learned, calibration.sound, calibration.ledger = kept
             self._ask_twin(restore=old)
-            calibration.send(*recent)
+            calibration.restore(*kept)
+            calibration.follow(*recent)
             words = f"the gap rose: version {old} is in force again"
             self._event("rollback", standing.row - 1, words, before=after, after=before)
         self._begin_again(recent[0])

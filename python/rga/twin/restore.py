@@ -17,7 +17,6 @@ from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
 from rga.twin.repository import RunView
 from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
-from rga.twin.settings import Settings
 
 
 def replay(view: RunView, channels: tuple[str, ...]) -> TwinState:
@@ -145,7 +144,7 @@ def history_of(view: RunView) -> History:
     return History(
         model=model,
         record=record,
-        level=Settings.model_validate_json(view.identity.settings).level,
+        level=json.loads(view.identity.settings)["level"],
         calibration_rows=standing.calibrated,
         contexts=state.latent,
         inferred=ledger.contexts[:, latent],

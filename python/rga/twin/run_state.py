@@ -25,6 +25,7 @@ class Standing(BaseModel):
         interval: rows from there to the next recalibration by the clock.
         draws: seeds drawn so far.
         inference: the way to infer contexts; "auto" until one is chosen.
+        learned_under: version of the model that the estimators are about.
         optimism: gap of rows that the calibration did not learn from, over that of its own [-].
         share: by which the model was off on the rows of the first calibration [-].
         distinct: least distance of a novel context, in shares of the ranges.
@@ -43,6 +44,7 @@ class Standing(BaseModel):
     interval: int = 0
     draws: int = 0
     inference: Inference = "auto"
+    learned_under: int = 0
     optimism: float = 1.0
     share: float = 0.0
     distinct: float = 0.0

@@ -105,6 +105,7 @@ class Running:
         self._closing: Findings | None = None
         self.resumed_at: int | None = None
         self._kept: dict[str, ContextEstimator | None] = {}
+        self._stale = False
         self._recall()
 
     @property
@@ -202,6 +203,9 @@ class Running:
 
     def _advance(self) -> None:
         analysis, stage = self.analysis, self.stage
+        if self._stale and stage not in ("gather", "calibrate"):
+            analysis.take_up_version()
+        self._stale = False
         if stage == "calibrate":
             analysis.calibrate()
             return
@@ -256,6 +260,7 @@ class Running:
         calibration = self.calibration
         standing.draws, standing.inference = calibration.draws, calibration.inference
         standing.optimism = calibration.optimism
+        standing.learned_under = self._twin.state.version
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
         self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
         for name in ESTIMATORS:
@@ -278,10 +283,12 @@ class Running:
         ledger = ledger_of(
             view, len(station.channels), len(station.measured), len(self._model.context)
         )
-        simulation = self._twin.simulation()
-        for name in ESTIMATORS:
+        if self.analysis.standing.learned_under != self._twin.state.version:
+            self._stale = True  # another version was put in force by hand
+            self._kept = dict.fromkeys(ESTIMATORS)
+        for name in () if self._stale else ESTIMATORS:
             content = view.kept(name)
-            self._kept[name] = None if content is None else read(content, simulation)
+            self._kept[name] = None if content is None else read(content, self._twin.simulation())
         self.calibration.recall(
             ledger, self.analysis.standing, self._kept["learned"], self._kept["sound"]
         )

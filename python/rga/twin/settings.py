@@ -23,7 +23,7 @@ class Settings(BaseModel):
         inference: of contexts: `joint`, the joint posterior of contexts and structure, by which the
             twin is corrected; `networks`, the paper's, on the model as it is; `amortised`, networks
             on the corrected twin; or `auto`, the joint posterior where it can be had and predicts
-            rows held out better than the model as given, networks otherwise.
+            rows held out as well as the model as given, networks otherwise.
         calibration_rows: rows of the first calibration; None: a third of the record, 200 at most.
         packet: rows that arrive together; None: a 24th of the record.
         detector: of T1: `monitor`, whose false alarms come as rarely as `arl0` asks, or `window`,

@@ -40,6 +40,7 @@ class SimulationModel:
             self.corrected = correction.corrected(self.model)
             self.gains, self._offsets = correction.of_sensors(station.channels)
         self.simulator = Simulator(self.corrected)
+        self._given = self.simulator if correction is None else Simulator(self.model)
         self._remembers = any(effect.remembers for effect in model.effects.values())
 
     def draw(self, query: Q3) -> R3:
@@ -111,6 +112,8 @@ class SimulationModel:
     def zero(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
         """Mean of the channels over the rows that the logger took for unloaded, float[channels].
 
+        It is that of the model as given: what a calibration finds of the sensors is beside it.
+
         Args:
             clock, contexts: of rows at which the channels are read; latent lines are prolonged
                 from them, float[n] and float[n, contexts].
@@ -132,7 +135,7 @@ class SimulationModel:
                 table[name] = ahead if rate else np.full(len(zero_clock), low)
             else:
                 table[name] = np.full(len(zero_clock), (low + high) / 2)
-        return np.asarray(self.simulator.predict(table).mean(axis=0))
+        return np.asarray(self._given.predict(table).mean(axis=0))
 
 
 def mounted(model: Model, channels: tuple[str, ...]) -> Model:

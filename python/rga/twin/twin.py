@@ -89,7 +89,7 @@ class Twin:
 
     @property
     def inference(self) -> Inference:
-        """How contexts are inferred; "auto" as long as nothing is calibrated."""
+        """How contexts are inferred, as the first calibration chose; "auto" before any choice."""
         return standing_of(self._view).inference
 
     @property

@@ -12,7 +12,7 @@ import pytest
 import rga
 from rga.errors import InputError
 from rga.inference import TrainingSettings
-from rga.model import Model, read_model
+from rga.model import Model, read_effect, read_model
 from rga.records import Record
 from rga.twin import Settings
 from rga.twin.calibration.choice import choose
@@ -95,9 +95,15 @@ def learned(drawn: Drawn) -> JointEstimator:
 
 
 @pytest.mark.parametrize("inference", ["joint", "networks", "amortised"])
-def test_packets_of_any_size_give_the_same_bits(drawn: Drawn, inference: Any) -> None:
+@pytest.mark.parametrize("missing", [0.0, 0.1])
+def test_packets_of_any_size_give_the_same_bits(
+    drawn: Drawn, inference: Any, missing: float
+) -> None:
+    gone = np.random.default_rng(0).random(drawn.record.readings.shape) < missing
+    gaps = replace(drawn.record, readings=np.where(gone, np.nan, drawn.record.readings))
+    drawn = Drawn(drawn.model, gaps)
+    whole = drawn.infer(learn(inference, drawn.lesson()), 0, 75)
     estimator = learn(inference, drawn.lesson())
-    whole = drawn.infer(estimator, 0, 75)
     for size in (1, 7, 40):
         parts = [
             drawn.infer(estimator, first, min(first + size, 75)) for first in range(0, 75, size)
@@ -159,7 +165,9 @@ def test_a_channel_that_breaks_does_not_move_the_contexts(
     broken = drawn.record.readings.copy()
     broken[45:, 2] += 30.0
     off = replace(drawn.record, readings=broken)
-    moved, _ = Drawn(drawn.model, off).infer(learned, 40, 60)
+    again = JointEstimator.learn(drawn.lesson())
+    moved, _ = Drawn(drawn.model, off).infer(again, 40, 60)
+    assert (moved != value).any()
     assert (np.abs(moved - value) < 2 * spread).all()
 
 
@@ -241,3 +249,75 @@ def test_a_gap_is_usual_only_as_far_as_the_calibration_has_it() -> None:
     # Rows that are alike come together.
     slow = 1.0 + 0.3 * np.sin(np.arange(160) / 25)
     assert usual_bound(slow, 30, 0.99, 0) > 1.2
+
+
+def test_rows_without_readings_change_nothing(drawn: Drawn, learned: JointEstimator) -> None:
+    outage = drawn.lesson(slice(40, 60))
+    data = outage.data.model_copy(update={"real": np.full_like(outage.data.real, np.nan)})
+    assert learned.refined(replace(outage, data=data)) is learned
+
+
+def test_a_silent_channel_hides_no_change(small_stream: Stream, learned: JointEstimator) -> None:
+    """A bearing is 2 mm lower from row 105 on, and one gauge has gone silent since."""
+    folder = small_stream(drifts=False)
+    model = rga.load_model(folder / "model.json")
+    record = rga.load_record(folder / "record.csv", model)
+    silent = record.readings.copy()
+    silent[105:, 5] = np.nan
+    later = Drawn(model, replace(record, readings=silent)).lesson(slice(105, 140))
+    refined = learned.refined(later)
+    (first, *_) = changes(learned.found, refined.found)
+    assert first.startswith("settlement of east -0.00")
+    # What was found of the gauge is kept for its return.
+    name = list(model.sensors)[5]
+    assert refined.correction.gains[name] == pytest.approx(learned.correction.gains[name], rel=1e-3)
+
+
+@pytest.mark.parametrize("when", [slice(0, 32), slice(32, 40)])
+def test_a_choice_stands_channels_that_say_nothing(drawn: Drawn, when: slice) -> None:
+    """A gauge that is silent in some rows, and one in units of its own."""
+    lesson = drawn.lesson()
+    real = lesson.data.real.copy()
+    real[when, 4] = np.nan
+    real[:, 6] = 1e7
+    chosen = choose(replace(lesson, data=lesson.data.model_copy(update={"real": real})))
+    assert chosen.inference == "joint"
+    assert np.isfinite(chosen.optimism)
+    learn("joint", lesson, begun=chosen.begun)
+
+
+def test_a_choice_without_rows_to_hold_out_is_finite(drawn: Drawn) -> None:
+    lesson = drawn.lesson(slice(0, 24))
+    real = lesson.data.real.copy()
+    real[np.arange(24) // 4 % 5 == 4] = np.nan
+    chosen = choose(replace(lesson, data=lesson.data.model_copy(update={"real": real})))
+    assert np.isfinite(chosen.optimism)
+
+
+def test_a_version_that_remembers_stands_on_the_structure_as_found(
+    drawn: Drawn, learned: JointEstimator
+) -> None:
+    drift = {"kind": "sensor_drift", "sensor": list(drawn.model.sensors)[4], "rate": 3.0}
+    model = drawn.model.extended({"drift": read_effect(drift, "drift")})
+    lesson = drawn.lesson(model=model)
+    assert "remembers" in str(why_not(lesson, learned.found))
+    estimator = learn("joint", lesson, earlier=learned.found)
+    assert estimator.kind == "amortised"
+    assert estimator.correction == learned.correction
+    assert estimator.refined(lesson).correction == learned.correction
+
+
+def test_a_zero_of_the_logger_is_that_of_the_model_as_given(
+    drawn: Drawn, learned: JointEstimator
+) -> None:
+    """Whatever a calibration corrects, the zero that it has put back stays."""
+    station = replace(
+        HardwareInterface(drawn.record, drawn.model).station,
+        zero={"time": np.zeros(3), "temperature": np.full(3, 12.0)},
+    )
+    given = SimulationModel(drawn.model, station)
+    corrected = SimulationModel(drawn.model, station, learned.correction)
+    clock, contexts = np.zeros(1), drawn.contexts[:1]
+    np.testing.assert_array_equal(given.zero(clock, contexts), corrected.zero(clock, contexts))
+    again = read(written(learned), corrected)
+    assert again.correction == read(written(learned), given).correction

@@ -16,6 +16,7 @@ import pytest
 import rga
 from rga.cli import main
 from rga.errors import InputError
+from rga.model import read_model
 from rga.twin import Outcome, Settings, rollback
 from rga.twin.repository import Repository
 from rga.twin.restore import log_of
@@ -370,3 +371,33 @@ def test_a_record_with_all_contexts_measured_needs_no_network(stream: Path, tmp_
     assert outcome.history.contexts == ()
     assert outcome.history.gaps.shape == (70, len(model.sensors))
     assert np.isfinite(outcome.history.gaps).all()
+
+
+def test_a_version_put_in_force_by_hand_is_learned_before_the_run_goes_on(
+    stream: Path, tmp_path: Path
+) -> None:
+    """What was learned under another version infers nothing under this one."""
+
+    def until_named(running: Running) -> None:
+        if running.version > 1:
+            raise _Stop
+
+    with pytest.raises(_Stop):
+        run(stream, tmp_path, watch=until_named)
+    rollback(tmp_path, 1)
+    outcome = run(stream, tmp_path)
+    kinds = [event.kind for event in outcome.history.events]
+    assert "rollback" in kinds
+    assert np.isfinite(outcome.history.gaps[120:]).mean() > 0.9
+    assert [cause.effect["kind"] for cause in outcome.findings.causes] == ["support_settlement"]
+
+
+def test_a_model_that_cannot_be_calibrated_says_so_each_time(stream: Path, tmp_path: Path) -> None:
+    content = json.loads((stream / "model.json").read_text(encoding="utf-8"))
+    for sensor in content["sensors"].values():
+        sensor["noise"] = 1e9
+    model = read_model(content, "a model whose sensors see nothing")
+    record = rga.load_record(stream / "record.csv", model)
+    for _ in range(2):
+        with pytest.raises(InputError, match="cannot represent what a calibration needs"):
+            rga.run(model, record, tmp_path)

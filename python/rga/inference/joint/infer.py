@@ -121,7 +121,7 @@ class Joint:
         Returns:
             float[parameters] and, in units of the priors, float[parameters, parameters].
         """
-        mine, theirs = _labels(self.unknowns), _labels(unknowns)
+        mine, theirs = self.labels, _labels(unknowns)
         place = {label: number for number, label in enumerate(mine)}
         shared = np.array([number for number, label in enumerate(theirs) if label in place], int)
         taken = [place[theirs[number]] for number in shared]
@@ -131,6 +131,25 @@ class Joint:
         value[shared] = self.parameters[taken]
         sure[np.ix_(shared, shared)] = self.sure[np.ix_(taken, taken)]
         return value, sure
+
+    @property
+    def labels(self) -> list[tuple[str, str]]:
+        """What each parameter is of: unknowns, then gains, then offsets of sensors."""
+        return _labels(self.unknowns)
+
+    def is_about(self, unknowns: Unknowns) -> bool:
+        """Whether it has all parameters of a model, and no others."""
+        return self.labels == _labels(unknowns)
+
+    def carried(self, unknowns: Unknowns) -> "Joint":
+        """The same about a model of the same sensors with other effects, not found anew."""
+        value, sure = self.about(unknowns)
+        values, gains, offsets = np.split(
+            value, [len(unknowns.centre), len(unknowns.centre) + len(self.gains)]
+        )
+        return replace(
+            self, unknowns=unknowns, values=values, gains=gains, offsets=offsets, sure=sure
+        )
 
     @property
     def parameters(self) -> FloatArray:
@@ -277,7 +296,7 @@ def _check_earlier(unknowns: Unknowns, start: Joint | None, prior: Joint | None)
 def _fits(earlier: Joint, unknowns: Unknowns, whole: bool) -> bool:
     """Whether an earlier result has all parameters of a model, or some of its structure's."""
     if whole:
-        return _labels(earlier.unknowns) == _labels(unknowns)
+        return earlier.is_about(unknowns)
     shared = {part.name for part in earlier.unknowns.parts} & {part.name for part in unknowns.parts}
     return bool(shared) and list(earlier.unknowns.model.context) == list(unknowns.model.context)
 

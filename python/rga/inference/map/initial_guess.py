@@ -53,7 +53,10 @@ class QuadraticGuess:
         for number, pattern in enumerate(patterns):
             rows, ways = np.flatnonzero(of_row.ravel() == number), self._ways[pattern]
             inner = ways.T @ ways + np.diag(self._size**-2.0)
-            scores[rows] = np.linalg.solve(inner, ways.T @ off[rows][:, pattern].T).T
+            gain = np.linalg.solve(inner, ways.T)
+            # Row by row: the last bits of a product of matrices depend on how many rows there are.
+            for row in rows:
+                scores[row] = gain @ off[row, pattern]
         scores = scores / self._size
         pairs = [scores[:, [k]] * scores[:, k:] for k in range(scores.shape[1])]
         return np.hstack([np.ones((len(scores), 1)), scores, *pairs])

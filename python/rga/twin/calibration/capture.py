@@ -200,16 +200,17 @@ class ContextCapture:
             return "all contexts are measured"
         lesson, begun = self._lesson([(0, rows)]), None
         words = f"contexts by inference {self.inference!r}, as the settings have it"
-        if self.inference == "auto":
-            chosen = choose(lesson)
-            self.inference, words, begun = chosen.inference, chosen.words, chosen.begun
-            self.optimism = max(chosen.optimism, 1.0)
-        elif self.inference != "networks" and (reason := why_not(lesson)):
+        if self.inference not in ("auto", "networks") and (reason := why_not(lesson)):
             raise InputError(
                 f"the joint posterior cannot be had: {reason}",
                 f"setting inference = {self.inference!r}",
                 "take 'auto' or 'networks'",
             )
+        if self.inference != "networks":
+            chosen = choose(lesson)
+            begun, self.optimism = chosen.begun, chosen.optimism
+            if self.inference == "auto":
+                self.inference, words = chosen.inference, chosen.words
         self._take(learn(self.inference, lesson, begun=begun))
         self.sound = self.learned
         return words
@@ -233,12 +234,15 @@ class ContextCapture:
         """
         if self._exchange.twin.state.latent:
             earlier = None if self.sound is None else self.sound.found
-            self._take(learn(self.inference, self._lesson([recent]), earlier=earlier))
+            read = np.isfinite(self.ledger.readings[slice(*recent)]).any()
+            rows = recent if read else (0, recent[1])
+            self._take(learn(self.inference, self._lesson([rows]), earlier=earlier))
             self.sound = self.learned
 
-    def restore(self, learned: ContextEstimator | None) -> None:
-        """Take up an earlier estimator, and correct the twin as it did."""
+    def restore(self, learned: ContextEstimator | None, sound: ContextEstimator | None) -> None:
+        """Take up earlier estimators, and correct the twin as the first of them did."""
         self._take(learned)
+        self.sound = sound
 
     def _lesson(self, rows: Sequence[tuple[int, int]]) -> Lesson:
         """All simulations of the version in force, and blocks of measured rows."""

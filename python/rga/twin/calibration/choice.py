@@ -57,14 +57,15 @@ def choose(lesson: Lesson) -> Choice:
     held = rows // min(STRETCH, len(rows) // HELD_OUT) % HELD_OUT == HELD_OUT - 1
     learned = JointEstimator.learn(lesson.rows(~held))
     found, own = learned.found, lesson.noise[learned.watched]
-    readings = readings_of(lesson, found.unknowns)
+    readings = readings_of(lesson, found.unknowns, learned.watched)
     measured = instruments(lesson.simulation, lesson.data.real_contexts)
     joint = RowModes(found.twin, found.covariance, found.source, measured)
     twin = TwinOnArrays(Simulator(found.unknowns.model), time=lesson.clock)
     given = RowModes(twin, np.diag(own**2), found.source, measured)
     off = readings[~held] - given.simulate(given(readings[~held], _rows(measured, ~held)).value)
     # What the model is off by counts as noise, as it does for the joint posterior.
-    variance = np.maximum(np.nanmean(off**2, axis=0), own**2)
+    count = np.isfinite(off).sum(axis=0)
+    variance = np.maximum(np.nansum(off**2, axis=0) / np.maximum(count, 1), own**2)
     given = RowModes(twin, np.diag(variance), found.source, measured)
     unseen = readings[held], _rows(measured, held)
     mine, others = (_off_by(one, *unseen, own) for one in (joint, given))
@@ -72,17 +73,18 @@ def choose(lesson: Lesson) -> Choice:
         f"on {held.sum()} rows held out it predicts half of the channels from the others to "
         f"{mine:.2g} times their noise, the model as given to {others:.2g} times"
     )
+    seen = readings[~held], _rows(measured, ~held)
+    ratio = _gap(joint, *unseen, own) / _gap(joint, *seen, own)
+    optimism = max(ratio, 1.0) if np.isfinite(ratio) else 1.0
     if mine <= AS_GOOD * others:
-        optimism = _gap(joint, *unseen, own) / _gap(
-            joint, readings[~held], _rows(measured, ~held), own
-        )
         return Choice(
             "joint",
             f"contexts by the joint posterior, which corrects the structure as well: {words}",
             found,
             optimism,
         )
-    return Choice("networks", f"contexts by networks, not by the joint posterior: {words}")
+    words = f"contexts by networks, not by the joint posterior: {words}"
+    return Choice("networks", words, found, optimism)
 
 
 def _rows(measured: MeasuredContexts, chosen: NDArray[np.bool_]) -> MeasuredContexts:
@@ -94,7 +96,8 @@ def _gap(
 ) -> float:
     """Gap of rows at their contexts: the median of mean squares [variances of the noise]."""
     off = (readings - modes.simulate(modes(readings, measured).value)) / noise
-    return float(np.median(np.nanmean(off[np.isfinite(off).any(axis=1)] ** 2, axis=1)))
+    off = off[np.isfinite(off).any(axis=1)]
+    return float(np.median(np.nanmean(off**2, axis=1))) if len(off) else np.nan
 
 
 def _off_by(

@@ -59,6 +59,7 @@ class JointEstimator:
         self.found, self.watched, self._simulation = found, watched, simulation
         self._latent = tuple(latent)
         self._modes: dict[int, RowModes] = {}
+        self._blocks: dict[int, tuple[FloatArray, FloatArray]] = {}
 
     @classmethod
     def learn(
@@ -75,22 +76,34 @@ class JointEstimator:
             InputError: the model holds what is to be found already.
         """
         lesson = lesson.rows(slice(lesson.new, None))
-        data, simulation, watched = lesson.data, lesson.simulation, lesson.watched
+        data, simulation = lesson.data, lesson.simulation
+        watched = lesson.watched(() if earlier is None else earlier.unknowns.model.sensors)
         unknowns = Unknowns(of_channels(simulation.model, watched), lesson.clock)
         found = infer_jointly(
             unknowns,
-            readings_of(lesson, unknowns),
+            readings_of(lesson, unknowns, watched),
             lesson.noise[watched],
             data.contexts[:SOURCE],
             measured=instruments(simulation, data.real_contexts),
-            start=start,
+            start=start if start is not None and start.is_about(unknowns) else None,
             prior=earlier,
             progress=lesson.progress,
         )
         return cls(found, lesson.latent, watched, simulation)
 
-    def refined(self, lesson: Lesson) -> Self:
+    @classmethod
+    def carried(cls, lesson: Lesson, earlier: Joint) -> Self:
+        """What was found earlier, for a version of the model in which it cannot be found anew."""
+        simulation, known = lesson.simulation, earlier.unknowns.model.sensors
+        watched = np.array([name in known for name in simulation.model.sensors], dtype=bool)
+        unknowns = Unknowns(of_channels(simulation.model, watched), lesson.clock)
+        return cls(earlier.carried(unknowns), lesson.latent, watched, simulation)
+
+    def refined(self, lesson: Lesson) -> "JointEstimator":
         """What it becomes by the new rows of a lesson, what it has found being their prior."""
+        new = lesson.rows(slice(lesson.new, None))
+        if not np.isfinite(readings_of(new, self.found.unknowns, self.watched)).any():
+            return self
         return self.learn(lesson, earlier=self.found)
 
     @property
@@ -112,7 +125,7 @@ class JointEstimator:
         moving = [number for number, one in enumerate(laws) if one.law != "independent"]
         begin = 0 if moving else first
         found = self._of_rows(begin, readings, contexts, time)
-        value, spread = (table[:, columns] for table in found)
+        value, spread = (table[:, columns].copy() for table in found)
         for number in moving:
             line = follow_law(time, value[:, number], spread[:, number], laws[number])
             value[:, number], spread[:, number] = line
@@ -162,8 +175,13 @@ class JointEstimator:
         seen = plausible(self.found.unknowns, readings[:, self.watched] + self._zero, deviation)
         parts = []
         for number in blocks(first, len(readings)):
+            if number in self._blocks and first <= number * BLOCK:
+                parts.append(self._blocks[number])
+                continue
             rows = np.maximum(block(number, len(readings)), first)
             parts.append(self._of_block(seen[rows], contexts[rows], time[rows]))
+            if first == 0 and (number + 1) * BLOCK <= len(readings):
+                self._blocks[number] = parts[-1]
         lead = first % BLOCK
         value, spread = (np.concatenate(part)[lead:] for part in zip(*parts, strict=True))
         return value[: len(readings) - first], spread[: len(readings) - first]
@@ -230,7 +248,7 @@ def why_not(lesson: Lesson, earlier: Joint | None = None) -> str | None:
         earlier: what was found from earlier rows.
     """
     model, rows, latent = lesson.simulation.model, len(lesson.data.real), lesson.latent
-    channels = int(lesson.watched.sum())
+    channels = int(lesson.watched().sum())
     if rows < LEAST_ROWS and earlier is None:
         return f"{rows} rows are too few, it needs {LEAST_ROWS}"
     if channels < LEAST_CHANNELS * len(latent):
@@ -256,17 +274,17 @@ def changes(before: Joint | None, after: Joint | None) -> tuple[str, ...]:
     """What structure and sensors differ by most, by far more than was left open, in words.
 
     Args:
-        before, after: what was found; None: nothing.
+        before, after: what was found; None: nothing. What one alone has is passed over.
     """
-    if before is None or after is None or before.unknowns.names != after.unknowns.names:
+    if before is None or after is None:
         return ()
-    sensors = after.unknowns.model.sensors
-    if list(sensors) != list(before.unknowns.model.sensors):
-        return ()
-    moved = after.parameters - before.parameters
-    sure = np.abs(moved / after.units) / np.sqrt(np.diagonal(before.sure) + np.diagonal(after.sure))
-    parts = zip(after.unknowns.parts, before.values, after.values, strict=True)
-    gains, offsets = np.split(moved[len(after.values) :], 2)
+    known, sure = before.about(after.unknowns)
+    shared = [label in before.labels for label in after.labels]
+    moved = np.where(shared, after.parameters - known, 0.0)
+    size = np.abs(moved / after.units) / np.sqrt(np.diagonal(sure) + np.diagonal(after.sure))
+    sensors, count = after.unknowns.model.sensors, len(after.values)
+    parts = zip(after.unknowns.parts, known[:count], after.values, strict=True)
+    gains, offsets = np.split(moved[count:], 2)
     words = [
         *(part.changed(old, new) for part, old, new in parts),
         *(f"gain of {name} {gain:+.2%}" for name, gain in zip(sensors, gains, strict=True)),
@@ -275,20 +293,20 @@ def changes(before: Joint | None, after: Joint | None) -> tuple[str, ...]:
             for (name, sensor), offset in zip(sensors.items(), offsets, strict=True)
         ),
     ]
-    return tuple(words[one] for one in np.argsort(-sure)[:SHOWN] if sure[one] > CHANGED)
+    return tuple(words[one] for one in np.argsort(-size)[:SHOWN] if size[one] > CHANGED)
 
 
-def readings_of(lesson: Lesson, unknowns: Unknowns) -> FloatArray:
+def readings_of(lesson: Lesson, unknowns: Unknowns, watched: NDArray[np.bool_]) -> FloatArray:
     """Readings of the channels that are looked at, the zero of the logger put back.
 
     Args:
         lesson: what is learned from.
         unknowns: of the model with these channels.
+        watched: channels that are looked at, bool[channels].
 
     Returns:
         float[rows, channels looked at], NaN where a reading is missing or none.
     """
-    watched = lesson.watched
     readings = (lesson.data.real + zero_of(lesson.simulation))[:, watched]
     return plausible(unknowns, readings, lesson.noise[watched])
 
@@ -315,7 +333,8 @@ def instruments(simulation: SimulationModel, measured: FloatArray) -> MeasuredCo
 def zero_of(simulation: SimulationModel) -> FloatArray:
     """What the logger took off every channel, under contexts in the middle, float[channels]."""
     middle = np.array([np.mean(one.range) for one in simulation.model.context.values()])
-    return simulation.zero(np.full(1, simulation.station.origin), middle[None])
+    zero = simulation.zero(np.full(1, simulation.station.origin), middle[None])
+    return np.nan_to_num(zero)  # none is simulated of a channel that is broken by the model
 
 
 def _median(off: FloatArray) -> FloatArray:

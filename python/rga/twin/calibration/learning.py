@@ -18,19 +18,26 @@ def learn(
 ) -> ContextEstimator:
     """An estimator that has learned; networks where the joint posterior cannot be had.
 
+    These learn about the structure as it was found earlier, where it was.
+
     Args:
         inference: the way to infer.
         lesson: what to learn from.
         begun: what the joint posterior has found of some of its rows.
         earlier: what it has found of earlier rows, maybe under another version of the model.
     """
-    if inference == "networks" or why_not(lesson, earlier):
+    barred = inference == "networks" or why_not(lesson, earlier) is not None
+    if barred and earlier is None:
         from rga.twin.calibration.networks import NetworkEstimator
 
         return NetworkEstimator.learn(lesson)
-    joint = JointEstimator.learn(lesson, start=begun, earlier=earlier)
-    if inference == "joint":
-        return joint
+    if barred:
+        assert earlier is not None
+        joint = JointEstimator.carried(lesson, earlier)
+    else:
+        joint = JointEstimator.learn(lesson, start=begun, earlier=earlier)
+        if inference == "joint":
+            return joint
     from rga.twin.calibration.amortised import AmortisedEstimator
 
     return AmortisedEstimator.learn(lesson, joint)

@@ -1,6 +1,6 @@
 """What an estimator learns from."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -45,10 +45,14 @@ class Lesson:
         simulation: SimulationModel = self.data.simulation
         return simulation
 
-    @property
-    def watched(self) -> NDArray[np.bool_]:
-        """Channels that are looked at: sound in the model, read, with a noise, bool[channels]."""
+    def watched(self, known: Container[str] = ()) -> NDArray[np.bool_]:
+        """Channels that are looked at: sound in the model, read, with a noise, bool[channels].
+
+        Args:
+            known: channels that have been read before.
+        """
         read = np.isfinite(self.data.real).any(axis=0)
+        read |= np.array([name in known for name in self.simulation.model.sensors], dtype=bool)
         return np.asarray(np.isfinite(self.noise) & ~broken(self.data.readings) & read)
 
     def rows(self, chosen: NDArray[np.bool_] | slice) -> Self:
