@@ -148,7 +148,8 @@ class RealityGapAnalysis:
         known = calibration.learned
         self._refine(recent)
         after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
-        doubted, ended = self._judged(expected, left, usual, calibration.changes(known))
+        changes, novel = calibration.changes(known), calibration.novel(*recent)
+        doubted, ended = self._judged(expected, left, usual, changes, novel)
         interval = self._policy.next_interval(
             standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
         )
@@ -169,7 +170,7 @@ class RealityGapAnalysis:
             self._go_on(last, open_alarm)
 
     def _judged(
-        self, before: float, after: float, usual: float, changes: tuple[str, ...]
+        self, before: float, after: float, usual: float, changes: tuple[str, ...], novel: bool
     ) -> tuple[bool, str]:
         """Whether the model is in doubt after a recalibration, and what came of it in words.
 
@@ -177,6 +178,7 @@ class RealityGapAnalysis:
             before, after: gap over the gap to expect [-].
             usual: what it stays below on stretches of the calibration [-].
             changes: of structure and sensors, by which the gap came down.
+            novel: the rows have contexts that none before them had.
         """
         own = f"in the calibration, stretches as long stay below {usual:.2f}"
         expected = f"of what noise and scatter let expect; {own}"
@@ -185,17 +187,17 @@ class RealityGapAnalysis:
                 f"no contexts explain them, nor does learning from them: the gap is {after:.2f} "
                 f"{expected}. The model is in doubt"
             )
-        if before > usual and changes:
+        if before <= usual:
+            return False, f"contexts explain them: the gap is {after:.2f} {expected}"
+        corrects = self._calibration.corrects
+        if corrects and (changes or not novel):
+            how = " and ".join(changes) or "many small changes of structure and sensors"
             return True, (
                 f"no contexts explain them: the gap is {before:.2f} {expected}. It falls to "
-                f"{after:.2f} with {' and '.join(changes)}: the model is in doubt"
+                f"{after:.2f} with {how}: the model is in doubt"
             )
-        if before > usual:
-            return (
-                False,
-                f"learned from them, and the gap fell from {before:.2f} to {after:.2f} {expected}",
-            )
-        return False, f"contexts explain them: the gap is {after:.2f} {expected}"
+        reason = "contexts that no row had before" if novel else "learned from them"
+        return False, f"{reason}: the gap fell from {before:.2f} to {after:.2f} {expected}"
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""

@@ -11,11 +11,11 @@ from rga_bench.machine import machine, versions
 from rga_bench.page import MarkdownPage
 from rga_bench.streams.setting import StreamSetting, shorter
 from rga_bench.streams.table import page
-from rga_bench.streams.twin_run import StreamResult, run_twin
+from rga_bench.streams.twin_run import StreamOutcome, run_twin
 
 
 @dataclass(frozen=True)
-class StreamsExperiment(Experiment[Sequence[StreamResult]]):
+class StreamsExperiment(Experiment[Sequence[StreamOutcome]]):
     """Ways to infer contexts in the loop that is shipped.
 
     Attributes:
@@ -31,18 +31,18 @@ class StreamsExperiment(Experiment[Sequence[StreamResult]]):
         """That of a command line."""
         return cls(shorter(seed) if quick else StreamSetting(seed=seed))
 
-    def measure(self, execution: Execution) -> list[StreamResult]:
+    def measure(self, execution: Execution) -> list[StreamOutcome]:
         """Results in the order of the tasks."""
-        return outcomes_of(run_twin, self.setting.tasks(), StreamResult, execution)
+        return outcomes_of(run_twin, self.setting.tasks(), StreamOutcome, execution)
 
-    def page(self, result: Sequence[StreamResult], command: str) -> MarkdownPage:
+    def page(self, result: Sequence[StreamOutcome], command: str) -> MarkdownPage:
         """The tables."""
         return page(result, command)
 
-    def write_figures(self, result: Sequence[StreamResult], folder: Path) -> None:
+    def write_figures(self, result: Sequence[StreamOutcome], folder: Path) -> None:
         """None stands beside the page."""
 
-    def content(self, result: Sequence[StreamResult], command: str) -> dict[str, Any]:
+    def content(self, result: Sequence[StreamOutcome], command: str) -> dict[str, Any]:
         """Every twin on every stream."""
         return {
             "command": command,

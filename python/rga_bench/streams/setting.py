@@ -60,8 +60,8 @@ class StreamSetting:
         seeds = range(self.seed, self.seed + self.streams)
         nulls = range(self.seed, self.seed + self.nulls)
         return [
-            *(StreamTask("structure", seed, USUAL, "auto") for seed in seeds),
             *(StreamTask("null", seed, self.rows, "auto") for seed in nulls),
+            *(StreamTask("structure", seed, USUAL, "auto") for seed in seeds),
             *(
                 StreamTask(sort, seed, USUAL, "auto")
                 for seed in seeds

@@ -9,7 +9,7 @@ from scipy.stats import binomtest, bootstrap
 from rga_bench.machine import machine, versions
 from rga_bench.page import MarkdownPage
 from rga_bench.streams.setting import SORTS
-from rga_bench.streams.twin_run import StreamResult
+from rga_bench.streams.twin_run import StreamOutcome
 from rga_bench.text_table import TextTable
 
 #: rows within which a change is to be named
@@ -32,7 +32,7 @@ were named. A version is false where it has a cause that is none; so is a cause 
 stiff joints of the frame are true, and count as neither."""
 
 
-def page(played: Sequence[StreamResult], command: str) -> MarkdownPage:
+def page(played: Sequence[StreamOutcome], command: str) -> MarkdownPage:
     """The tables, and what they mean."""
     place = machine()
     named = [f"{name} {number}" for name, number in versions().items() if number]
@@ -52,7 +52,7 @@ def page(played: Sequence[StreamResult], command: str) -> MarkdownPage:
 
 
 def _rows(
-    played: Sequence[StreamResult], cells: Callable[[Sequence[StreamResult]], list[str]]
+    played: Sequence[StreamOutcome], cells: Callable[[Sequence[StreamOutcome]], list[str]]
 ) -> list[list[str]]:
     order = list(SORTS)
     ordered = sorted(played, key=lambda one: (order.index(one.sort), one.inference))
@@ -64,7 +64,7 @@ def _rows(
     return rows
 
 
-def _contexts(played: Sequence[StreamResult]) -> list[str]:
+def _contexts(played: Sequence[StreamOutcome]) -> list[str]:
     chosen = sorted({one.chosen for one in played})
     counts = [f"{name} {sum(one.chosen == name for one in played)}" for name in chosen]
     return [
@@ -77,7 +77,7 @@ def _contexts(played: Sequence[StreamResult]) -> list[str]:
     ]
 
 
-def _changes(played: Sequence[StreamResult]) -> list[str]:
+def _changes(played: Sequence[StreamOutcome]) -> list[str]:
     changed = played[0].sort in ("structure", "gauge")
     named = [one.named for one in played if one.named is not None]
     verdicts = sorted({one.verdict for one in played})

@@ -26,7 +26,7 @@ BROKEN, BREAKS = (5.0, 20.0), (0.68, 0.74)
 
 
 @dataclass(frozen=True)
-class StreamResult:
+class StreamOutcome:
     """What became of a twin on a stream. Rows are counted from the change on.
 
     Attributes:
@@ -70,7 +70,7 @@ class StreamResult:
         return f"{self.sort}/{self.seed}/{self.inference}"
 
 
-def run_twin(task: StreamTask) -> StreamResult:
+def run_twin(task: StreamTask) -> StreamOutcome:
     """Draw the stream, and run the twin on it up to its report."""
     case, change = drawn(task)
     with tempfile.TemporaryDirectory() as scratch:
@@ -95,7 +95,7 @@ def run_twin(task: StreamTask) -> StreamResult:
     }
     named = [one.row for one in history.versions if one.number in right]
     alarms = [one.row for one in history.events if one.kind == "alarm" and change is not None]
-    return StreamResult(
+    return StreamOutcome(
         sort=task.sort,
         seed=task.seed,
         inference=task.inference,

@@ -8,21 +8,21 @@ import pytest
 from rga_bench.streams.experiment import StreamsExperiment
 from rga_bench.streams.setting import StreamSetting, StreamTask
 from rga_bench.streams.table import page
-from rga_bench.streams.twin_run import StreamResult, drawn, is_false, is_hidden
+from rga_bench.streams.twin_run import StreamOutcome, drawn, is_false, is_hidden
 
 
 def task(sort: str, seed: int = 2, rows: int = 90) -> StreamTask:
     return StreamTask(sort, seed, rows, "auto")
 
 
-def result(sort: str, seed: int, **more: Any) -> StreamResult:
+def result(sort: str, seed: int, **more: Any) -> StreamOutcome:
     known: dict[str, Any] = {
         "sort": sort, "seed": seed, "inference": "auto", "chosen": "joint", "error": 0.01,
         "covered": 0.9, "delay": None, "named": None, "false_versions": 0,
         "verdict": "nothing_wrong", "false_causes": 0, "alarms": 0, "recalibrations": 0,
         "diagnoses": 1, "versions": 0, "novel": 0, "gap": 1.0, "seconds": 60.0,
     }  # fmt: skip
-    return StreamResult(**(known | more))
+    return StreamOutcome(**(known | more))
 
 
 def test_one_gauge_breaks_and_nothing_else_differs() -> None:

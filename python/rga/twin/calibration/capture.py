@@ -33,6 +33,8 @@ from rga.twin.settings import Inference, Settings
 Progress = Callable[[str, float], None]
 #: a context is hardly seen where its interval is this share of what its range alone would give
 HARDLY = 0.7
+#: share of their spread by which contexts may lie outside all earlier ones and be like them
+BESIDE = 0.1
 
 
 class ContextCapture:
@@ -151,6 +153,24 @@ class ContextCapture:
             for column, wide, unit, hidden in zip(columns, half, units, share, strict=True)
         ]
         return [f"known within (90 %): {', '.join(words)}"]
+
+    @property
+    def corrects(self) -> bool:
+        """Whether learning changes the structure, and not what infers contexts alone."""
+        return self.learned is not None and self.learned.found is not None
+
+    def novel(self, first: int, end: int) -> bool:
+        """Whether most of some rows have contexts that no row before them had."""
+        before, rows = (
+            self.ledger.contexts[part][:, self.latent]
+            for part in (slice(0, first), slice(first, end))
+        )
+        if not len(before) or not self.latent:
+            return False
+        low, high = before.min(axis=0), before.max(axis=0)
+        beside = BESIDE * (high - low)
+        out = ((rows < low - beside) | (rows > high + beside)).any(axis=1)
+        return bool(out.mean() > 0.5)
 
     def changes(self, before: ContextEstimator | None) -> tuple[str, ...]:
         """What structure and sensors have changed by most since an estimator, in words."""

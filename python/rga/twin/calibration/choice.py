@@ -26,7 +26,7 @@ AS_GOOD = 1.05
 
 
 @dataclass(frozen=True)
-class Choice:
+class InferenceChoice:
     """What was chosen.
 
     Attributes:
@@ -42,7 +42,7 @@ class Choice:
     optimism: float = 1.0
 
 
-def choose(lesson: Lesson) -> Choice:
+def choose(lesson: Lesson) -> InferenceChoice:
     """The joint posterior where it can be had and predicts, networks otherwise.
 
     It learns from four fifths of the rows. From one half of the channels the contexts of the other
@@ -52,7 +52,7 @@ def choose(lesson: Lesson) -> Choice:
     reason = why_not(lesson)
     if reason is not None:
         words = f"contexts by networks (not by the joint posterior: {reason})"
-        return Choice("networks", words)
+        return InferenceChoice("networks", words)
     rows = np.arange(len(lesson.data.real))
     held = rows // min(STRETCH, len(rows) // HELD_OUT) % HELD_OUT == HELD_OUT - 1
     learned = JointEstimator.learn(lesson.rows(~held))
@@ -77,14 +77,14 @@ def choose(lesson: Lesson) -> Choice:
     ratio = _gap(joint, *unseen, own) / _gap(joint, *seen, own)
     optimism = max(ratio, 1.0) if np.isfinite(ratio) else 1.0
     if mine <= AS_GOOD * others:
-        return Choice(
+        return InferenceChoice(
             "joint",
             f"contexts by the joint posterior, which corrects the structure as well: {words}",
             found,
             optimism,
         )
     words = f"contexts by networks, not by the joint posterior: {words}"
-    return Choice("networks", words, found, optimism)
+    return InferenceChoice("networks", words, found, optimism)
 
 
 def _rows(measured: MeasuredContexts, chosen: NDArray[np.bool_]) -> MeasuredContexts:
