@@ -12,6 +12,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.findings import Findings
+from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.history import Event, Kind
@@ -149,14 +150,14 @@ class RealityGapAnalysis:
         self._refine(recent)
         after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
         changes, novel = calibration.changes(known), calibration.novel(*recent)
-        doubted, ended = self._judged(expected, left, usual, changes, novel)
+        rows = f"rows {recent[0]} to {recent[1] - 1}"
+        doubted, words = self._judged(rows, expected, left, usual, changes, novel)
         interval = self._policy.next_interval(
             standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
         )
         if interval != standing.interval:
-            ended += f"; the interval is now {interval} rows"
+            words += f"; the interval is now {interval} rows"
         standing.interval = interval
-        words = f"rows {recent[0]} to {recent[1] - 1}: {ended}"
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
         if not doubted:
             calibration.sound = calibration.learned
@@ -170,34 +171,45 @@ class RealityGapAnalysis:
             self._go_on(last, open_alarm)
 
     def _judged(
-        self, before: float, after: float, usual: float, changes: tuple[str, ...], novel: bool
+        self,
+        rows: str,
+        before: float,
+        after: float,
+        usual: float,
+        changes: tuple[str, ...],
+        novel: bool,
     ) -> tuple[bool, str]:
         """Whether the model is in doubt after a recalibration, and what came of it in words.
 
         Args:
+            rows: that it was about, in words.
             before, after: gap over the gap to expect [-].
             usual: what it stays below on stretches of the calibration [-].
             changes: of structure and sensors, by which the gap came down.
             novel: the rows have contexts that none before them had.
         """
-        own = f"in the calibration, stretches as long stay below {usual:.2f}"
-        expected = f"of what noise and scatter let expect; {own}"
+        expected = (
+            f"times what noise and scatter let expect (stretches of the calibration stay below "
+            f"{usual:.2f})"
+        )
         if after > usual:
             return True, (
-                f"no contexts explain them, nor does learning from them: the gap is {after:.2f} "
-                f"{expected}. The model is in doubt"
+                f"no contexts explain {rows}, nor does learning from them: the gap is {after:.2f} "
+                f"{expected}; the model is in doubt"
             )
         if before <= usual:
-            return False, f"contexts explain them: the gap is {after:.2f} {expected}"
-        corrects = self._calibration.corrects
-        if corrects and (changes or not novel):
+            return False, f"contexts explain {rows}: the gap is {after:.2f} {expected}"
+        if self._calibration.corrects and (changes or not novel):
             how = " and ".join(changes) or "many small changes of structure and sensors"
             return True, (
-                f"no contexts explain them: the gap is {before:.2f} {expected}. It falls to "
-                f"{after:.2f} with {how}: the model is in doubt"
+                f"no contexts explain {rows}: the gap is {before:.2f} {expected}, and falls to "
+                f"{after:.2f} with {how}; the model is in doubt"
             )
-        reason = "contexts that no row had before" if novel else "learned from them"
-        return False, f"{reason}: the gap fell from {before:.2f} to {after:.2f} {expected}"
+        new = " have contexts that none had before" if novel else ""
+        return False, (
+            f"{rows}{new}: learning from them took the gap from {before:.2f} to {after:.2f} "
+            f"{expected}"
+        )
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
@@ -292,7 +304,8 @@ class RealityGapAnalysis:
         calibration.follow(*recent)
         standing.changed = standing.row
         after = calibration.gap(*recent)
-        words = f"version {answer.version} of the model is in force"
+        causes = ", ".join(effect_words(one) for one in answer.effects.values())
+        words = f"version {answer.version} of the model is in force: {causes or 'as it was given'}"
         self._event("version", standing.row - 1, words, before=before, after=after)
         if "restore" not in change and after > WORSE * before:
             self._ask_twin(restore=old)

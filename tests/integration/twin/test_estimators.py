@@ -321,3 +321,17 @@ def test_a_zero_of_the_logger_is_that_of_the_model_as_given(
     np.testing.assert_array_equal(given.zero(clock, contexts), corrected.zero(clock, contexts))
     again = read(written(learned), corrected)
     assert again.correction == read(written(learned), given).correction
+
+
+def test_a_model_that_cannot_be_calibrated_says_so_each_time(
+    small_stream: Stream, tmp_path: Path
+) -> None:
+    stream = small_stream(drifts=False, sinks=False)
+    content = json.loads((stream / "model.json").read_text(encoding="utf-8"))
+    for sensor in content["sensors"].values():
+        sensor["noise"] = 1e9
+    model = read_model(content, "a model whose sensors see nothing")
+    record = rga.load_record(stream / "record.csv", model)
+    for _ in range(2):
+        with pytest.raises(InputError, match="cannot represent what a calibration needs"):
+            rga.run(model, record, tmp_path)
