@@ -1,6 +1,6 @@
 """The rows of a run in memory: measured, inferred and simulated."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,10 +46,6 @@ class RowBuffer:
         for name in ("contexts", "spread", "simulated"):
             table = getattr(self, name)
             setattr(self, name, np.concatenate([table, np.full((rows, table.shape[1]), np.nan)]))
-
-    def copy(self) -> "RowBuffer":
-        """An independent copy."""
-        return RowBuffer(*(getattr(self, field.name).copy() for field in fields(self)))
 
     @property
     def residuals(self) -> FloatArray:
