@@ -145,6 +145,7 @@ class Structure:
     nonlinear: bool
     _built: Built = field(default_factory=dict, repr=False, compare=False)
     _built_for_geometry: Built = field(default_factory=dict, repr=False, compare=False)
+    _named: Built = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def linear(self) -> bool:
@@ -188,6 +189,7 @@ class Structure:
             list(self.laws),
             self.nonlinear,
             _built_for_geometry=self._built_for_geometry,
+            _named=self._named,
         )
 
     def same_geometry(self, other: "Structure") -> bool:
@@ -209,9 +211,13 @@ class Structure:
 
     def named(self, member: str | list[str] | None, group: str | list[str] | None) -> IntArray:
         """Numbers of the members that a place names, each once."""
-        numbers = {self.members[name] for name in listed(member)}
-        numbers.update(*(self.groups[name].tolist() for name in listed(group)))
-        return np.array(sorted(numbers), dtype=np.int64)
+
+        def found() -> IntArray:
+            numbers = {self.members[name] for name in listed(member)}
+            numbers.update(*(self.groups[name].tolist() for name in listed(group)))
+            return np.array(sorted(numbers), dtype=np.int64)
+
+        return _once(self._named, (id(member), id(group)), found, (member, group))
 
     def add_nodes(self, coordinates: FloatArray) -> IntArray:
         """Add nodes at coordinates float[k, 3] [m]; their numbers."""

@@ -173,7 +173,7 @@ class Simulator:
             float[rows, patterns].
         """
         table = self._table(contexts)
-        loads = self._loads(self._structure, self.resolve(table))
+        loads = self.loads(self._structure, self.resolve(table))
         none = np.zeros((len(table["time"]), 0))
         return np.column_stack([none, *(load.coefficient for load in loads)])
 
@@ -287,6 +287,21 @@ class Simulator:
                 effect.change_values(values, values[name], measured["time"])
         return values
 
+    def structural_keys(self, values: dict[str, Values]) -> list[tuple[str, str]]:
+        """Effect and parameter of all that changes the structure, as `resolve` gives them."""
+        effects = self.model.effects.items()
+        return [
+            (name, key) for name, effect in effects if effect.structural for key in values[name]
+        ]
+
+    def structural_parameters(self, values: dict[str, Values]) -> FloatArray:
+        """Parameters that change the structure, float[rows, parameters]."""
+        columns = [values[name][key] for name, key in self.structural_keys(values)]
+        if not columns:
+            rows = next((len(one) for own in values.values() for one in own.values()), 0)
+            return np.zeros((rows, 0))
+        return np.column_stack(columns)
+
     def request(self, values: dict[str, Values], rows: int) -> Request:
         """What parameters of all effects ask of the structure.
 
@@ -296,10 +311,10 @@ class Simulator:
         """
         effects = self.model.effects
         structural = [name for name, effect in effects.items() if effect.structural]
-        parameters = [(name, key) for name in structural for key in values[name]]
+        parameters = self.structural_keys(values)
         states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
         if parameters:
-            table = np.column_stack([values[name][key] for name, key in parameters])
+            table = self.structural_parameters(values)
             moving = (table != table[:1]).any(axis=0)
             if rows and not moving.any():
                 states = table[:1]
@@ -342,7 +357,7 @@ class Simulator:
                 name: {key: column[chosen] for key, column in resolved.items()}
                 for name, resolved in values.items()
             }
-            return self._loads(structure, of_rows)
+            return self.loads(structure, of_rows)
 
         fixed = all(
             effect.loads_by_geometry
@@ -351,7 +366,13 @@ class Simulator:
         )
         return Request(states, state_of_row.ravel(), change, loads, fixed, self.prepared)
 
-    def _loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
+    def loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
+        """Load patterns on a structure, with a coefficient a row.
+
+        Args:
+            structure: as the effects have made it.
+            values: of all parameters, as `resolve` gives them.
+        """
         effects = self.model.effects
         loads = {
             name: effect.loads(structure, values[name], values) for name, effect in effects.items()

@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray
+from rga.inference.joint.derivatives import Derivatives, derivatives
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.population import Population
 from rga.inference.joint.sensor_errors import CorrectedTwin
-from rga.inference.joint.structural_parameters import BENT, Unknowns
+from rga.inference.joint.structural_parameters import Unknowns
+from rga.inference.joint.volume import Curvature
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import CLOSE, REACH, mode_beyond, posterior_mode
 from rga.inference.map.standard_units import EDGE, standard
@@ -27,8 +29,6 @@ TAILS = 3.0
 CHANGE, FIRST = 0.03, (0.5, 10.0)
 #: shares of a step that are tried; gain in misfit below which a step is not worth another
 SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 0.5
-#: rows by which it is seen how derivatives change with unknowns
-SAMPLE = 32
 #: readings that a sensor's own noise is held against that of all by, and the first guess [spreads]
 HELD_BY, GUESS = 30.0, 5.0
 
@@ -134,6 +134,8 @@ class Search:
         self.prior, self.centre, self.tails = prior, prior.mean, TAILS
         self._suppose(prior.first**2)
         self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
+        none: Derivatives | None = None
+        self._known = self.contexts, self.value, none
         self.reach = self._reached()
         self.population = Population.unknown(len(ranges))
         self.volume = np.zeros(len(self.unit))
@@ -180,7 +182,8 @@ class Search:
             for start in (guess(read), self.contexts[: self.many])
         )
         better = (mode.misfit < kept.misfit)[:, None]
-        self.contexts[: self.many] = np.where(better, mode.value, kept.value)
+        placed = np.where(better, mode.value, kept.value)
+        self.contexts = np.vstack([placed, self.contexts[self.many :]])
         self.reach = self._reached()
         if near:
             inside = np.where(better[:, None], mode.covariance, kept.covariance)
@@ -195,35 +198,15 @@ class Search:
         return np.where(beyond, REACH, 1.0)
 
     def _volume_slope(self) -> FloatArray:
-        """Half the slope of the log determinant of the rows' precision along the parameters.
-
-        The mode over contexts and unknowns is off: contexts that vary less please their prior, so
-        that a structure that is too soft would be found (Neyman and Scott, Econometrica 16, 1948).
-        The likelihood of the unknowns alone has the determinant beside it (Laplace), at the
-        contexts that each value of them would give.
-        """
-        contexts, here, by_unknowns, by_contexts = self._bent
-        root = self.scale / np.sqrt(self.variance)[:, None]
-        root = np.where(self.seen[contexts][:, :, None], root, 0.0)
-        here, by_unknowns, by_contexts = here * root, by_unknowns * root, by_contexts * root
-        width = self._before()[1][contexts]
-        turned = here.transpose(0, 2, 1)
-        back = here @ np.linalg.inv(turned @ here + np.eye(width.shape[1]) / width[:, :, None] ** 2)
-        of_unknowns = np.einsum("nsc,knsc->k", back, by_unknowns, optimize=True)
-        of_gains = GAIN * np.einsum("nsc,nsc->s", back, here)
-        slope = np.concatenate([of_unknowns, of_gains, np.zeros(len(self.noise))])
-        of_contexts = np.einsum("nsc,jnsc->nj", back, by_contexts, optimize=True)
-        slope -= np.einsum("nj,njk->k", of_contexts, self._follow()[contexts], optimize=True)
-        return np.asarray(slope * self.many / len(contexts))
+        bent = self._curvature
+        weight = np.where(self.seen[bent.rows], 1.0 / np.sqrt(self.variance), 0.0)
+        weight = weight[:, :, None] * self.scale
+        follow, width = self._follow()[bent.rows], self._before()[1][bent.rows]
+        return self.many * bent.volume_slope(weight, width, follow, GAIN)
 
     @cached_property
-    def _bent(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-        """Some rows, derivatives by contexts there, and how unknowns and contexts change these."""
-        chosen = np.unique(np.linspace(0, self.many - 1, SAMPLE).astype(int))
-        contexts, moves = self.contexts[chosen], np.diag(BENT * self.scale)
-        here, by_unknowns = self.unknowns.bend(contexts)
-        there = [self.unknowns.slopes(contexts + move) for move in moves]
-        return chosen, here, by_unknowns, (np.stack(there) - here) / BENT
+    def _curvature(self) -> Curvature:
+        return Curvature.of(self.unknowns, self.contexts[: self.many], self.scale)
 
     def _follow(self) -> FloatArray:
         """What contexts lose by a parameter, in their units, float[rows, contexts, parameters]."""
@@ -300,16 +283,21 @@ class Search:
         return np.asarray(self.free & ~self.read)
 
     def _linear(self) -> LinearisedRows:
-        unknowns, gains, offsets = self.split(self.value)
-        plain, by_contexts, by_unknowns = self.unknowns.linearise(self.contexts, unknowns)
+        at = self._derivatives()
         weight = np.where(self.seen, 1.0 / np.sqrt(self.variance), 0.0)
-        off = np.where(self.seen, self.readings - gains * plain - offsets, 0.0)
-        each = np.eye(plain.shape[1])
-        by_gains, by_offsets = plain[:, :, None] * each, np.ones_like(plain)[:, :, None] * each
-        slopes = np.concatenate([by_unknowns * gains[:, None], by_gains, by_offsets], axis=2)
-        near = np.where(self.free[:, :, None], by_contexts * gains[:, None], 0.0)
+        off = np.where(self.seen, self.readings - at.readings, 0.0)
+        near = np.where(self.free[:, :, None], at.by_contexts, 0.0)
         heavy = weight[:, :, None]
-        return LinearisedRows(off * weight, slopes * self.unit * heavy, near * self.scale * heavy)
+        slopes = at.by_parameters * self.unit * heavy
+        return LinearisedRows(off * weight, slopes, near * self.scale * heavy)
+
+    def _derivatives(self) -> Derivatives:
+        """Those at contexts and parameters as they stand; neither is ever changed in place."""
+        contexts, value, known = self._known
+        if known is None or contexts is not self.contexts or value is not self.value:
+            known = derivatives(self.unknowns, self.contexts, self.split(self.value))
+            self._known = self.contexts, self.value, known
+        return known
 
     def _see_freedom(self, width: FloatArray) -> None:
         """Of how many readings contexts, of these prior deviations, and parameters take freedom."""

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.inference.joint.derivatives import derivatives
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.standard_units import standard
@@ -36,24 +37,13 @@ def row_spread(
     Returns:
         float[rows, contexts] in the units of the contexts.
     """
-    values, gains, _ = parameters
     _, scale = standard(np.array([one.range for one in unknowns.model.context.values()]))
-    plain, by_contexts, by_unknowns = unknowns.linearise(contexts, values)
-    each = np.eye(len(gains))
-    slopes = np.concatenate(
-        [
-            by_unknowns * gains[:, None],
-            plain[:, :, None] * each,
-            np.ones_like(plain)[..., None] * each,
-        ],
-        axis=2,
-    )
+    at = derivatives(unknowns, contexts, parameters)
     seen = observed[:, :, None]
-    unsure = np.where(seen, slopes @ root, 0.0)
-    near = np.where(seen, by_contexts * gains[:, None] * scale, 0.0)
-    noise = (
-        unsure @ unsure.transpose(0, 2, 1) + np.where(observed, variance, 1.0)[:, :, None] * each
-    )
+    unsure = np.where(seen, at.by_parameters @ root, 0.0)
+    near = np.where(seen, at.by_contexts * scale, 0.0)
+    own = np.where(observed, variance, 1.0)[:, :, None] * np.eye(observed.shape[1])
+    noise = unsure @ unsure.transpose(0, 2, 1) + own
     precision = near.transpose(0, 2, 1) @ np.linalg.solve(noise, near)
     own = np.where(np.isfinite(measured.values), (scale / measured.noise) ** 2, 1.0)
     precision += own[:, :, None] * np.eye(len(scale))

@@ -12,7 +12,6 @@ from scipy.stats import qmc
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.inference.joint.joint_stiffness_surrogate import BENDING, with_bending
-from rga.inference.map.array_simulator import TwinOnArrays
 from rga.model import Model, model_content, read_effect, read_model
 from rga.model.parameter import listed
 from rga.simulation import Simulator
@@ -27,10 +26,8 @@ FIXITY, FIXITY_SPREAD = -0.5, 0.6
 BEARING, BEARING_SPREAD = 9.0, 0.7
 #: spread of the settlement of a support [m], and what it cannot exceed
 SETTLEMENT, SUNK = 0.005, 0.1
-#: share of a spread by which unknowns are moved to see how derivatives change
-BENT = 0.1
-#: rows by which it is seen
-SAMPLE = 32
+#: contexts that are spread over their ranges
+SPREAD = 32
 #: how much warmer one side gets than the other, per unit of a context that warms
 SIDEWAYS = 0.5
 
@@ -127,9 +124,9 @@ class Unknowns:
 
     @cached_property
     def spread_contexts(self) -> FloatArray:
-        """Contexts spread over their ranges, float[SAMPLE, contexts]."""
+        """Contexts spread over their ranges, float[SPREAD, contexts]."""
         low, high = np.array([one.range for one in self.model.context.values()]).T
-        share = qmc.Sobol(len(low), scramble=True, rng=0).random(SAMPLE)
+        share = qmc.Sobol(len(low), scramble=True, rng=0).random(SPREAD)
         return np.asarray(low + (high - low) * share)
 
     def at(self, values: FloatArray) -> Model:
@@ -193,31 +190,6 @@ class Unknowns:
         names = list(self.model.context)
         followed = {number: part.follows for number, part in enumerate(self.parts)}
         return {number: names.index(name) for number, name in followed.items() if name is not None}
-
-    def slopes(self, contexts: FloatArray, step: FloatArray | float = 0.0) -> FloatArray:
-        """Derivatives by contexts, float[n, contexts], a step away from the unknowns' centre.
-
-        float[n, sensors, contexts].
-        """
-        simulator = Simulator(self.at(self.centre + step))
-        return TwinOnArrays(simulator, time=self.time).jacobian(contexts)
-
-    def bend(self, contexts: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Derivatives by contexts, and how they change with each unknown about its centre.
-
-        Args:
-            contexts: float[n, contexts].
-
-        Returns:
-            float[n, sensors, contexts] and float[unknowns, n, sensors, contexts], the latter per
-            prior spread of the unknown.
-        """
-        here = self.slopes(contexts)
-        moved = [
-            np.zeros_like(here) if part.linear else self.slopes(contexts, step) - here
-            for part, step in zip(self.parts, np.diag(BENT * self.spread), strict=True)
-        ]
-        return here, np.stack(moved) / BENT
 
     @cached_property
     def _of_all(self) -> Simulator:

@@ -31,7 +31,7 @@ STEP, LEAST = 1e-4, 1e-6
 
 @dataclass(frozen=True)
 class Sides:
-    """A little ahead of the rows and a little behind, along each context that drives something.
+    """A little ahead of the rows and a little behind, along some contexts.
 
     Attributes:
         columns: which contexts, among all of the model.
@@ -87,9 +87,9 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
     if not (contexts := _followed(simulator)):
         return out
     response = simulator.respond(table)
-    sides = _sides(simulator, response, contexts)
+    columns = _columns(simulator, contexts)
     rates = None
-    for tangent in _tangents(simulator, response, sides):
+    for tangent in _tangents(simulator, response, contexts):
         try:
             found = tangent.system.differentiate(
                 tangent.coefficients,
@@ -102,9 +102,9 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
         rates = found * tangent.per_si[:, None]
         break
     if rates is not None and simulator.reads_plainly:
-        out[:, :, sides.columns] = rates
+        out[:, :, columns] = rates
         return out
-    shown = []
+    sides, shown = _sides(simulator, response, contexts), []
     for number, one in enumerate(sides.tables):
         if rates is None:
             shown.append(simulator.predict(one))
@@ -117,7 +117,7 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
             simulator.read(replace(response, contexts=one, values=values, quantities=moved))
         )
     ahead, behind = np.stack(shown[::2], 2), np.stack(shown[1::2], 2)
-    out[:, :, sides.columns] = (ahead - behind) / (sides.ahead + sides.behind)[:, None]
+    out[:, :, columns] = (ahead - behind) / (sides.ahead + sides.behind)[:, None]
     return out
 
 
@@ -138,8 +138,7 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
     if not simulator.reads_plainly:
         return _product(gradients, jacobian(simulator, table))
     response = simulator.respond(table)
-    sides = _sides(simulator, response, contexts)
-    for tangent in _tangents(simulator, response, sides):
+    for tangent in _tangents(simulator, response, contexts):
         try:
             found = tangent.system.pull_back(
                 tangent.coefficients, tangent.stiffness, gradients * tangent.per_si
@@ -149,14 +148,34 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
         by_loads, by_stiffness = np.split(found, [tangent.coefficients.shape[1]], axis=1)
         along = _product(by_loads, tangent.coefficient_rates)
         along += _product(by_stiffness, tangent.stiffness_rates)
-        out[:, sides.columns] = along
+        out[:, _columns(simulator, contexts)] = along
         return out
     return _product(gradients, jacobian(simulator, table))
 
 
 def _followed(simulator: "Simulator") -> list[str]:
     """Contexts that drive something."""
-    return [name for name in simulator.model.context if name in simulator.needed]
+    needed = simulator.needed
+    return [name for name in simulator.model.context if name in needed]
+
+
+def _columns(simulator: "Simulator", contexts: list[str]) -> list[int]:
+    """Numbers of contexts among all of the model."""
+    place = {name: number for number, name in enumerate(simulator.model.context)}
+    return [place[name] for name in contexts]
+
+
+def _of_structure_alone(simulator: "Simulator", contexts: list[str]) -> list[str]:
+    """Those of the contexts that change the structure, and nothing else, of their row alone."""
+    effects = simulator.model.effects.values()
+    if any(one.overrides("change_contexts") or one.overrides("change_values") for one in effects):
+        return []
+    others: set[str] = set()
+    for one in effects:
+        loading = one.overrides("loads") or one.overrides("change_loads")
+        if loading or not one.structural or one.remembers or one.of_all_rows:
+            others |= one.drivers()
+    return [name for name in contexts if name not in others]
 
 
 def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) -> Sides:
@@ -181,7 +200,7 @@ def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) ->
         for name, effect in model.effects.items():
             for key in effect.of_all_rows:
                 values[name][key] = np.tile(response.values[name][key], len(tables))
-    columns = [list(model.context).index(name) for name in contexts]
+    columns = _columns(simulator, contexts)
     return Sides(columns, np.stack(ahead, 1), np.stack(behind, 1), tables, values)
 
 
@@ -197,33 +216,73 @@ def _steps(value: FloatArray, low: float, high: float) -> tuple[FloatArray, Floa
     return ahead, behind
 
 
-def _tangents(simulator: "Simulator", response: "Response", sides: Sides) -> Iterator[Tangent]:
+def _tangents(
+    simulator: "Simulator", response: "Response", contexts: list[str]
+) -> Iterator[Tangent]:
     """Linear paths at the rows, the cheapest first; none where there is no tangent."""
     rows = len(response.contexts["time"])
     middle = simulator.request(response.values, rows)
-    every = np.arange(rows * len(sides.tables))
-    around = simulator.request(sides.values, len(every))
-    states = np.unique(np.concatenate([middle.states, around.states]), axis=0)
-    start = middle.change(states[0])
+    alone = _of_structure_alone(simulator, contexts)
+    along, low, high = _structure_along(simulator, response, contexts, alone)
+    of_loads = [number for number, name in enumerate(contexts) if name not in alone]
+    sides = _sides(simulator, response, [contexts[number] for number in of_loads])
+    if of_loads:
+        moved = simulator.structural_parameters(sides.values)
+        along[:, :, of_loads] = _rates(moved, sides)
+        low, high = np.minimum(low, moved.min(axis=0)), np.maximum(high, moved.max(axis=0))
+    states = np.vstack([middle.states, low, high])
+    start = middle.change(middle.states[0])
     loads = middle.loads(start, np.arange(rows))
     if start.bearings or start.laws or start.nonlinear or not loads:
         return
     varied = unvaried(start, states.shape[1])
-    if len(states) > 1:
+    if (states != states[0]).any():
         found = variation_under(middle, states)
         if found is None:
             return
         varied = found
-    ends, moved = coefficients(around.loads(start, every)), varied.at(around.of_rows)
+    by_loads = np.zeros((rows, len(loads), len(contexts)))
+    if of_loads:
+        ends = coefficients(simulator.loads(start, sides.values))
+        by_loads[:, :, of_loads] = _rates(ends, sides)
     for _, system in linear_paths(middle.prepared, varied, loads):
         yield Tangent(
             system,
             coefficients(loads),
             varied.at(middle.of_rows),
-            _rates(ends, sides),
-            _rates(moved, sides),
+            by_loads,
+            varied.rates(middle.of_rows, along),
             start.per_si,
         )
+
+
+def _structure_along(
+    simulator: "Simulator", response: "Response", contexts: list[str], alone: list[str]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """How structural parameters follow contexts that change the structure alone.
+
+    Returns:
+        Derivatives, float[rows, parameters, contexts], which of other contexts are zero, and
+        smallest and largest of each parameter on both sides of the rows, float[parameters] each.
+    """
+    model, table = simulator.model, response.contexts
+    rows, here = len(table["time"]), simulator.structural_parameters(response.values)
+    along = np.zeros((rows, here.shape[1], len(contexts)))
+    low, high = here.min(axis=0), here.max(axis=0)
+    columns = {one: number for number, one in enumerate(simulator.structural_keys(response.values))}
+    for name in alone:
+        up, down = _steps(table[name], *model.context[name].range)
+        tables = {**table, name: table[name] + up}, {**table, name: table[name] - down}
+        for of, effect in model.effects.items():
+            if name not in effect.drivers():
+                continue
+            ahead, behind = (effect.values(one, rows) for one in tables)
+            for key in ahead:
+                column, ends = columns[of, key], np.stack([ahead[key], behind[key]])
+                along[:, column, contexts.index(name)] = (ends[0] - ends[1]) / (up + down)
+                low[column] = min(low[column], ends.min())
+                high[column] = max(high[column], ends.max())
+    return along, low, high
 
 
 def _product(gradients: FloatArray, derivatives: FloatArray) -> FloatArray:

@@ -1,17 +1,20 @@
 """Which stiffnesses of a structure vary from row to row, and how."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rga import _core
-from rga.arrays import FloatArray, IntArray, StructureArrays, by_name
+from rga.arrays import FloatArray, IntArray, OutputArrays, StructureArrays, by_name
 from rga.model.structure import Structure
 
 #: rows at which straightness is checked, beside the ends of each parameter
 CHECKED = 6
+#: share of the range of a parameter that a value is from both ends to be looked at as well
+INSIDE = 0.1
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,29 @@ class Variation:
             found[:, own] *= 1.0 + moved[:, [column]] * share
         return found
 
+    def rates(self, states: FloatArray, along: FloatArray) -> FloatArray:
+        """Derivatives of the stiffness at states, float[states, elements, directions].
+
+        Args:
+            states: parameters, float[states, parameters].
+            along: their derivatives along directions, float[states, parameters, directions].
+        """
+        found = np.zeros((len(states), len(self.first), along.shape[2]))
+        for column in np.flatnonzero(self.slope.any(axis=1)):
+            own = np.flatnonzero(self.slope[column])
+            ways = np.flatnonzero(along[:, column].any(axis=0))
+            # Of a product every other factor stays.
+            rate = np.broadcast_to(self.slope[column, own], (len(states), len(own)))
+            if (product := self.multiplied[own]).any():
+                still = states.copy()
+                still[:, column] = self.origin[column]
+                others = replace(
+                    self, first=self.first[own], slope=self.slope[:, own], multiplied=product
+                )
+                rate = np.where(product, rate / others.first * others.at(still), rate)
+            found[:, own[:, None], ways] += rate[:, :, None] * along[:, None, column, ways]
+        return found
+
     @property
     def terms(self) -> int:
         """How many terms of rank one vary."""
@@ -72,27 +98,29 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
         states: parameters, float[states, parameters]; two states or more.
     """
     start = change(states[0])
-    first = _stiffness(start)
+    lengths = start.lengths
+    first = _stiffness(start, lengths)
     slope = np.zeros((states.shape[1], len(first)))
     for column in np.flatnonzero(np.ptp(states, axis=0) > 0):
-        low, high = states[:, column].min(), states[:, column].max()
+        low, high, here = states[:, column].min(), states[:, column].max(), states[0, column]
+        inner = here if INSIDE < (here - low) / (high - low) < 1.0 - INSIDE else (low + high) / 2
         three = []
-        for value in (low, (low + high) / 2, high):
+        for value in (low, inner, high):
             state = states[0].copy()
             state[column] = value
-            other = change(state)
+            other = start if value == here else change(state)
             if not _only_stiffness_differs(start, other):
                 return None
-            three.append(_stiffness(other))
-        if not np.allclose(three[1], (three[0] + three[2]) / 2, rtol=1e-12, atol=0):
-            return None
+            three.append(_stiffness(other, lengths))
         slope[column] = (three[2] - three[0]) / (high - low)
+        if not np.allclose(three[1], three[0] + (inner - low) * slope[column], rtol=1e-12, atol=0):
+            return None
     low, high = states.min(axis=0), states.max(axis=0)
     chosen = np.unique(np.linspace(0, len(states) - 1, CHECKED).astype(int))
     # Parameters that act together show at the far corner, where all have moved.
     looked_at = np.vstack([states[chosen], np.where(high > states[0], high, low)])
     others = [change(state) for state in looked_at]
-    truth = np.stack([_stiffness(other) for other in others])
+    truth = np.stack([_stiffness(other, lengths) for other in others])
     shared = ((slope != 0).sum(axis=0) > 1) & (first > 0)
     varied = np.flatnonzero(slope.any(axis=0))
     count = len(start.arrays["ends"])
@@ -108,38 +136,51 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
     return None
 
 
-def _stiffness(structure: Structure) -> FloatArray:
-    """EA / L of every truss member or E of a frame member, then the stiffness of every spring."""
-    arrays = structure.arrays
-    axial = arrays["E"] * arrays["A"] / structure.lengths
-    own = np.where(arrays["frame"], arrays["E"], axial)
-    return np.concatenate([own, arrays["spring_stiffness"]])
+def _stiffness(structure: Structure, lengths: FloatArray) -> FloatArray:
+    """EA / L of every truss member or E of a frame member, then the stiffness of every spring.
+
+    Args:
+        structure: with its members.
+        lengths: of these, float[members] [m].
+    """
+    modulus, area, frame, springs = (
+        _of(structure.arrays, name) for name in ("E", "A", "frame", "spring_stiffness")
+    )
+    return np.concatenate([np.where(frame, modulus, modulus * area / lengths), springs])
 
 
 def _only_stiffness_differs(one: Structure, other: Structure) -> bool:
     if other.bearings or other.laws:
         return False
-    for name, array in by_name(one.arrays).items():
-        changed = by_name(other.arrays)[name]
+    for name in by_name(one.arrays):
+        array, changed = _of(one.arrays, name), _of(other.arrays, name)
+        if array is changed:
+            continue
         if array.shape != changed.shape:
             return False
         if name in ("E", "G", "spring_stiffness"):
             continue
         if name == "A":
-            array, changed = array[one.arrays["frame"]], changed[one.arrays["frame"]]
+            frame = _of(one.arrays, "frame")
+            array, changed = array[frame], changed[frame]
         if not np.array_equal(array, changed, equal_nan=array.dtype == float):
             return False
-    outputs = by_name(other.outputs)
-    read = (np.array_equal(array, outputs[name]) for name, array in by_name(one.outputs).items())
-    same = (np.array_equal(getattr(one, name), getattr(other, name)) for name in ("alpha", "host"))
-    return all(read) and all(same) and _frames_differ_as_a_whole(one.arrays, other.arrays)
+    pairs = [(_of(one.outputs, name), _of(other.outputs, name)) for name in by_name(one.outputs)]
+    pairs += [(one.alpha, other.alpha), (one.host, other.host)]
+    same = all(array is changed or np.array_equal(array, changed) for array, changed in pairs)
+    return same and _frames_differ_as_a_whole(one.arrays, other.arrays)
 
 
 def _frames_differ_as_a_whole(one: StructureArrays, other: StructureArrays) -> bool:
     """Where E of a frame member differs, G does in proportion, and no end of the member yields."""
-    frame = one["frame"]
-    yields = (np.isfinite(one["connection"]) & (one["connection"] > 0)).any(axis=1)
-    if (frame & yields & (one["E"] != other["E"])).any():
+    frame, connection = _of(one, "frame"), _of(one, "connection")
+    here, there = ((_of(each, "E")[frame], _of(each, "G")[frame]) for each in (one, other))
+    yields = (np.isfinite(connection) & (connection > 0)).any(axis=1)[frame]
+    if (yields & (here[0] != there[0])).any():
         return False
-    ahead, behind = (one["G"] * other["E"])[frame], (other["G"] * one["E"])[frame]
-    return np.allclose(ahead, behind, rtol=1e-12, atol=0)
+    return np.allclose(here[1] * there[0], there[1] * here[0], rtol=1e-12, atol=0)
+
+
+def _of(arrays: StructureArrays | OutputArrays, name: str) -> NDArray[Any]:
+    """An array to look at. Read as arrays[name], a copy would hold one of its own from then on."""
+    return dict.__getitem__(by_name(arrays), name)
