@@ -293,6 +293,6 @@ def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         "nearest": Row(nearest),
         "absent": Row(nearest, needs=("no_such_package",)),
     }
-    for module in ("experiment", "task_run", "stream_results", "tables.targets"):
+    for module in ("experiment", "task_run", "tables.targets"):
         monkeypatch.setattr(f"rga_bench.contexts.{module}.METHODS", methods)
     return methods

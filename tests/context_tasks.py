@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.twin.calibration.lesson import Lesson
 from rga_bench.contexts.drift import DRIFTS
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
 from rga_bench.contexts.setting import DRIFTING, ContextsTask, Sizes
 
-SIZES = Sizes(source=64, unlabelled=60, stream=160, test=40)
+SIZES = Sizes(source=128, unlabelled=60, stream=160, test=40)
 RANGES = np.array([[0.0, 1.0], [-30.0, 30.0], [3.0, 5.5], [10.0, 12.0]])
 
 
@@ -21,14 +22,14 @@ def task(
 
 
 @dataclass(frozen=True, eq=False)
-class Nearest:
+class Nearest(Rival):
     """The contexts of the simulated row that is most like the reading, less a level learned."""
 
     problem: LearningProblem
     level: FloatArray
     learned: list[int] = field(default_factory=list)
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         source = self.problem.source
         far = ((readings[:, None] - self.level - source.readings) ** 2).sum(axis=2)
         value = source.contexts[far.argmin(axis=1)]
@@ -37,10 +38,11 @@ class Nearest:
     def simulate(self, contexts: FloatArray) -> FloatArray:
         return self.problem.simulate(contexts) + self.level
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        off = recent - self.simulate(self.infer(recent).value)
+    def refined(self, lesson: Lesson) -> "Nearest":
+        recent = lesson.data.real[lesson.new :]
+        off = recent - self.simulate(self.estimate(recent).value)
         return replace(self, level=self.level + off.mean(axis=0), learned=[len(recent)])
 
 
-def nearest(problem: LearningProblem) -> Calibrated:
-    return Nearest(problem, np.zeros(len(problem.noise)))
+def nearest(lesson: Lesson) -> Nearest:
+    return Nearest(LearningProblem.of(lesson), np.zeros(len(lesson.noise)))

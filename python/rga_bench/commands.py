@@ -63,14 +63,6 @@ Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less tim
 FewStreams = Annotated[bool, typer.Option("--quick", help="One stream of each sort.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
 Least = Annotated[bool, typer.Option("--quick", help="One split, few methods and drifts.")]
-Stored = Annotated[
-    str,
-    typer.Option(
-        "--repository",
-        metavar="KIND",
-        help="What level C stores: measured (rows and states) or paper (simulated rows).",
-    ),
-]
 Fewest = Annotated[bool, typer.Option("--quick", help="18 broken records of 100 rows.")]
 Broken = Annotated[int, typer.Option("-n", "--draws", min=1, help="Records with broken channels.")]
 Foreign = Annotated[
@@ -267,14 +259,13 @@ def faults(
     return FaultsExperiment.of(seed, quick=quick, draws=draws, data=data, crossing=crossing)
 
 
-@_experiment(WORKERS, DASK, KEPT)
+@_experiment(WORKERS, DASK, MINUTES, KEPT)
 def loi(
     quick: Least = False,
-    repository: Stored = "measured",
     splits: Splits = 10,
     seed: Seed = 0,
 ) -> Experiment[Any]:
     """Ways to infer contexts, at every level of integration: the paper's table."""
     from rga_bench.contexts.experiment import ContextsExperiment
 
-    return ContextsExperiment.of(seed, quick=quick, splits=splits, repository=repository)
+    return ContextsExperiment.of(seed, quick=quick, splits=splits)

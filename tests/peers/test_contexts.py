@@ -30,8 +30,8 @@ def learned(method):
 def test_a_peer_learns(learned):
     problem, judged = easy()
     assert error(problem, learned, judged) < 0.75
-    spread = learned.infer(judged.readings[:2]).spread
-    assert spread is None or coverage(learned, judged) > 0.8
+    spread = learned.estimate(judged.readings[:2]).spread
+    assert spread is None or coverage(problem, learned, judged) > 0.8
 
 
 def test_labels_are_not_looked_at_and_the_same_seed_gives_the_same_bits(method, learned):
@@ -39,13 +39,13 @@ def test_labels_are_not_looked_at_and_the_same_seed_gives_the_same_bits(method, 
     tests = measured(problem, np.random.default_rng(3), 5)
     again = method(replace(problem, load_tests=tests))
     rows = judged.readings[:7]
-    assert np.array_equal(learned.infer(rows).value, again.infer(rows).value)
+    assert np.array_equal(learned.estimate(rows).value, again.estimate(rows).value)
 
 
 def test_no_row_one_row_and_missing_readings(learned):
     problem, judged = easy()
-    assert learned.infer(judged.readings[:0]).value.shape == (0, len(problem.ranges))
-    assert learned.infer(judged.readings[:1]).value.shape == (1, len(problem.ranges))
+    assert learned.estimate(judged.readings[:0]).value.shape == (0, len(problem.ranges))
+    assert learned.estimate(judged.readings[:1]).value.shape == (1, len(problem.ranges))
     gappy = judged.readings[:6].copy()
     gappy[:, 3] = np.nan
-    assert np.isfinite(learned.infer(gappy).value).all()
+    assert np.isfinite(learned.estimate(gappy).value).all()

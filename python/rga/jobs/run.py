@@ -8,6 +8,7 @@ from rga.errors import InputError
 from rga.model import Model
 from rga.outputs import write_run
 from rga.records import Record
+from rga.twin.calibration.estimator import Learn
 from rga.twin.outcome import Outcome
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings
@@ -25,6 +26,7 @@ def run(
     repository: str | None = None,
     progress: Progress | None = None,
     watch: Callable[[Running], None] | None = None,
+    learn: Learn | None = None,
 ) -> Outcome:
     """Calibrate a twin on a record, watch its gap, recalibrate, diagnose, and report.
 
@@ -40,6 +42,8 @@ def run(
         repository: URL of a PostgreSQL database, instead of the file in the directory.
         progress: called with a stage and the share of it that is done.
         watch: called after every step where the run stands.
+        learn: what learns to infer contexts (`rga.twin.Lesson` in, `rga.twin.ContextEstimator`
+            out), in place of what the settings name; such a run is not resumed.
 
     Returns:
         The findings of the closing diagnosis, and the history; both are in the directory too.
@@ -60,7 +64,7 @@ def run(
             "write postgresql://user@host/database, or leave it out",
         )
     place = repository or directory / FILE
-    with taken_up(model, record, place, settings, seed, progress) as running:
+    with taken_up(model, record, place, settings, seed, progress, learn) as running:
         if running.stage == "done" and running.is_written(directory):
             return Outcome(running.stored_findings(), running.history())
         while running.stage not in ("report", "done"):

@@ -17,7 +17,7 @@ from rga.simulation.paths.friction import respond_with_friction
 from rga.simulation.paths.large_displacements import respond_deformed
 from rga.simulation.paths.response import patterns, refused, respond
 from rga.simulation.paths.unilateral import LawTable, laws_alone, respond_with_laws, terms_of
-from rga.simulation.paths.variation import Variation, unvaried, variation
+from rga.simulation.paths.variation import Variation, VariationWithin, unvaried, variation
 from rga.simulation.perturbation.chebyshev import along_line
 
 NOTHING: IntArray = np.zeros(0, np.int64)
@@ -78,6 +78,7 @@ class Request:
             pattern is depends on the structure alone.
         fixed_patterns: no stiffness changes a load pattern.
         prepared: what earlier requests of the same model have condensed, by content.
+        over_ranges: what varies over the ranges of the contexts, where that is known.
     """
 
     states: FloatArray
@@ -86,6 +87,7 @@ class Request:
     loads: Callable[[Structure, IntArray], list[Load]]
     fixed_patterns: bool
     prepared: list[CondensedPaths]
+    over_ranges: Callable[[], VariationWithin | None]
 
     @property
     def of_rows(self) -> FloatArray:
@@ -138,7 +140,8 @@ def answer(request: Request) -> tuple[ResponsePlan, FloatArray]:
         InputError: a property that the core refuses.
     """
     rows = np.arange(len(request.state_of_row))
-    structure = request.change(request.states[0])
+    varied = _varied(request)
+    structure = request.change(request.states[0]) if varied is None else varied.start
     loads = request.loads(structure, rows)
     sensors = len(structure.per_si)
 
@@ -149,11 +152,6 @@ def answer(request: Request) -> tuple[ResponsePlan, FloatArray]:
         return plan("C1"), np.zeros((len(rows), sensors))
     if not structure.linear:
         return plan("C4"), _each_state(request)
-    varied = None
-    if len(request.states) == 1:
-        varied = unvaried(structure, request.states.shape[1])
-    elif len(request.states) > APART:
-        varied = variation_under(request, request.states)
     if varied is None:
         return plan("C3"), _each_state(request)
     q, stiffness = coefficients(loads), varied.at(request.states)[request.state_of_row]
@@ -167,8 +165,26 @@ def answer(request: Request) -> tuple[ResponsePlan, FloatArray]:
     return plan("C3"), _each_state(request)
 
 
+def _varied(request: Request) -> Variation | None:
+    """What varies between the rows of a request; None where its states are to be solved apart."""
+    states = request.states
+    if len(states) == 1:
+        return unvaried(request.change(states[0]), states.shape[1])
+    if len(states) > APART:
+        return variation_under(request, states)
+    limits = request.over_ranges()
+    return limits.of(states) if limits is not None and limits.varying <= APART else None
+
+
 def variation_under(request: Request, states: FloatArray) -> Variation | None:
     """What varies between states, or None where it is more than straight stiffnesses."""
+    limits = request.over_ranges()
+    known = None if limits is None else limits.of(states)
+    return variation_between(request, states) if known is None else known
+
+
+def variation_between(request: Request, states: FloatArray) -> Variation | None:
+    """The same, whatever is known of the ranges of the contexts."""
     varied = variation(request.change, states)
     if varied is None or request.fixed_patterns:
         return varied

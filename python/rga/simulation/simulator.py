@@ -2,21 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.lazy import needing_extras
 from rga.model.effect import Effect, Values, seconds
 from rga.model.readings import Readings
 from rga.model.schema import Model
-from rga.model.structure import Load, Structure, build_structure
+from rga.model.structure import Structure, build_structure
+from rga.simulation.assembly import Assembly
 from rga.simulation.derivatives.forward import jacobian, pull_back
-from rga.simulation.dispatch import CondensedPaths, Request, ResponsePlan, answer
+from rga.simulation.dispatch import ResponsePlan, answer
 
 if TYPE_CHECKING:
     from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
@@ -52,20 +52,20 @@ class Simulator:
 
     Attributes:
         model: itself.
-        prepared: what was condensed for earlier contexts.
+        assembly: the structures that parameters of its effects make.
     """
 
     def __init__(self, model: Model, _structure: Structure | None = None) -> None:
         self.model = model
         self._structure = build_structure(model) if _structure is None else _structure
-        self.prepared: list[CondensedPaths] = []
+        self.assembly = Assembly(model, self._structure, self.resolve)
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects; what is condensed serves both."""
         if not effects:
             return self
         found = Simulator(self.model.extended(dict(effects)), self._structure)
-        found.prepared = self.prepared
+        found.assembly.prepared = self.assembly.prepared
         return found
 
     def calm(self, values: dict[str, Values]) -> "Simulator":
@@ -129,7 +129,7 @@ class Simulator:
         """
         table = self._table(contexts)
         values = self.resolve(table)
-        plan, quantities = answer(self.request(values, len(table["time"])))
+        plan, quantities = answer(self.assembly.request(values, len(table["time"])))
         return Response(table, values, quantities * self._structure.per_si, plan)
 
     def plan(self, contexts: Mapping[str, ArrayLike]) -> ResponsePlan:
@@ -173,7 +173,7 @@ class Simulator:
             float[rows, patterns].
         """
         table = self._table(contexts)
-        loads = self.loads(self._structure, self.resolve(table))
+        loads = self.assembly.loads(self._structure, self.resolve(table))
         none = np.zeros((len(table["time"]), 0))
         return np.column_stack([none, *(load.coefficient for load in loads)])
 
@@ -286,100 +286,6 @@ class Simulator:
             if effect.overrides("change_values"):
                 effect.change_values(values, values[name], measured["time"])
         return values
-
-    def structural_keys(self, values: dict[str, Values]) -> list[tuple[str, str]]:
-        """Effect and parameter of all that changes the structure, as `resolve` gives them."""
-        effects = self.model.effects.items()
-        return [
-            (name, key) for name, effect in effects if effect.structural for key in values[name]
-        ]
-
-    def structural_parameters(self, values: dict[str, Values]) -> FloatArray:
-        """Parameters that change the structure, float[rows, parameters]."""
-        columns = [values[name][key] for name, key in self.structural_keys(values)]
-        if not columns:
-            rows = next((len(one) for own in values.values() for one in own.values()), 0)
-            return np.zeros((rows, 0))
-        return np.column_stack(columns)
-
-    def request(self, values: dict[str, Values], rows: int) -> Request:
-        """What parameters of all effects ask of the structure.
-
-        Args:
-            values: of the parameters, as `resolve` gives them.
-            rows: how many there are.
-        """
-        effects = self.model.effects
-        structural = [name for name, effect in effects.items() if effect.structural]
-        parameters = self.structural_keys(values)
-        states, state_of_row = np.zeros((1, 0)), np.zeros(rows, dtype=np.int64)
-        if parameters:
-            table = self.structural_parameters(values)
-            moving = (table != table[:1]).any(axis=0)
-            if rows and not moving.any():
-                states = table[:1]
-            else:
-                _, first, state_of_row = np.unique(
-                    table[:, moving], axis=0, return_index=True, return_inverse=True
-                )
-                states = table[first]
-
-        columns: dict[str, dict[str, int]] = {name: {} for name in structural}
-        for column, (name, key) in enumerate(parameters):
-            columns[name][key] = column
-
-        def changed(structure: Structure, names: list[str], state: FloatArray) -> Structure:
-            for name in names:
-                own = {key: state[column] for key, column in columns[name].items()}
-                effects[name].change_structure(structure, own)
-            return structure
-
-        # What comes before all that varies is put on the structure once.
-        parts = [states[:, list(columns[name].values())] for name in structural]
-        # Not by a difference: a stiffness may be infinite in every row.
-        varies = [bool(part.max() > part.min()) for part in parts]
-        steady = varies.index(True) if True in varies else len(structural)
-        given = [k for name in structural[:steady] for k in columns[name].values()]
-
-        @cache
-        def begun() -> Structure:
-            return changed(self._structure.copy(), structural[:steady], states[0])
-
-        def change(state: FloatArray) -> Structure:
-            if not structural:
-                return self._structure
-            if np.array_equal(state[given], states[0, given]):
-                return changed(begun().copy(), structural[steady:], state)
-            return changed(self._structure.copy(), structural, state)
-
-        def loads(structure: Structure, chosen: IntArray) -> list[Load]:
-            of_rows = {
-                name: {key: column[chosen] for key, column in resolved.items()}
-                for name, resolved in values.items()
-            }
-            return self.loads(structure, of_rows)
-
-        fixed = all(
-            effect.loads_by_geometry
-            or not (effect.overrides("loads") or effect.overrides("change_loads"))
-            for effect in effects.values()
-        )
-        return Request(states, state_of_row.ravel(), change, loads, fixed, self.prepared)
-
-    def loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
-        """Load patterns on a structure, with a coefficient a row.
-
-        Args:
-            structure: as the effects have made it.
-            values: of all parameters, as `resolve` gives them.
-        """
-        effects = self.model.effects
-        loads = {
-            name: effect.loads(structure, values[name], values) for name, effect in effects.items()
-        }
-        for name, effect in effects.items():
-            effect.change_loads(loads, structure, values[name])
-        return [load for of_effect in loads.values() for load in of_effect]
 
     def zeroed(self, readings: Readings) -> FloatArray:
         """Readings less the logger's zero, float[rows, sensors]; in place."""

@@ -28,6 +28,8 @@ from rga.twin.sync.policy import Policy
 Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version
 WORSE = 1.25
+#: rows since a change by which a state that was kept is tried, at the least
+RECALL = 10
 #: of the gap to expect, that may stay after a recalibration whatever the calibration left [-]
 LEAST_ALLOWED = 0.1
 
@@ -109,6 +111,7 @@ class RealityGapAnalysis:
             "; ".join(words),
             after=calibration.gap(0, standing.row),
         )
+        self._keep_state(0, standing.row)
         standing.stage = "watch"
 
     def watch(self, last: bool) -> None:
@@ -124,7 +127,7 @@ class RealityGapAnalysis:
             standing.row = end
             if settings.level != "A":
                 self._detect(first, end)
-            if settings.level == "C" and standing.alarm is None:
+            if settings.level == "C" and (standing.alarm is None or self._recalled()):
                 self._integrate(first, end)
         if self._policy.due(standing, last) is not None:
             standing.stage = "recalibrate"
@@ -163,6 +166,8 @@ class RealityGapAnalysis:
             calibration.sound = calibration.learned
             if settings.level == "C" and not open_alarm:
                 self._integrate(*recent)
+        if left <= usual and not open_alarm:
+            self._keep_state(*recent, doubted)
         self._begin_again(None)
         standing.doubted = standing.doubted or doubted
         if standing.doubted and self._may_ask():
@@ -245,6 +250,30 @@ class RealityGapAnalysis:
         self.standing.alarm, self.standing.since = alarm.row, alarm.since
         self._event("alarm", alarm.row, alarm.words, alarm.sensors)
 
+    def _recalled(self) -> bool:
+        """Whether a state that was kept explains the rows since a change: it is in force then."""
+        standing, calibration = self.standing, self._calibration
+        if standing.since is None or not self._policy.alarms:
+            return False
+        rows = standing.since, standing.row
+        if rows[1] - rows[0] < RECALL:
+            return False
+        before = calibration.gap(*rows)
+        state = calibration.recall(*rows, standing.share)
+        if state is None:
+            return False
+        after = calibration.gap(*rows)
+        words = state.taken_up(*rows)
+        self._event("recall", standing.row - 1, words, before=before, after=after)
+        self._begin_again(None)
+        standing.alarm = standing.since = None
+        standing.doubted = state.doubted
+        return True
+
+    def _keep_state(self, first: int, end: int, doubted: bool = False) -> None:
+        if self._settings.level == "C":
+            self._calibration.keep_state(first, end, self.standing.share, doubted)
+
     def _integrate(self, first: int, end: int) -> None:
         state, ledger = self._exchange.twin.state, self._calibration.ledger
         if not state.latent:
@@ -313,6 +342,8 @@ class RealityGapAnalysis:
             calibration.follow(*recent)
             words = f"the gap rose: version {old} is in force again"
             self._event("rollback", standing.row - 1, words, before=after, after=before)
+        else:
+            self._keep_state(*recent)
         self._begin_again(recent[0])
 
     def _under_the_same(self, effects: Effects) -> int:

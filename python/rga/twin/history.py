@@ -8,8 +8,9 @@ from rga.model.schema import Model
 from rga.records import Record
 
 Kind = Literal[
-    "calibration", "alarm", "recalibration", "novel context", "diagnosis", "version", "rollback"
-]
+    "calibration", "alarm", "recall", "recalibration", "novel context", "diagnosis", "version",
+    "rollback",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,10 @@ from rga.records import Record
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
-from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.estimator import ContextEstimator, Learn
 from rga.twin.calibration.learning import read
 from rga.twin.calibration.learning import written as stored
+from rga.twin.calibration.states import State
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
@@ -30,6 +31,8 @@ from rga.twin.versions import beyond, written
 Progress = Callable[[str, float], None]
 #: estimators that the calibration holds, by the names under which they are kept
 ESTIMATORS = ("learned", "sound")
+#: name under which a state is kept, by its number
+STATE = "state {}"
 WRITTEN = ("findings.json", "model.json", "report.html")
 
 
@@ -41,6 +44,7 @@ def taken_up(
     settings: Settings,
     seed: int,
     progress: Progress | None = None,
+    learn: Learn | None = None,
 ) -> Iterator["Running"]:
     """A run where its repository says that it stands, or a new one, to be played step by step.
 
@@ -51,6 +55,7 @@ def taken_up(
         settings: level of integration and the rest.
         seed: of everything random.
         progress: called with a stage and the share of it that is done.
+        learn: what learns to infer contexts, in place of what the settings name.
 
     Raises:
         InputError: the repository cannot be used.
@@ -58,7 +63,7 @@ def taken_up(
     digest = model.sha256 or written(model)[1]
     identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
     with threadpool_limits(1), Repository.open(place) as kept:
-        yield Running(model, record, kept.run(identity), settings, seed, progress)
+        yield Running(model, record, kept.run(identity), settings, seed, progress, learn)
 
 
 class Running:
@@ -71,6 +76,7 @@ class Running:
         settings: level of integration and the rest.
         seed: of everything random.
         progress: called with a stage and the share of it that is done.
+        learn: what learns to infer contexts, in place of what the settings name.
 
     Attributes:
         resumed_at: row at which an interrupted run was taken up; None for a new one.
@@ -84,6 +90,7 @@ class Running:
         settings: Settings,
         seed: int,
         progress: Progress | None,
+        learn: Learn | None = None,
     ) -> None:
         self._model, self._record, self._settings, self._seed = model, record, settings, seed
         self._progress = progress or (lambda stage, done: None)
@@ -94,7 +101,7 @@ class Running:
         self._archive = Archive(kept, model, self._twin.simulation)
         exchange = QueryResponse(self._twin, self._archive)
         self.calibration = ContextCapture(
-            exchange, self._archive, station, model, settings, seed, self._progress
+            exchange, self._archive, station, model, settings, seed, self._progress, learn
         )
         self.analysis = RealityGapAnalysis(
             exchange, self._archive, station, self.calibration, settings, self._pace, self._label
@@ -105,6 +112,7 @@ class Running:
         self._closing: Findings | None = None
         self.resumed_at: int | None = None
         self._kept: dict[str, ContextEstimator | None] = {}
+        self._states = 0
         self._stale = False
         self._recall()
 
@@ -259,7 +267,7 @@ class Running:
         standing, row = self.analysis.standing, max(0, self.row - 1)
         calibration = self.calibration
         standing.draws, standing.inference = calibration.draws, calibration.inference
-        standing.optimism = calibration.optimism
+        standing.optimism, standing.state = calibration.optimism, calibration.state
         standing.learned_under = self._twin.state.version
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
         self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
@@ -268,6 +276,9 @@ class Running:
             if estimator is not None and estimator is not self._kept.get(name):
                 self._archive.keep(name, stored(estimator), row)
                 self._kept[name] = estimator
+        for number, state in enumerate(calibration.states[self._states :], self._states):
+            self._archive.keep(STATE.format(number), state.to_bytes(), row)
+        self._states = len(calibration.states)
 
     def _recall(self) -> None:
         """Go on where the repository says that the run stands."""
@@ -289,6 +300,11 @@ class Running:
         for name in () if self._stale else ESTIMATORS:
             content = view.kept(name)
             self._kept[name] = None if content is None else read(content, self._twin.simulation())
-        self.calibration.recall(
-            ledger, self.analysis.standing, self._kept["learned"], self._kept["sound"]
+        kept = iter(lambda: view.kept(STATE.format(self._states)), None)
+        states = []
+        for content in kept:
+            states.append(State.from_bytes(content, self._twin.simulation))
+            self._states += 1
+        self.calibration.take_up(
+            ledger, self.analysis.standing, self._kept["learned"], self._kept["sound"], states
         )

@@ -5,13 +5,16 @@ from functools import lru_cache
 
 import numpy as np
 
+from rga.arrays import FloatArray
+from rga.inference import Rows, TrainingSettings
 from rga.inference.networks.design_samples import design
-from rga.inference.rows import Rows
-from rga.model import read_model
-from rga.simulation import Simulator
+from rga.model import Model, read_model
+from rga.twin.calibration.lesson import Lesson
+from rga.twin.messages.hardware import Station
+from rga.twin.messages.queries import R4, sha256
+from rga.twin.simulation_model import SimulationModel
 from rga_bench.contexts.context_regime import Contexts
 from rga_bench.contexts.drift import MeasuredRows, MeasurementConditions, following, when
-from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.setting import DRIFTING, ContextsTask
 from rga_bench.synthetic.bridges.full_case_study import full_case_study
 from rga_bench.synthetic.physical_twin import PhysicalTwin
@@ -25,14 +28,19 @@ class CalibrationData:
     """What a method is calibrated on.
 
     Attributes:
-        problem: with all load tests.
+        lesson: with all load tests; every context is latent.
         usual: what the measured rows are measured under.
         test: rows to score under these conditions; half of them where there are drifts.
     """
 
-    problem: LearningProblem
+    lesson: Lesson
     usual: MeasurementConditions
     test: MeasuredRows
+
+    @property
+    def ranges(self) -> FloatArray:
+        """Smallest and largest of each context, float[contexts, 2]."""
+        return ranges_of(self.lesson.simulation.model)
 
 
 @dataclass(frozen=True)
@@ -64,12 +72,22 @@ def stream_of(task: ContextsTask, drift: str) -> DriftStream:
     return _stream(replace(task, row=""), drift)
 
 
+def ranges_of(model: Model) -> FloatArray:
+    """Smallest and largest of each context, float[contexts, 2]."""
+    return np.array([variable.range for variable in model.context.values()])
+
+
+def station_of(model: Model) -> Station:
+    """All sensors of a model, and no context measured."""
+    return Station(tuple(model.sensors), (), 0.0, "seconds", {"time": np.zeros(0)})
+
+
 @lru_cache(maxsize=2)
 def _calibration(task: ContextsTask) -> CalibrationData:
     sizes = task.sizes
     model = read_model(full_case_study(), "full case study")
     names, sensors = list(model.context), len(model.sensors)
-    ranges = np.array([variable.range for variable in model.context.values()])
+    ranges = ranges_of(model)
     manner = "ordinary" if task.manner == DRIFTING else task.manner
     contexts = Contexts.drawn(manner, ranges, _generator(task, "contexts"))
     twin = PhysicalTwin.draw(_number(task, "twin"), task.gap)
@@ -79,23 +97,36 @@ def _calibration(task: ContextsTask) -> CalibrationData:
     source = design(model, sizes.source, latent=names, seed=seed, box=box)
     even = MeasurementConditions.usual(twin, replace(contexts, manner="same"), sensors)
     load_tests = even.measured(LOAD_TESTS, _generator(task, "load tests"))
-    problem = LearningProblem(
-        model=model,
-        simulator=Simulator(model),
+    real = usual.measured(sizes.unlabelled, _generator(task, "unlabelled")).readings
+    lesson = Lesson(
+        data=R4(
+            row=0,
+            simulation=SimulationModel(model, station_of(model)),
+            contexts=source.contexts,
+            readings=source.readings,
+            falling=np.zeros(len(source.contexts), dtype=bool),
+            real=real,
+            real_contexts=np.zeros((len(real), 0)),
+            simulated_rows=len(source.contexts),
+            measured_rows=len(real),
+            sha256=sha256(source.contexts, source.readings, real),
+        ),
+        latent=tuple(names),
         noise=np.array([sensor.noise for sensor in model.sensors.values()], dtype=float),
-        source=Rows(source.contexts, source.readings),
-        real=usual.measured(sizes.unlabelled, _generator(task, "unlabelled")).readings,
-        load_tests=Rows(load_tests.contexts, load_tests.readings),
+        clock=0.0,
         seed=_number(task, "method"),
+        training=TrainingSettings(),
+        progress=lambda done: None,
+        load_tests=Rows(load_tests.contexts, load_tests.readings),
     )
     test = sizes.test // 2 if task.manner == DRIFTING else sizes.test
-    return CalibrationData(problem, usual, usual.measured(test, _generator(task, "test")))
+    return CalibrationData(lesson, usual, usual.measured(test, _generator(task, "test")))
 
 
 @lru_cache(maxsize=8)
 def _stream(task: ContextsTask, drift: str) -> DriftStream:
     sizes, known = task.sizes, _calibration(task)
-    noise = known.problem.noise
+    noise = known.lesson.noise
     drifted = known.usual.drifted(drift, noise, _generator(task, f"{drift} drift"))
     holds = when(drift, sizes.stream)
     changes = np.flatnonzero(np.diff(holds)) + 1

@@ -1,61 +1,34 @@
-"""Test rows, as calibrated methods infer them."""
-
-from collections.abc import Sequence
+"""Test rows as an estimator infers them, each by itself."""
 
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga_bench.contexts.drift import MeasuredRows
-from rga_bench.contexts.levels import CalibratedMethod, most_likely
-from rga_bench.contexts.method import Calibrated, Estimate
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.simulation_model import SimulationModel
+from rga_bench.contexts.data import CalibrationData
+from rga_bench.contexts.method import Estimate, Rival
 from rga_bench.contexts.score import Score, score
 
 
-class Evaluation:
-    """Scores methods on test rows, which no method infers twice.
+def evaluated(estimator: ContextEstimator, known: CalibrationData) -> Score:
+    """How good contexts of the test rows are.
 
     Args:
-        measured: the rows.
-        ranges: smallest and largest of each context, float[contexts, 2].
-        block: rows for which one state is chosen among several.
+        estimator: that has learned.
+        known: what it has learned from, and the test rows.
     """
+    model = known.lesson.simulation.model
+    estimate = Estimate.by(estimator, known.test.readings, model)
+    simulated = _simulated(estimator, known, estimate.value)
+    return score(known.test, estimate, simulated, known.ranges)
 
-    def __init__(self, measured: MeasuredRows, ranges: FloatArray, block: int) -> None:
-        self._measured, self._ranges = measured, ranges
-        self._block = block
-        # Methods are kept, so that no other one gets the id of one.
-        self._known: dict[int, tuple[Calibrated, tuple[Estimate, FloatArray]]] = {}
 
-    def score(self, method: Calibrated) -> Score:
-        """Of one method for all rows."""
-        estimate, simulated = self._inferred(method)
-        return score(self._measured, estimate, simulated, self._ranges)
-
-    def score_of_likeliest(self, states: Sequence[CalibratedMethod]) -> Score:
-        """Of the state, for each block of rows, after which what it leaves of them is likeliest."""
-        known = [self._inferred(one.calibrated) for one in states]
-        left = [self._measured.readings - simulated for _, simulated in known]
-        rows = np.arange(len(self._measured.readings))
-        chosen = np.zeros_like(rows)
-        for first in range(0, len(rows), self._block):
-            block = slice(first, first + self._block)
-            chosen[block] = most_likely(states, [one[block] for one in left])
-
-        def picked(several: Sequence[FloatArray]) -> FloatArray:
-            return np.asarray(np.stack(several)[chosen, rows])
-
-        spreads = [estimate.spread for estimate, _ in known if estimate.spread is not None]
-        value = picked([estimate.value for estimate, _ in known])
-        return score(
-            self._measured,
-            Estimate(value, picked(spreads) if spreads else None),
-            picked([simulated for _, simulated in known]),
-            self._ranges,
-        )
-
-    def _inferred(self, method: Calibrated) -> tuple[Estimate, FloatArray]:
-        """Estimate, and what is simulated there."""
-        if id(method) not in self._known:
-            estimate = method.infer(self._measured.readings)
-            self._known[id(method)] = method, (estimate, method.simulate(estimate.value))
-        return self._known[id(method)][1]
+def _simulated(
+    estimator: ContextEstimator, known: CalibrationData, contexts: FloatArray
+) -> FloatArray:
+    """What an estimator takes readings for at contexts, float[n, sensors]."""
+    if isinstance(estimator, Rival):
+        return estimator.simulate(contexts)
+    given = known.lesson.simulation
+    corrected = SimulationModel(given.model, given.station, estimator.correction)
+    return corrected.readings(np.full(len(contexts), known.lesson.clock), contexts)

@@ -1,6 +1,6 @@
 """Ways to infer contexts, at every level of integration: every row of the table on every split."""
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Self
 
@@ -8,7 +8,7 @@ from rga.errors import InputError
 from rga_bench.contexts.floors import FLOORS
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import METHODS, QUICK, applies
-from rga_bench.contexts.setting import REPOSITORIES, ContextsSetting, shorter
+from rga_bench.contexts.setting import ContextsSetting, shorter
 from rga_bench.contexts.tables.table import page
 from rga_bench.contexts.task_run import TaskOutcome, run_task
 from rga_bench.experiment import Execution, Experiment
@@ -32,17 +32,12 @@ class ContextsExperiment(Experiment[ContextsResult]):
     options: str = ""
 
     @classmethod
-    def of(cls, seed: int, *, quick: bool, splits: int, repository: str) -> Self:
-        """That of a command line (InputError)."""
-        if repository not in REPOSITORIES:
-            remedy = f"give one of {', '.join(REPOSITORIES)}"
-            raise InputError(f"there is no repository {repository!r}", "--repository", remedy)
+    def of(cls, seed: int, *, quick: bool, splits: int) -> Self:
+        """That of a command line."""
         usual = ContextsSetting(seed=seed, splits=splits)
         setting = shorter(seed, (*FLOORS, *QUICK)) if quick else usual
-        options = "" if repository == setting.sizes.repository else f" --repository {repository}"
-        options += "" if quick or splits == ContextsSetting.splits else f" --splits {splits}"
-        sizes = replace(setting.sizes, repository=repository)
-        return cls(replace(setting, sizes=sizes), options)
+        options = "" if quick or splits == ContextsSetting.splits else f" --splits {splits}"
+        return cls(setting, options)
 
     def measure(self, execution: Execution) -> ContextsResult:
         """Outcomes in the order of the tasks.

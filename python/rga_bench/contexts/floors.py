@@ -6,8 +6,8 @@ from scipy.spatial import KDTree
 from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
+from rga_bench.contexts.data import CalibrationData
 from rga_bench.contexts.drift import MeasuredRows
-from rga_bench.contexts.method import LearningProblem
 from rga_bench.contexts.score import Score, gap
 
 #: rows of a table that are no methods; they have an RG and infer nothing
@@ -16,24 +16,26 @@ NOISE, TRUE_CONTEXT, BEST_CONTEXT = FLOORS = ("noise", "true context", "best con
 SHARP = 0.1
 
 
-def floor(name: str, problem: LearningProblem, measured: MeasuredRows) -> Score:
+def floor(name: str, known: CalibrationData, measured: MeasuredRows) -> Score:
     """A floor of the RG of measured rows.
 
     Args:
         name: `noise`: what the sensors add; `true context`: what the model leaves at the contexts
             as they were; `best context`: the least that any contexts leave.
         problem: whose model it is.
+        known: what is calibrated on: the model.
         measured: with the true contexts.
     """
     if name == NOISE:
         return Score(gap(measured.noise))
     contexts = measured.contexts
     if name == BEST_CONTEXT:
-        contexts = best_contexts(problem, measured)
-    return Score(gap(measured.readings - problem.simulate(contexts)))
+        contexts = best_contexts(known, measured)
+    simulated = TwinOnArrays(known.lesson.simulation.simulator).simulate(contexts)
+    return Score(gap(measured.readings - simulated))
 
 
-def best_contexts(problem: LearningProblem, measured: MeasuredRows) -> FloatArray:
+def best_contexts(known: CalibrationData, measured: MeasuredRows) -> FloatArray:
     """Contexts whose simulation is nearest to the readings.
 
     The better of two modes of each row: from its true contexts on, and from those of the simulated
@@ -43,10 +45,11 @@ def best_contexts(problem: LearningProblem, measured: MeasuredRows) -> FloatArra
     Returns:
         float[n, contexts].
     """
-    readings, twin = measured.readings, TwinOnArrays(problem.simulator)
-    low = np.minimum(problem.ranges[:, 0], measured.contexts.min(axis=0))
-    high = np.maximum(problem.ranges[:, 1], measured.contexts.max(axis=0))
-    alike = KDTree(problem.source.readings).query(readings)[1]
+    readings, source = measured.readings, known.lesson.data
+    twin = TwinOnArrays(known.lesson.simulation.simulator)
+    low = np.minimum(known.ranges[:, 0], measured.contexts.min(axis=0))
+    high = np.maximum(known.ranges[:, 1], measured.contexts.max(axis=0))
+    alike = KDTree(source.readings).query(readings)[1]
     modes = [
         posterior_mode(
             twin.simulate,
@@ -56,7 +59,7 @@ def best_contexts(problem: LearningProblem, measured: MeasuredRows) -> FloatArra
             np.column_stack([low, high]),
             start,
         )
-        for start in (measured.contexts, problem.source.contexts[alike])
+        for start in (measured.contexts, source.contexts[alike])
     ]
     better = np.argmin([one.misfit for one in modes], axis=0)
     values = np.stack([one.value for one in modes])

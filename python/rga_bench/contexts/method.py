@@ -1,23 +1,28 @@
-"""What a way to infer contexts gets, and what it gives."""
+"""Ways to infer contexts that the product does without: what they get, and what they give."""
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Self
 
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.inference.rows import Rows
-from rga.model import Model
+from rga.model import ContextVariable, Model
 from rga.simulation import Simulator
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.lesson import Lesson
 
 
 @dataclass(frozen=True)
 class LearningProblem:
-    """What a method learns from. The contexts of the measured rows are not in it.
+    """A lesson of which every context is latent, as tables.
+
+    The contexts of the measured rows are not in it.
 
     Attributes:
-        model: the twin's; all of its contexts are latent.
+        model: the twin's.
         simulator: of the model.
         noise: standard deviation of each sensor's noise, float[sensors].
         source: simulated rows, without noise.
@@ -33,6 +38,21 @@ class LearningProblem:
     real: FloatArray
     load_tests: Rows
     seed: int
+
+    @classmethod
+    def of(cls, lesson: Lesson) -> Self:
+        """The tables of a lesson, all measured rows among them."""
+        data, simulation = lesson.data, lesson.simulation
+        none = Rows(data.contexts[:0], data.readings[:0])
+        return cls(
+            model=simulation.model,
+            simulator=simulation.simulator,
+            noise=lesson.noise,
+            source=Rows(data.contexts, data.readings),
+            real=data.real,
+            load_tests=none if lesson.load_tests is None else lesson.load_tests,
+            seed=lesson.seed,
+        )
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
         """Readings without noise, float[n, sensors], of contexts, float[n, contexts]."""
@@ -56,25 +76,64 @@ class Estimate:
     value: FloatArray
     spread: FloatArray | None
 
-
-class Calibrated(Protocol):
-    """A method that has learned."""
-
-    def infer(self, readings: FloatArray) -> Estimate:
-        """Contexts of measured rows, float[n, sensors]."""
-
-    def simulate(self, contexts: FloatArray) -> FloatArray:
-        """What the twin of this method lets expect at contexts, float[n, sensors]."""
-
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> "Calibrated":
-        """The method after it has also learned from measured rows, float[n, sensors].
+    @classmethod
+    def by(cls, estimator: ContextEstimator, readings: FloatArray, model: Model) -> Self:
+        """What an estimator infers of rows, of which no context is measured.
 
         Args:
-            recent: the rows.
-            alone: whether it is for rows like the recent ones only, since states that are stored
-                stand for the others; a method may learn for all rows nevertheless.
+            estimator: of all contexts of the model.
+            readings: float[n, sensors].
+            model: the twin's.
         """
+        laws = list(model.context.values())
+        middle = np.tile([np.mean(one.range) for one in laws], (len(readings), 1))
+        value, spread = estimator.infer(0, readings, middle, np.zeros(len(readings)), laws)
+        return cls(value, None if np.isnan(spread).all() else spread)
 
 
-#: learns
-Method = Callable[[LearningProblem], Calibrated]
+class Rival(ABC):
+    """A way to infer contexts that the product does without (`ContextEstimator`).
+
+    It infers all contexts, and takes no more from a row than its readings.
+    """
+
+    kind = "rival"
+
+    @property
+    def found(self) -> None:
+        """None: it goes by no joint posterior."""
+        return None
+
+    @property
+    def correction(self) -> None:
+        """None: what it has found of the structure, `simulate` alone shows."""
+        return None
+
+    @abstractmethod
+    def estimate(self, readings: FloatArray) -> Estimate:
+        """Contexts of consecutive measured rows, float[n, sensors], NaN where missing."""
+
+    @abstractmethod
+    def simulate(self, contexts: FloatArray) -> FloatArray:
+        """What it takes readings for at contexts, float[n, sensors]."""
+
+    def refined(self, lesson: Lesson) -> ContextEstimator:
+        """The same: measured rows whose contexts nobody knows teach it nothing."""
+        return self
+
+    def infer(
+        self,
+        first: int,
+        readings: FloatArray,
+        contexts: FloatArray,
+        time: FloatArray,
+        laws: Sequence[ContextVariable],
+    ) -> tuple[FloatArray, FloatArray]:
+        """Contexts from a row on, and their standard deviations, NaN where it has none."""
+        found = self.estimate(readings[first:])
+        spread = np.full(found.value.shape, np.nan) if found.spread is None else found.spread
+        return found.value, spread
+
+    def to_bytes(self) -> bytes:
+        """Nothing: no run keeps it."""
+        return b""

@@ -2,19 +2,23 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import wraps
 from importlib.util import find_spec
 
 from rga.inference.rows import Rows
+from rga.twin.calibration.amortised import AmortisedEstimator
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.joint_posterior import JointEstimator
+from rga.twin.calibration.lesson import Lesson
 from rga_bench.contexts.context_regime import MANNERS
 from rga_bench.contexts.data import CalibrationData
-from rga_bench.contexts.method import Calibrated
-from rga_bench.contexts.methods import networks
+from rga_bench.contexts.method import LearningProblem, Rival
 from rga_bench.contexts.methods.discrepancy import smooth_discrepancy
 from rga_bench.contexts.methods.domain_adaptation import skada_coral, skada_dann
 from rga_bench.contexts.methods.ensemble_kalman import ensemble_kalman
 from rga_bench.contexts.methods.iterated_kalman import iterated_kalman
-from rga_bench.contexts.methods.joint import joint_posterior
 from rga_bench.contexts.methods.low_rank import low_rank_discrepancy
+from rga_bench.contexts.methods.networks import NETWORKS, trained
 from rga_bench.contexts.methods.neural_posterior import neural_posterior
 from rga_bench.contexts.methods.oracle import oracle_posterior
 from rga_bench.contexts.methods.posterior_modes import maximum_posterior
@@ -23,6 +27,7 @@ from rga_bench.contexts.methods.refined_network import refined_network
 from rga_bench.contexts.methods.unscented_kalman import unscented_kalman
 from rga_bench.contexts.methods.updated_model import updated_model
 from rga_bench.contexts.setting import ContextsTask
+from rga_bench.synthetic.physical_twin import PhysicalTwin
 
 
 @dataclass(frozen=True)
@@ -30,25 +35,27 @@ class Row:
     """A method, and what it gets.
 
     Attributes:
-        learn: a `Method`; that of an oracle takes the physical twin beside the problem.
+        learn: learns from a lesson; an oracle takes the physical twin beside it.
         oracle: whether it knows the physical twin as it was at first.
         load_tests: measured rows whose contexts it gets as well.
         manners: of contexts that it is run under, `DRIFTING` among them; None: under all.
         needs: packages that rga does without.
     """
 
-    learn: Callable[..., Calibrated]
+    learn: Callable[..., ContextEstimator]
     oracle: bool = False
     load_tests: int = 0
     manners: tuple[str, ...] | None = None
     needs: tuple[str, ...] = ()
 
-    def calibrated(self, known: CalibrationData) -> Calibrated:
+    def calibrated(self, known: CalibrationData) -> ContextEstimator:
         """The method after it has learned."""
-        tests = known.problem.load_tests
-        labelled = Rows(tests.contexts[: self.load_tests], tests.readings[: self.load_tests])
-        problem = replace(known.problem, load_tests=labelled)
-        return self.learn(problem, known.usual.twin) if self.oracle else self.learn(problem)
+        tests, labelled = known.lesson.load_tests, None
+        if tests is not None and self.load_tests:
+            own = slice(self.load_tests)
+            labelled = Rows(tests.contexts[own], tests.readings[own])
+        lesson = replace(known.lesson, load_tests=labelled)
+        return self.learn(lesson, known.usual.twin) if self.oracle else self.learn(lesson)
 
     @property
     def missing(self) -> list[str]:
@@ -56,34 +63,50 @@ class Row:
         return [package for package in self.needs if find_spec(package) is None]
 
 
+def _rival(method: Callable[..., Rival]) -> Callable[..., Rival]:
+    """Learns a method that takes tables from a lesson."""
+
+    @wraps(method)
+    def learn(lesson: Lesson, *twin: PhysicalTwin) -> Rival:
+        return method(LearningProblem.of(lesson), *twin)
+
+    return learn
+
+
+def amortised(lesson: Lesson) -> AmortisedEstimator:
+    """Networks on the twin as the joint posterior of the same lesson corrects it."""
+    return AmortisedEstimator.learn(lesson, JointEstimator.learn(lesson))
+
+
 #: filters need rows in order; a few rows that adapt stand for the others in streams
 _IN_ORDER = ("smooth",)
 
 METHODS: dict[str, Row] = {
-    "knows the frame": Row(oracle_posterior, oracle=True, manners=MANNERS),
-    "prior mean": Row(prior_mean),
-    "source only": Row(networks.source_only),
-    "residual network": Row(networks.residual_network),
-    "CORAL": Row(networks.coral, manners=MANNERS),
-    "DANN": Row(networks.adversarial),
-    "DANN + physics, frozen network": Row(networks.adversarial_reduced_physics),
-    "DANN + physics, exact simulator": Row(networks.adversarial_exact_physics),
-    "physics only": Row(networks.physics_only, manners=MANNERS),
+    "knows the frame": Row(_rival(oracle_posterior), oracle=True, manners=MANNERS),
+    "prior mean": Row(_rival(prior_mean)),
+    "source only": Row(trained(NETWORKS["source only"])),
+    "residual network": Row(trained(NETWORKS["residual network"])),
+    "CORAL": Row(trained(NETWORKS["CORAL"]), manners=MANNERS),
+    "DANN": Row(trained(NETWORKS["DANN"])),
+    "DANN + physics, frozen network": Row(trained(NETWORKS["DANN + physics, frozen network"])),
+    "DANN + physics, exact simulator": Row(trained(NETWORKS["DANN + physics, exact simulator"])),
+    "physics only": Row(trained(NETWORKS["physics only"]), manners=MANNERS),
     "network + polish": Row(refined_network, manners=MANNERS),
-    "MAP": Row(maximum_posterior),
-    "MAP, smooth discrepancy": Row(smooth_discrepancy, manners=MANNERS),
-    "MAP, low-rank discrepancy (EM)": Row(low_rank_discrepancy),
-    "iterated Kalman filter": Row(iterated_kalman, manners=_IN_ORDER),
-    "unscented Kalman filter": Row(unscented_kalman, manners=_IN_ORDER),
-    "ensemble Kalman filter": Row(ensemble_kalman, manners=_IN_ORDER),
-    "updated model, 20 load tests": Row(updated_model, load_tests=20, manners=MANNERS),
-    "updated model, 60 load tests": Row(updated_model, load_tests=60, manners=MANNERS),
-    "joint posterior": Row(joint_posterior),
-    "joint posterior, 20 load tests": Row(joint_posterior, load_tests=20, manners=MANNERS),
-    "joint posterior, 60 load tests": Row(joint_posterior, load_tests=60, manners=MANNERS),
-    "neural posterior (sbi)": Row(neural_posterior, manners=MANNERS, needs=("sbi",)),
-    "CORAL (skada)": Row(skada_coral, manners=MANNERS, needs=("skada", "sklearn")),
-    "DANN (skada)": Row(skada_dann, manners=MANNERS, needs=("skada", "sklearn", "skorch")),
+    "MAP": Row(_rival(maximum_posterior)),
+    "MAP, smooth discrepancy": Row(_rival(smooth_discrepancy), manners=MANNERS),
+    "MAP, low-rank discrepancy (EM)": Row(_rival(low_rank_discrepancy)),
+    "iterated Kalman filter": Row(_rival(iterated_kalman), manners=_IN_ORDER),
+    "unscented Kalman filter": Row(_rival(unscented_kalman), manners=_IN_ORDER),
+    "ensemble Kalman filter": Row(_rival(ensemble_kalman), manners=_IN_ORDER),
+    "updated model, 20 load tests": Row(_rival(updated_model), load_tests=20, manners=MANNERS),
+    "updated model, 60 load tests": Row(_rival(updated_model), load_tests=60, manners=MANNERS),
+    "joint posterior": Row(JointEstimator.learn),
+    "joint posterior, 20 load tests": Row(JointEstimator.learn, load_tests=20, manners=MANNERS),
+    "joint posterior, 60 load tests": Row(JointEstimator.learn, load_tests=60, manners=MANNERS),
+    "amortised": Row(amortised),
+    "neural posterior (sbi)": Row(_rival(neural_posterior), manners=MANNERS, needs=("sbi",)),
+    "CORAL (skada)": Row(_rival(skada_coral), manners=MANNERS, needs=("skada", "sklearn")),
+    "DANN (skada)": Row(_rival(skada_dann), manners=MANNERS, needs=("skada", "sklearn", "skorch")),
 }
 #: methods of a quick run
 QUICK = (

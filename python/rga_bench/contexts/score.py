@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.twin.history import History
 from rga_bench.contexts.drift import MeasuredRows
 from rga_bench.contexts.method import Estimate
 
@@ -57,6 +58,23 @@ def score(
         errors=tuple(np.sqrt(squared).tolist()),
         coverage=coverage,
     )
+
+
+def score_of_history(
+    history: History, contexts: FloatArray, rows: slice, ranges: FloatArray
+) -> Score:
+    """How good the contexts of rows are, as a twin inferred them at the time.
+
+    Args:
+        history: of the twin.
+        contexts: true ones of all rows, float[n, contexts].
+        rows: to look at.
+        ranges: smallest and largest of each context, float[contexts, 2].
+    """
+    spread = history.spread[rows]
+    estimate = Estimate(history.inferred[rows], spread if np.isfinite(spread).any() else None)
+    measured = MeasuredRows(contexts[rows], history.record.readings[rows], np.zeros(0))
+    return score(measured, estimate, history.simulated[rows], ranges)
 
 
 def gap(residuals: FloatArray) -> float:

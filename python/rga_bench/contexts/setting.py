@@ -3,44 +3,32 @@
 from dataclasses import dataclass
 from zlib import crc32
 
+from rga.twin.settings import Level
 from rga_bench.contexts.context_regime import MANNERS
 from rga_bench.contexts.drift import DRIFTS
 from rga_bench.synthetic.physical_twin import GAPS
 
 #: a task of this manner has all drifts; its ordinary rows lack what drifts bring
 DRIFTING = "drifting"
-#: what level C stores
-REPOSITORIES = ("measured", "paper")
+#: of integration
+LEVELS: tuple[Level, ...] = ("A", "B", "C")
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """How many rows there are, and by what rules twins run through streams.
+    """How many rows there are.
 
     Attributes:
         source: simulated rows.
         unlabelled: measured rows that a method is calibrated on.
         stream: measured rows among which a drift comes.
         test: measured rows that are scored; one half of them under the drift.
-        arl0: rows between false alarms that the monitor is set to.
-        settle: rows from an alarm on that are gathered for a recalibration, 30 at least; also a
-            block of test rows that one stored state is chosen for.
-        recall: rows from an alarm on by which stored states are tried.
-        harm: a recalibration is taken back where it makes the gap of a sensor, in the mean of its
-            logs, so many times as large.
-        repository: what level C stores: `measured` rows with the method as it was calibrated on
-            them, or, as in the `paper`, simulated rows around the contexts inferred.
     """
 
     source: int = 1000
     unlabelled: int = 200
     stream: int = 200
     test: int = 300
-    arl0: float = 1000.0
-    settle: int = 30
-    recall: int = 10
-    harm: float = 1.1
-    repository: str = "measured"
 
 
 @dataclass(frozen=True)

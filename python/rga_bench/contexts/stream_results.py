@@ -1,38 +1,29 @@
 """What becomes of a method in streams into which drifts come."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rga.arrays import FloatArray
+from rga.twin.calibration.estimator import Learn
+from rga.twin.history import History
 from rga_bench.contexts.data import CalibrationData, DriftStream, stream_of
-from rga_bench.contexts.evaluation import Evaluation
-from rga_bench.contexts.levels import (
-    LEVELS,
-    CalibratedMethod,
-    Learned,
-    StreamRun,
-    delays,
-    residuals,
-    run_stream,
-)
-from rga_bench.contexts.method import Calibrated
-from rga_bench.contexts.novel import with_novel
-from rga_bench.contexts.rows import METHODS
-from rga_bench.contexts.score import Score
-from rga_bench.contexts.setting import ContextsTask
+from rga_bench.contexts.score import Score, score_of_history
+from rga_bench.contexts.setting import LEVELS, ContextsTask
+from rga_bench.contexts.twin_run import LearnedOnce, TwinStream, lived_through
 
 
 @dataclass(frozen=True)
 class StreamResult:
-    """A method at a level, after it has run through a stream.
+    """A twin at a level, on a stream.
 
     Attributes:
         drift: that came into the stream.
         level: of integration.
-        ordinary, drifted: scores of test rows under usual conditions, and under the drift.
+        ordinary, drifted: scores of the rows behind the stream, as they were inferred at the time:
+            under the drift, and then under usual conditions again.
         delays: rows from each change to its alarm, both counted; None where there was none.
         watched: rows before any change up to the first alarm.
         false_alarm: whether this alarm came before any change.
-        alarms, recalibrations, taken_back, recalled: number of each.
+        alarms, recalibrations, recalled: number of each.
     """
 
     drift: str
@@ -44,70 +35,72 @@ class StreamResult:
     false_alarm: bool = False
     alarms: int = 0
     recalibrations: int = 0
-    taken_back: int = 0
     recalled: int = 0
 
 
 def results_of_streams(
-    task: ContextsTask, known: CalibrationData, calibrated: Calibrated, usual: Evaluation
+    task: ContextsTask, known: CalibrationData, learn: Learn
 ) -> list[StreamResult]:
     """Every drift of a task at every level.
 
     Args:
         task: names the drifts, each of which comes into a stream of its own.
-        known: what the method was calibrated on.
-        calibrated: the method.
-        usual: test rows under usual conditions.
+        known: what twins are calibrated on.
+        learn: learns to infer contexts.
 
     Raises:
         InputError: no such drift.
     """
-    sizes, played = task.sizes, []
-    ordinary = residuals(calibrated, known.problem.real)
+    played, once = [], LearnedOnce(learn)
     for drift in task.drifts:
-        stream = stream_of(task, drift)
-        rows = stream.rows.readings
-        evaluation = Evaluation(stream.drifted, known.problem.ranges, sizes.settle)
-        first = CalibratedMethod(calibrated, ordinary, residuals(calibrated, rows), ordinary)
-        scores = usual.score(calibrated), evaluation.score(calibrated)
-        played.append(StreamResult(drift, LEVELS[0], *scores))
-        for level in LEVELS[1:]:
-            stores = level == LEVELS[-1] and sizes.repository == "measured"
-            learned = _fine_tuned(known.problem.real, rows, alone=stores)
-            if level == LEVELS[-1] and not stores:
-                learned = with_novel(METHODS[task.row], known, rows)
-            run = run_stream(first, sizes, learned, stores=stores)
-            states = run.stored if stores else [run.state]
-            scores = usual.score_of_likeliest(states), evaluation.score_of_likeliest(states)
-            played.append(_played(drift, level, scores, stream, run))
+        given = stream_of(task, drift)
+        stream = TwinStream.of(known, given)
+        for level in LEVELS:
+            history = lived_through(known, stream, once, level)
+            played.append(_result(drift, level, known, given, stream, history))
     return played
 
 
-def _played(
-    drift: str, level: str, score: tuple[Score, Score], stream: DriftStream, run: StreamRun
+def _result(
+    drift: str,
+    level: str,
+    known: CalibrationData,
+    given: DriftStream,
+    stream: TwinStream,
+    history: History,
 ) -> StreamResult:
-    rows = len(stream.rows.readings)
-    quiet = stream.changes[0] if stream.changes else rows
-    raised = run.alarms[0] if run.alarms else rows
+    ordinary, drifted = (
+        score_of_history(history, stream.contexts, rows, known.ranges)
+        for rows in (stream.ordinary, stream.drifted)
+    )
+    kinds = [event.kind for event in history.events]
+    first, rows = stream.stream.start, len(given.rows.readings)
+    alarms = [event.row - first for event in history.events if event.kind == "alarm"]
+    quiet = given.changes[0] if given.changes else rows
+    raised = min([one for one in alarms if one < quiet], default=rows)
     return StreamResult(
         drift,
         level,
-        *score,
-        delays=delays(run.alarms, stream.changes, rows),
-        watched=min(raised + 1, quiet),
+        ordinary,
+        drifted,
+        delays=delays(alarms, given.changes, rows),
+        watched=min(raised + 1, quiet) if level != LEVELS[0] else 0,
         false_alarm=raised < quiet,
-        alarms=len(run.alarms),
-        recalibrations=run.recalibrations,
-        taken_back=run.taken_back,
-        recalled=run.recalled,
+        alarms=len(alarms),
+        recalibrations=kinds.count("recalibration"),
+        recalled=kinds.count("recall"),
     )
 
 
-def _fine_tuned(real: FloatArray, rows: FloatArray, *, alone: bool) -> Learned:
-    """A state that has learned from rows of a stream (T1), for rows like these alone or for all."""
+def delays(alarms: Sequence[int], changes: Sequence[int], rows: int) -> tuple[int | None, ...]:
+    """Rows from each change to its alarm, both counted; None where none came before the next.
 
-    def learned(state: CalibratedMethod, recent: slice) -> CalibratedMethod:
-        after = state.calibrated.recalibrated(rows[recent], alone=alone)
-        return state if after is state.calibrated else CalibratedMethod.of(after, real, rows)
-
-    return learned
+    >>> delays([3, 12, 14], [10, 20], 30)
+    (3, None)
+    """
+    ends = [*changes[1:], rows]
+    found = []
+    for change, end in zip(changes, ends, strict=False):
+        own = [one for one in alarms if change <= one < end]
+        found.append(own[0] - change + 1 if own else None)
+    return tuple(found)

@@ -8,12 +8,11 @@ from threadpoolctl import threadpool_limits
 from rga.inference.networks.determinism import one_thread
 from rga_bench.contexts.data import CalibrationData, calibration_of, stream_of
 from rga_bench.contexts.drift import MeasuredRows
-from rga_bench.contexts.evaluation import Evaluation
+from rga_bench.contexts.evaluation import evaluated
 from rga_bench.contexts.floors import FLOORS, floor
-from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.rows import METHODS
 from rga_bench.contexts.score import Score
-from rga_bench.contexts.setting import DRIFTING, ContextsTask
+from rga_bench.contexts.setting import DRIFTING, LEVELS, ContextsTask
 from rga_bench.contexts.stream_results import StreamResult, results_of_streams
 
 
@@ -54,10 +53,9 @@ def run_task(task: ContextsTask) -> TaskOutcome:
         begun = time.perf_counter()
         calibrated = METHODS[task.row].calibrated(known)
         learned = time.perf_counter()
-        usual = Evaluation(known.test, known.problem.ranges, task.sizes.settle)
-        score = usual.score(calibrated)
+        score = evaluated(calibrated, known)
         inferred = time.perf_counter()
-        played = results_of_streams(task, known, calibrated, usual) if drifts else []
+        played = results_of_streams(task, known, METHODS[task.row].learn) if drifts else []
         return replace(
             _outcome(task, score, played),
             learning=learned - begun,
@@ -67,7 +65,7 @@ def run_task(task: ContextsTask) -> TaskOutcome:
 
 def _floors(task: ContextsTask, known: CalibrationData, drifts: tuple[str, ...]) -> TaskOutcome:
     def of(measured: MeasuredRows) -> Score:
-        return floor(task.row, known.problem, measured)
+        return floor(task.row, known, measured)
 
     ordinary = of(known.test)
     drifted = {drift: of(stream_of(task, drift).drifted) for drift in drifts}

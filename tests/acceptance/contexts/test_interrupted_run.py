@@ -21,9 +21,9 @@ SETTING = ContextsSetting(
     splits=1,
     gaps=("all",),
     manners=("same",),
-    drifts=("none", "sensor"),
-    rows=("noise", "true context", "prior mean", "MAP"),
-    sizes=Sizes(source=64, unlabelled=32, stream=45, test=12, arl0=200.0),
+    drifts=("none",),
+    rows=("noise", "true context", "best context", "prior mean"),
+    sizes=Sizes(source=128, unlabelled=32, stream=24, test=12),
 )
 TASKS = 2 * 4
 #: `RGA_TEST_KILLS=50` kills more often

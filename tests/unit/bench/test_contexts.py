@@ -8,10 +8,12 @@ import pytest
 from context_tasks import RANGES, SIZES, nearest, task
 from rga.arrays import FloatArray
 from rga.errors import InputError
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.lesson import Lesson
 from rga_bench.contexts.context_regime import BEYOND, PART, Contexts
 from rga_bench.contexts.data import LOAD_TESTS, calibration_of, stream_of
 from rga_bench.contexts.drift import DRIFTS, ONE_IN, MeasuredRows, when
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
+from rga_bench.contexts.method import Estimate
 from rga_bench.contexts.rows import Row
 from rga_bench.contexts.score import score
 from rga_bench.contexts.tables.aggregate import paired
@@ -81,7 +83,7 @@ def test_a_drift_is_there_and_the_null_twin_has_none(drift: str) -> None:
     if drift in ("sensor", "recurring"):
         hit = np.abs(measured.readings - shown)[holds].max(axis=0) > 1e-9
         assert hit.sum() == -(-len(hit) // ONE_IN)
-    low, high = known.problem.ranges.T
+    low, high = known.ranges.T
     share = ((measured.contexts - low) / (high - low))[:, known.usual.contexts.marked]
     moved = (share > 1.0 - PART).all(axis=1)
     expected = holds if drift in ("operational", "novel", "recurring") else np.zeros_like(holds)
@@ -97,27 +99,29 @@ def test_a_drift_that_nobody_knows_is_refused() -> None:
 def test_rows_of_a_split_meet_the_same_data_and_splits_do_not() -> None:
     one, same = calibration_of(task(row="a")), calibration_of(task(row="b"))
     assert one is same
-    assert not np.array_equal(one.problem.real, calibration_of(task(split=1)).problem.real)
-    assert one.problem.real.shape == (SIZES.unlabelled, 84)
+    real = one.lesson.data.real
+    assert not np.array_equal(real, calibration_of(task(split=1)).lesson.data.real)
+    assert real.shape == (SIZES.unlabelled, 84)
 
 
 def test_load_tests_go_to_whom_they_are_meant_for() -> None:
-    got: list[LearningProblem] = []
+    got: list[Lesson] = []
 
-    def method(problem: LearningProblem) -> Calibrated:
-        got.append(problem)
-        return nearest(problem)
+    def method(lesson: Lesson) -> ContextEstimator:
+        got.append(lesson)
+        return nearest(lesson)
 
     known = calibration_of(task("same"))
     Row(method).calibrated(known)
     Row(method, load_tests=20).calibrated(known)
-    assert [len(one.load_tests) for one in got] == [0, 20]
-    assert len(known.problem.load_tests) == LOAD_TESTS
+    assert [one.load_tests and len(one.load_tests) for one in got] == [None, 20]
+    assert known.lesson.load_tests is not None
+    assert len(known.lesson.load_tests) == LOAD_TESTS
     twins: list[object] = []
 
-    def oracle(problem: LearningProblem, twin: object) -> Calibrated:
+    def oracle(lesson: Lesson, twin: object) -> ContextEstimator:
         twins.append(twin)
-        return nearest(problem)
+        return nearest(lesson)
 
     Row(oracle, oracle=True).calibrated(known)
     assert twins == [known.usual.twin]

@@ -110,7 +110,7 @@ def test_rows_have_the_same_bits_in_any_batch_and_on_any_thread() -> None:
         np.testing.assert_array_equal(some, whole[part])
     structure = build_structure(simulator.model)
     values = simulator.resolve({"time": np.zeros(23), "load": load, "warm": warm})
-    loads = simulator.request(values, 23).loads(structure, np.arange(23))
+    loads = simulator.assembly.request(values, 23).loads(structure, np.arange(23))
     given = structure.arrays, patterns(structure, loads), structure.outputs
     coefficients = np.column_stack([one.coefficient for one in loads])
     for threads in (1, 2, 5):

@@ -10,7 +10,7 @@ from rga.report.figures.time_axis import when
 from rga.twin.history import Event, History
 
 #: events after which the twin simulates otherwise than before
-CHANGES = ("recalibration", "version", "rollback")
+CHANGES = ("recall", "recalibration", "version", "rollback")
 MOST_PHASES = 6
 #: rows below which a phase shows nothing
 LEAST = 3
@@ -121,6 +121,7 @@ def _title(history: History, event: Event) -> str:
         return f"With version {number} from"
     said = {
         "alarm": "At the alarm of",
+        "recall": "As it was before, from",
         "recalibration": "Recalibrated at",
         "version": "With a new version from",
         "rollback": "After going back at",

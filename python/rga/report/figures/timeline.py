@@ -47,6 +47,7 @@ class Look(NamedTuple):
 
 LOOKS = {
     "alarm": Look("alarm", BEFORE, "v", True),
+    "recall": Look("as it was before", "#56b4e9", "^", True),
     "recalibration": Look("recalibrated", AFTER, "o", True),
     "diagnosis": Look("diagnosis", INK, "D", False),
     "version": Look("new version", "#009e73", "s", True),
@@ -196,7 +197,7 @@ def _words(history: History, by_row: FloatArray) -> str:
         return "Events of the run; no gap is known."
     parts = [
         f"{kind} at {', '.join(str(e.time) for e in history.events if e.kind == kind)}"
-        for kind in ("alarm", "recalibration", "version", "rollback")
+        for kind in ("alarm", "recall", "recalibration", "version", "rollback")
         if any(event.kind == kind for event in history.events[:MOST_MARKS])
     ]
     largest = f"Gap over time, at most {number(float(np.nanmax(line)))} once smoothed"

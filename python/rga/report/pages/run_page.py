@@ -22,10 +22,12 @@ from rga.twin.history import Event, History
 LEVELS = {
     "A": "calibrated once and then left as it was",
     "B": "recalibrated whenever it is out of sync",
-    "C": "recalibrated whenever it is out of sync, its repository extended by novel contexts",
+    "C": "recalibrated whenever it is out of sync, its repository extended by novel contexts and "
+    "by what was learned under each",
 }
 COUNTED = {
     "alarm": ("alarm", "alarms"),
+    "recall": ("return to what was learned before", "returns to what was learned before"),
     "recalibration": ("recalibration", "recalibrations"),
     "novel context": ("novel context", "novel contexts"),
     "diagnosis": ("diagnosis", "diagnoses"),

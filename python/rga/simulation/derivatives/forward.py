@@ -221,29 +221,31 @@ def _tangents(
 ) -> Iterator[Tangent]:
     """Linear paths at the rows, the cheapest first; none where there is no tangent."""
     rows = len(response.contexts["time"])
-    middle = simulator.request(response.values, rows)
+    middle = simulator.assembly.request(response.values, rows)
     alone = _of_structure_alone(simulator, contexts)
     along, low, high = _structure_along(simulator, response, contexts, alone)
     of_loads = [number for number, name in enumerate(contexts) if name not in alone]
     sides = _sides(simulator, response, [contexts[number] for number in of_loads])
     if of_loads:
-        moved = simulator.structural_parameters(sides.values)
+        moved = simulator.assembly.parameters(sides.values)
         along[:, :, of_loads] = _rates(moved, sides)
         low, high = np.minimum(low, moved.min(axis=0)), np.maximum(high, moved.max(axis=0))
     states = np.vstack([middle.states, low, high])
     start = middle.change(middle.states[0])
-    loads = middle.loads(start, np.arange(rows))
-    if start.bearings or start.laws or start.nonlinear or not loads:
+    if start.bearings or start.laws or start.nonlinear:
         return
     varied = unvaried(start, states.shape[1])
     if (states != states[0]).any():
         found = variation_under(middle, states)
         if found is None:
             return
-        varied = found
+        varied, start = found, found.start
+    loads = middle.loads(start, np.arange(rows))
+    if not loads:
+        return
     by_loads = np.zeros((rows, len(loads), len(contexts)))
     if of_loads:
-        ends = coefficients(simulator.loads(start, sides.values))
+        ends = coefficients(simulator.assembly.loads(start, sides.values))
         by_loads[:, :, of_loads] = _rates(ends, sides)
     for _, system in linear_paths(middle.prepared, varied, loads):
         yield Tangent(
@@ -266,10 +268,10 @@ def _structure_along(
         smallest and largest of each parameter on both sides of the rows, float[parameters] each.
     """
     model, table = simulator.model, response.contexts
-    rows, here = len(table["time"]), simulator.structural_parameters(response.values)
+    rows, here = len(table["time"]), simulator.assembly.parameters(response.values)
     along = np.zeros((rows, here.shape[1], len(contexts)))
     low, high = here.min(axis=0), here.max(axis=0)
-    columns = {one: number for number, one in enumerate(simulator.structural_keys(response.values))}
+    columns = {one: number for number, one in enumerate(simulator.assembly.keys(response.values))}
     for name in alone:
         up, down = _steps(table[name], *model.context[name].range)
         tables = {**table, name: table[name] + up}, {**table, name: table[name] - down}

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,35 @@ class Variation:
     def terms(self) -> int:
         """How many terms of rank one vary."""
         return _core.count_terms(self.start.arrays, self.start.outputs, self.members, self.springs)
+
+
+class VariationWithin:
+    """What varies anywhere within limits of the structural parameters.
+
+    Args:
+        low, high: the limits, float[parameters] each.
+        find: what varies between them; None where it is more than straight stiffnesses.
+    """
+
+    def __init__(
+        self, low: FloatArray, high: FloatArray, find: Callable[[], Variation | None]
+    ) -> None:
+        self._low, self._high, self._find = low, high, find
+
+    @property
+    def varying(self) -> int:
+        """How many parameters vary between the limits."""
+        return int((self._low < self._high).sum())
+
+    def of(self, states: FloatArray) -> Variation | None:
+        """What varies between states, float[states, parameters]; None if they lie elsewhere."""
+        if not ((self._low <= states) & (states <= self._high)).all():
+            return None
+        return self._varied
+
+    @cached_property
+    def _varied(self) -> Variation | None:
+        return self._find()
 
 
 def unvaried(structure: Structure, parameters: int) -> Variation:

@@ -59,7 +59,7 @@ class Vicinity:
 
     def _find_centres(self) -> None:
         values = self.response.values
-        request = self.simulator.request(values, self._rows)
+        request = self.simulator.assembly.request(values, self._rows)
         if len(request.states) > APART:
             return
         structures = [request.change(state) for state in request.states]
@@ -180,7 +180,7 @@ class Vicinity:
         """
         trial = self.simulator.extended(effects)
         values = trial.resolve(self.response.contexts) if known is None else known
-        request = trial.request(values, self._rows)
+        request = trial.assembly.request(values, self._rows)
         apart = known is not None or self._has(values)
         if len(request.states) > APART:
             quantities = self._along_line(trial, request, values, apart)
@@ -248,7 +248,7 @@ class Vicinity:
             near = centre.with_laws(structure, loads, where)
             if near is not None:
                 return near
-            return with_laws(self.simulator.prepared, structure, loads)
+            return with_laws(self.simulator.assembly.prepared, structure, loads)
         if where is None:
             return centre.solved_anew(structure, loads)
         q, loaded = centre.under(loads)

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -13,18 +12,20 @@ from rga.model.parameter import NORMAL_90
 from rga.twin.archive import Archive
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.choice import choose
-from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.estimator import ContextEstimator, Learn
 from rga.twin.calibration.expectation import (
     against_expected,
     rows_against_expected,
     scatter_share,
     usual_bound,
 )
+from rga.twin.calibration.followed_rows import FollowedRows
 from rga.twin.calibration.joint_posterior import changes, why_not
 from rga.twin.calibration.learning import learn
 from rga.twin.calibration.lesson import Lesson
+from rga.twin.calibration.states import State
 from rga.twin.messages.hardware import Packet, Station
-from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Q5, Box, sha256
+from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Box
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
@@ -41,13 +42,15 @@ class ContextCapture:
     """What is known of the contexts, and how it comes about.
 
     Attributes:
-        ledger: the rows so far.
+        rows: so far, as they were followed.
         learned: what infers contexts now; None before the first calibration, or where none is
             inferred.
         sound: what did so when nothing was in doubt: a new version of the model begins there.
         inference: the way to infer; "auto" until the first calibration has chosen one.
         optimism: gap of rows that the calibration did not learn from, over that of its own [-].
         draws: seeds drawn so far.
+        states: that are kept for when their conditions recur.
+        state: number of the one of them that is in force; None: what infers was not kept.
         ranges: smallest and largest of each context, float[contexts, 2].
         noise: standard deviation of each channel's noise, float[channels].
 
@@ -59,6 +62,7 @@ class ContextCapture:
         settings: of the run.
         seed: of networks and simulations.
         progress: called with a stage and the share of it that is done.
+        own: what learns from lessons, in place of the way that the settings name.
     """
 
     def __init__(
@@ -70,16 +74,18 @@ class ContextCapture:
         settings: Settings,
         seed: int,
         progress: Progress,
+        own: Learn | None = None,
     ) -> None:
-        self.ledger = RowBuffer.empty(
-            len(station.channels), len(station.measured), len(model.context)
-        )
+        self.rows = FollowedRows(exchange, archive, station, model)
         self.learned: ContextEstimator | None = None
         self.sound: ContextEstimator | None = None
         self.inference: Inference = settings.inference
         self.optimism = 1.0
         self.draws = 0
-        self._exchange, self._archive, self._station = exchange, archive, station
+        self.states: list[State] = []
+        self.state: int | None = None
+        self._own = own
+        self._exchange, self._station = exchange, station
         self._settings, self._seed, self._progress = settings, seed, progress
         self._names = list(model.context)
         self._laws = list(model.context.values())
@@ -89,30 +95,37 @@ class ContextCapture:
 
     def receive(self, packet: Packet) -> None:
         """Take measured rows from the middleware."""
-        self.ledger.append(packet)
+        self.rows.ledger.append(packet)
 
-    def recall(
+    def take_up(
         self,
         ledger: RowBuffer,
         standing: Standing,
         learned: ContextEstimator | None,
         sound: ContextEstimator | None,
+        states: list[State],
     ) -> None:
         """Go on where a run stood."""
-        self.ledger, self.draws = ledger, standing.draws
+        self.rows.ledger, self.draws = ledger, standing.draws
         self.inference, self.optimism = standing.inference, standing.optimism
         self.learned, self.sound = learned, sound
+        self.states, self.state = states, standing.state
         if standing.calibrated:
             self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
 
     @property
+    def ledger(self) -> RowBuffer:
+        """The rows so far."""
+        return self.rows.ledger
+
+    @property
     def latent(self) -> list[int]:
         """Columns of the contexts that are inferred."""
-        return [self._names.index(name) for name in self._exchange.twin.state.latent]
+        return self.rows.latent
 
-    def clock(self, rows: slice) -> FloatArray:
-        """Clock of rows [s], on the scale of onsets."""
-        return self._station.origin + self.ledger.time[rows]
+    def follow(self, first: int, end: int) -> None:
+        """Infer the contexts of rows, and let the twin simulate them (Q5)."""
+        self.rows.follow(self.learned, first, end)
 
     def estimate_noise(self) -> None:
         """Noise of the channels, from the model or from the rows so far."""
@@ -200,7 +213,9 @@ class ContextCapture:
                     row=row,
                     version=state.version,
                     box=box,
-                    clock=float(self.clock(slice(-1, None))[0]) if row else self._station.origin,
+                    clock=float(self.rows.clock(slice(-1, None))[0])
+                    if row
+                    else self._station.origin,
                     rows=max(2, held.missing),
                     origin="requested" if requested else "design",
                     seed=self._draw(),
@@ -219,6 +234,10 @@ class ContextCapture:
         if not self._exchange.twin.state.latent:
             return "all contexts are measured"
         lesson, begun = self._lesson([(0, rows)]), None
+        if self._own is not None:
+            self._take(self._own(lesson))
+            self.sound = self.learned
+            return "contexts by an estimator of the caller's own"
         words = f"contexts by inference {self.inference!r}, as the settings have it"
         if self.inference not in ("auto", "networks") and (reason := why_not(lesson)):
             raise InputError(
@@ -256,13 +275,60 @@ class ContextCapture:
             earlier = None if self.sound is None else self.sound.found
             read = np.isfinite(self.ledger.readings[slice(*recent)]).any()
             rows = recent if read else (0, recent[1])
-            self._take(learn(self.inference, self._lesson([rows]), earlier=earlier))
+            lesson = self._lesson([rows])
+            if self._own is not None:
+                self._take(self._own(lesson))
+            else:
+                self._take(learn(self.inference, lesson, earlier=earlier))
             self.sound = self.learned
 
     def restore(self, learned: ContextEstimator | None, sound: ContextEstimator | None) -> None:
         """Take up earlier estimators, and correct the twin as the first of them did."""
         self._take(learned)
         self.sound = sound
+
+    def keep_state(self, first: int, end: int, share: float, doubted: bool = False) -> None:
+        """Keep what infers now, for rows like these.
+
+        Args:
+            first, end: of the rows.
+            share: by which the model was off on the rows of the first calibration [-].
+            doubted: the model is in doubt under their conditions.
+        """
+        if self.learned is None or first >= end:
+            return
+        rows, ledger = slice(first, end), self.ledger
+        gaps = rows_against_expected(ledger.gaps[rows], ledger.simulated[rows], self.noise, share)
+        version = self._exchange.twin.state.version
+        self.states.append(State(self.learned, version, (first, end), gaps, doubted))
+        self.state = len(self.states) - 1
+
+    def recall(self, first: int, end: int, share: float) -> State | None:
+        """Take up the state that was kept under conditions like those of rows, if there is one.
+
+        It leaves a gap of them as of its own rows, and a smaller one than any other does.
+
+        Args:
+            first, end: of the rows.
+            share: by which the model was off on the rows of the first calibration [-].
+        """
+        version, best, least = self._exchange.twin.state.version, None, self.gap(first, end, share)
+        for number, state in enumerate(self.states):
+            if number == self.state or state.version != version:
+                continue
+            simulated = self.rows.simulated_by(state.estimator, first, end)
+            gaps = (self.ledger.readings[first:end] - simulated) ** 2
+            left = against_expected(gaps, simulated, self.noise, share)
+            bound = state.bound(end - first, self._settings.usual, self._seed)
+            if left < least and left <= self.optimism * bound:
+                best, least = number, left
+        if best is None:
+            return None
+        found = self.states[best].estimator
+        self.restore(found, self.sound if self.states[best].doubted else found)
+        self.state = best
+        self.follow(first, end)
+        return self.states[best]
 
     def _lesson(self, rows: Sequence[tuple[int, int]]) -> Lesson:
         """All simulations of the version in force, and blocks of measured rows."""
@@ -272,7 +338,7 @@ class ContextCapture:
             data=data,
             latent=state.latent,
             noise=self.noise,
-            clock=float(self.clock(slice(-1, None))[0]),
+            clock=float(self.rows.clock(slice(-1, None))[0]),
             seed=self._draw(),
             training=self._settings.training,
             progress=lambda done: self._progress("learning contexts", done),
@@ -280,7 +346,7 @@ class ContextCapture:
 
     def _take(self, learned: ContextEstimator | None) -> None:
         """Infer by an estimator from now on; the twin takes over what it found (Q1)."""
-        self.learned = learned
+        self.learned, self.state = learned, None
         if learned is None or learned.correction is None:
             return
         station, row = self._station, max(0, len(self.ledger) - 1)
@@ -292,60 +358,6 @@ class ContextCapture:
                 correction=learned.correction,
             )
         )
-
-    def follow(self, first: int, end: int) -> None:
-        """Infer the contexts of rows, and let the twin simulate them (Q5)."""
-        rows = slice(first, end)
-        contexts, spread = self._prior(rows)
-        if self.learned is not None:
-            latent = self.latent
-            contexts[:, latent], spread[:, latent] = self.learned.infer(
-                first,
-                self.ledger.readings[:end],
-                self._prior(slice(0, end))[0],
-                self.clock(slice(0, end)),
-                [self._laws[column] for column in latent],
-            )
-        self.ledger.contexts[rows], self.ledger.spread[rows] = contexts, spread
-        self.send(first, end)
-
-    def send(self, first: int, end: int) -> None:
-        """Q5: give the twin the contexts of rows, and keep what it simulates there."""
-        ledger, rows, past = self.ledger, slice(first, end), slice(0, first)
-        version = self._exchange.twin.state.version
-        answer = self._exchange.ask(
-            Q5(
-                row=end - 1,
-                version=version,
-                first=first,
-                rows=end - first,
-                sha256=sha256(ledger.contexts[rows]),
-                time=self.clock(rows),
-                contexts=ledger.contexts[rows],
-                time_before=self.clock(past),
-                contexts_before=ledger.contexts[past],
-            )
-        )
-        _, complete = self._told()
-        ledger.simulated[rows] = np.where(complete[rows, None], answer.simulated, np.nan)
-        self._archive.keep_rows(first, end, version, ledger)
-
-    def _prior(self, rows: slice) -> tuple[FloatArray, FloatArray]:
-        """Contexts as measured, and in the middle of their range where nothing measured them."""
-        count = len(self.ledger.time[rows])
-        contexts = np.tile(self.ranges.mean(axis=1), (count, 1))
-        spread = np.tile(np.ptp(self.ranges, axis=1) / np.sqrt(12), (count, 1))
-        measured = self._measured
-        contexts[:, measured] = self._told()[0][rows]
-        spread[:, measured] = [self._laws[column].noise or 0.0 for column in measured]
-        return contexts, spread
-
-    @property
-    def _measured(self) -> list[int]:
-        return [self._names.index(name) for name in self._station.measured]
-
-    def _told(self) -> tuple[FloatArray, NDArray[np.bool_]]:
-        return self.ledger.last_measured(self.ranges.mean(axis=1)[self._measured])
 
     def _draw(self) -> int:
         self.draws += 1

@@ -1,6 +1,6 @@
 """What infers contexts in a run: the protocol that every way to do so follows."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from rga.arrays import FloatArray
@@ -53,3 +53,7 @@ class ContextEstimator(Protocol):
 
     def to_bytes(self) -> bytes:
         """Its state, but for the simulation; reading it runs no code."""
+
+
+#: learns from a lesson
+Learn = Callable[[Lesson], ContextEstimator]

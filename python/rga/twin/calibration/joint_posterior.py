@@ -59,7 +59,7 @@ class JointEstimator:
         self.found, self.watched, self._simulation = found, watched, simulation
         self._latent = tuple(latent)
         self._modes: dict[int, RowModes] = {}
-        self._blocks: dict[int, tuple[FloatArray, FloatArray]] = {}
+        self._blocks: dict[int, tuple[bytes, tuple[FloatArray, FloatArray]]] = {}
 
     @classmethod
     def learn(
@@ -84,6 +84,7 @@ class JointEstimator:
             readings_of(lesson, unknowns, watched),
             lesson.noise[watched],
             data.contexts[:SOURCE],
+            load_tests=None if earlier is not None else load_tests_of(lesson, watched),
             measured=instruments(simulation, data.real_contexts),
             start=start if start is not None and start.is_about(unknowns) else None,
             prior=earlier,
@@ -175,13 +176,14 @@ class JointEstimator:
         seen = plausible(self.found.unknowns, readings[:, self.watched] + self._zero, deviation)
         parts = []
         for number in blocks(first, len(readings)):
-            if number in self._blocks and first <= number * BLOCK:
-                parts.append(self._blocks[number])
-                continue
             rows = np.maximum(block(number, len(readings)), first)
+            shown = b"".join(part[rows].tobytes() for part in (seen, contexts, time))
+            if number in self._blocks and self._blocks[number][0] == shown:
+                parts.append(self._blocks[number][1])
+                continue
             parts.append(self._of_block(seen[rows], contexts[rows], time[rows]))
             if first == 0 and (number + 1) * BLOCK <= len(readings):
-                self._blocks[number] = parts[-1]
+                self._blocks[number] = shown, parts[-1]
         lead = first % BLOCK
         value, spread = (np.concatenate(part)[lead:] for part in zip(*parts, strict=True))
         return value[: len(readings) - first], spread[: len(readings) - first]
@@ -240,6 +242,14 @@ class JointEstimator:
         return [names.index(name) for name in self._simulation.station.measured]
 
 
+def load_tests_of(lesson: Lesson, watched: NDArray[np.bool_]) -> Rows | None:
+    """Load tests of a lesson as sensors show them without a logger's zero."""
+    tests = lesson.load_tests
+    if tests is None:
+        return None
+    return Rows(tests.contexts, (tests.readings + zero_of(lesson.simulation))[:, watched])
+
+
 def why_not(lesson: Lesson, earlier: Joint | None = None) -> str | None:
     """Why the joint posterior cannot be had of a lesson, in words; None where it can.
 
@@ -261,8 +271,6 @@ def why_not(lesson: Lesson, earlier: Joint | None = None) -> str | None:
             return f"effect {name!r} remembers what was before"
         if effect.onset is not None and effect.profile == "ramp":
             return f"effect {name!r} grows over time"
-        if effect.structural and (drivers := effect.drivers() & set(latent)):
-            return f"{' and '.join(sorted(drivers))} changes the structure by effect {name!r}"
     try:
         Unknowns(model)
     except InputError as error:

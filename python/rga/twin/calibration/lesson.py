@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
-from rga.inference import TrainingSettings
+from rga.inference import Rows, TrainingSettings
 from rga.twin.correction import Correction
 from rga.twin.messages.queries import R4
 from rga.twin.simulation_model import SimulationModel, broken
@@ -28,6 +28,7 @@ class Lesson:
         training: of networks.
         progress: called with the share that is done.
         new: first of the measured rows that nothing was learned from yet.
+        load_tests: measured rows of which all contexts are known; None: there are none.
     """
 
     data: R4
@@ -38,6 +39,7 @@ class Lesson:
     training: TrainingSettings
     progress: Callable[[float], None]
     new: int = 0
+    load_tests: Rows | None = None
 
     @property
     def simulation(self) -> SimulationModel:

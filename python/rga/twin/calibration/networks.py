@@ -50,7 +50,7 @@ class NetworkEstimator:
     ) -> None:
         self._network, self._simulation = network, simulation
         self._faulty, self._noise, self._factor = faulty, noise, factor
-        self._known: dict[int, Candidates] = {}
+        self._known: dict[int, tuple[bytes, Candidates]] = {}
 
     @classmethod
     def learn(cls, lesson: Lesson, start: Self | None = None) -> Self:
@@ -178,14 +178,15 @@ class NetworkEstimator:
         seen = np.where(self._faulty, np.nan, readings)
         parts = []
         for number in blocks(first, len(readings)):
-            if number not in self._known:
-                rows = block(number, len(readings))
+            rows = block(number, len(readings))
+            shown = seen[rows].tobytes() + measured[rows].tobytes()
+            if number not in self._known or self._known[number][0] != shown:
                 found = self._network.candidates(seen[rows], measured[rows])
                 if (number + 1) * BLOCK > len(readings):
                     parts.append(found)
                     break
-                self._known[number] = found
-            parts.append(self._known[number])
+                self._known[number] = shown, found
+            parts.append(self._known[number][1])
         lead = first % BLOCK
         return joined(parts).rows(slice(lead, lead + len(readings) - first))
 

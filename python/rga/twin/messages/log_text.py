@@ -8,7 +8,12 @@ from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Q5, R1, R2, R4, Query, Res
 Message = Query | Response
 Pair = tuple[Message, Message]
 #: the tasks of the paper that events belong to
-TASKS = {"alarm": "T1 alarm", "recalibration": "T1 recalibration", "novel context": "T2 stored"}
+TASKS = {
+    "alarm": "T1 alarm",
+    "recall": "T1 recall",
+    "recalibration": "T1 recalibration",
+    "novel context": "T2 stored",
+}
 
 
 def retold(messages: Sequence[Message | Event]) -> Iterator[tuple[int, str, str]]:

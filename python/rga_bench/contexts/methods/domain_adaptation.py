@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,8 @@ from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.networks.determinism import one_thread
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
+from rga.twin.calibration.lesson import Lesson
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
 from rga_bench.installed import NotInstalledError
 
 #: units of a layer, passes over the rows, rows of a batch, weight of the adaptation, rate
@@ -21,7 +22,7 @@ UNITS, EPOCHS, BATCH, WEIGHT, RATE = 128, 150, 128, 0.1, 1e-3
 
 
 @dataclass(frozen=True)
-class Adapted:
+class Adapted(Rival):
     """A regressor that learned from source rows adapted to the measured ones.
 
     Attributes:
@@ -36,9 +37,9 @@ class Adapted:
     twin: TwinOnArrays
     regress: Callable[[FloatArray], FloatArray]
     usual: FloatArray
-    learn: Method
+    learn: Callable[[LearningProblem], "Adapted"]
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         """Contexts of measured rows, float[n, sensors]; without spread."""
         middle, scale = standard(self.twin.ranges)
         if not len(readings):
@@ -50,12 +51,12 @@ class Adapted:
         """What the model simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        """Learned again from the measured rows and the recent ones."""
-        return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
+    def refined(self, lesson: Lesson) -> "Adapted":
+        """Learned anew from all measured rows of a lesson."""
+        return self.learn(LearningProblem.of(lesson))
 
 
-def skada_coral(problem: LearningProblem) -> Calibrated:
+def skada_coral(problem: LearningProblem) -> Adapted:
     """`skada`'s `CORALAdapter` (Sun, Feng and Saenko, 2017), then a perceptron of scikit-learn.
 
     `skada`'s own pipeline takes one target a row at most, so that the adapter is used by itself.
@@ -83,7 +84,7 @@ def skada_coral(problem: LearningProblem) -> Calibrated:
     return _adapted(problem, lambda given: perceptron.predict((given - center) / size), skada_coral)
 
 
-def skada_dann(problem: LearningProblem) -> Calibrated:
+def skada_dann(problem: LearningProblem) -> Adapted:
     """`skada`'s `DANN` (Ganin et al., JMLR 17, 2016).
 
     It knows classes only: labels are the numbers of source rows, and the criterion looks up the
@@ -174,7 +175,9 @@ def _filled(readings: FloatArray, usual: FloatArray) -> FloatArray:
 
 
 def _adapted(
-    problem: LearningProblem, regress: Callable[[FloatArray], FloatArray], learn: Method
+    problem: LearningProblem,
+    regress: Callable[[FloatArray], FloatArray],
+    learn: Callable[[LearningProblem], Adapted],
 ) -> Adapted:
     usual = problem.source.readings.mean(axis=0)
     return Adapted(problem, TwinOnArrays(problem.simulator), regress, usual, learn)

@@ -11,7 +11,7 @@ from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.networks.determinism import one_thread
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
 from rga_bench.installed import NotInstalledError
 
 #: simulated rows beside the source; passes over all of them at most; samples of a posterior
@@ -19,7 +19,7 @@ DRAWS, EPOCHS, SAMPLES = 12_000, 40, 256
 
 
 @dataclass(frozen=True)
-class NeuralPosterior:
+class NeuralPosterior(Rival):
     """A density of contexts in standard units, given readings over their noise.
 
     Attributes:
@@ -34,7 +34,7 @@ class NeuralPosterior:
     density: Any
     usual: FloatArray
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         """Mean and standard deviation of samples, which are kept to the ranges."""
         middle, scale = standard(self.twin.ranges)
         if not len(readings):
@@ -51,12 +51,8 @@ class NeuralPosterior:
         """What the model simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        """The same: it learns from simulated rows alone."""
-        return self
 
-
-def neural_posterior(problem: LearningProblem) -> Calibrated:
+def neural_posterior(problem: LearningProblem) -> NeuralPosterior:
     """A masked autoregressive flow (Papamakarios and Murray, NeurIPS 2016), with `sbi`'s defaults.
 
     Raises:

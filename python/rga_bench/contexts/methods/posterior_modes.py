@@ -1,6 +1,7 @@
 """Contexts by the mode of their posterior under a twin and a covariance of its readings."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,11 +9,12 @@ from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
 from rga.inference.map.posterior_mode import Mode, posterior_mode
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
+from rga.twin.calibration.lesson import Lesson
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
 
 
 @dataclass(frozen=True)
-class PosteriorModes:
+class PosteriorModes(Rival):
     """Modes of the posterior, with Laplace's spread.
 
     Attributes:
@@ -27,7 +29,7 @@ class PosteriorModes:
     twin: TwinOnArrays
     covariance: FloatArray
     guess: QuadraticGuess
-    learn: Method | None = None
+    learn: Callable[[LearningProblem], "PosteriorModes"] | None = None
 
     def mode(self, readings: FloatArray, start: FloatArray | None = None) -> Mode:
         """Modes of measured rows, from the guess or from another start, float[n, contexts]."""
@@ -40,7 +42,7 @@ class PosteriorModes:
             self.guess(readings) if start is None else start,
         )
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         """Mode and spread of measured rows, float[n, sensors]; NaN where a reading is missing."""
         mode = self.mode(readings)
         return Estimate(mode.value, mode.spread)
@@ -49,11 +51,9 @@ class PosteriorModes:
         """What the twin simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        """Learned again from the measured rows and the recent ones; these alone are too few."""
-        if self.learn is None:
-            return self
-        return self.learn(replace(self.problem, real=np.vstack([self.problem.real, recent])))
+    def refined(self, lesson: Lesson) -> "PosteriorModes":
+        """Learned anew from all measured rows of a lesson: the new ones alone are too few."""
+        return self if self.learn is None else self.learn(LearningProblem.of(lesson))
 
 
 def maximum_posterior(problem: LearningProblem) -> PosteriorModes:

@@ -7,16 +7,16 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.standard_units import standard
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
 
 
 @dataclass(frozen=True)
-class PriorMean:
+class PriorMean(Rival):
     """The middle of every range, with the standard deviation of contexts spread evenly over it."""
 
     twin: TwinOnArrays
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         """The same for every row, whatever it shows."""
         middle, scale = standard(self.twin.ranges)
         shape = (len(readings), len(scale))
@@ -26,11 +26,7 @@ class PriorMean:
         """What the model simulates, float[n, sensors]."""
         return self.twin.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        """The same: there is nothing to learn."""
-        return self
 
-
-def prior_mean(problem: LearningProblem) -> Calibrated:
+def prior_mean(problem: LearningProblem) -> PriorMean:
     """The mean of the prior: Error 1 by definition."""
     return PriorMean(TwinOnArrays(problem.simulator))

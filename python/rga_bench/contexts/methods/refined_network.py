@@ -5,16 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.inference import TrainingSettings
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.posterior_mode import posterior_mode
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem, Method
-from rga_bench.contexts.methods.networks import source_only
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.lesson import Lesson
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
+from rga_bench.contexts.methods.networks import NETWORKS, trained
 
 STEPS = 4
 
 
 @dataclass(frozen=True)
-class RefinedNetwork:
+class RefinedNetwork(Rival):
     """A network whose answers are carried on.
 
     Attributes:
@@ -23,12 +26,12 @@ class RefinedNetwork:
     """
 
     problem: LearningProblem
-    network: Calibrated
+    network: ContextEstimator
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         """Contexts after a few steps, with Laplace's spread."""
         twin, noise = TwinOnArrays(self.problem.simulator), self.problem.noise
-        start = self.network.infer(readings).value
+        start = Estimate.by(self.network, readings, self.problem.model).value
         mode = posterior_mode(
             twin.simulate, twin.jacobian, readings, np.diag(noise**2), twin.ranges, start, STEPS
         )
@@ -38,12 +41,14 @@ class RefinedNetwork:
         """What the model of the problem simulates."""
         return self.problem.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        """The same with the network recalibrated."""
-        network = self.network.recalibrated(recent, alone=alone)
+    def refined(self, lesson: Lesson) -> "RefinedNetwork":
+        """The same with the network refined."""
+        network = self.network.refined(lesson)
         return self if network is self.network else RefinedNetwork(self.problem, network)
 
 
-def refined_network(problem: LearningProblem, learn: Method = source_only) -> Calibrated:
-    """A network that has learned, and what follows it."""
-    return RefinedNetwork(problem, learn(problem))
+def refined_network(
+    lesson: Lesson, settings: TrainingSettings = NETWORKS["source only"]
+) -> RefinedNetwork:
+    """A network that has learned with some settings, and what follows it."""
+    return RefinedNetwork(LearningProblem.of(lesson), trained(settings)(lesson))

@@ -1,6 +1,6 @@
 """Contexts that drift from row to row: filters take the rows in their order."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,8 +8,10 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.inference.map.posterior_mode import Mode
 from rga.inference.map.standard_units import EDGE, standard
+from rga.model import ContextVariable
 from rga.numerics.bounded_step import bounded_step
-from rga_bench.contexts.method import Calibrated, Estimate, LearningProblem
+from rga.twin.calibration.lesson import Lesson
+from rga_bench.contexts.method import Estimate, LearningProblem, Rival
 from rga_bench.contexts.methods.posterior_modes import PosteriorModes, maximum_posterior
 
 #: rows apart at which memory is measured: sensors' noise has forgotten itself by then
@@ -25,7 +27,7 @@ Filter = Callable[[PosteriorModes, FloatArray, FloatArray], tuple[FloatArray, Fl
 
 
 @dataclass(frozen=True)
-class Filtered:
+class Filtered(Rival):
     """A filter with the memory that it learned.
 
     Attributes:
@@ -39,7 +41,7 @@ class Filtered:
     memory: FloatArray
     filter: Filter
 
-    def infer(self, readings: FloatArray) -> Estimate:
+    def estimate(self, readings: FloatArray) -> Estimate:
         """Contexts of consecutive rows, float[n, sensors], each from itself and those before."""
         middle, scale = standard(self.modes.twin.ranges)
         mean, variance = self.filter(self.modes, readings, self.memory)
@@ -49,34 +51,40 @@ class Filtered:
         """What the model simulates, float[n, sensors]."""
         return self.modes.simulate(contexts)
 
-    def recalibrated(self, recent: FloatArray, *, alone: bool = False) -> Calibrated:
-        """The same filter with the memory of the recent rows."""
-        return relearned(self.modes, recent, self.filter)
+    def refined(self, lesson: Lesson) -> "Filtered":
+        """The same filter with the memory of all measured rows of a lesson."""
+        return filtered(LearningProblem.of(lesson), self.filter)
+
+    def infer(
+        self,
+        first: int,
+        readings: FloatArray,
+        contexts: FloatArray,
+        time: FloatArray,
+        laws: Sequence[ContextVariable],
+    ) -> tuple[FloatArray, FloatArray]:
+        """Contexts from a row on, all rows before having been filtered, and their spreads."""
+        value, spread = super().infer(0, readings, contexts, time, laws)
+        return value[first:], spread[first:]
 
 
 def filtered(problem: LearningProblem, by: Filter) -> Filtered:
-    """A filter for the model, with the memory of the measured rows of a problem."""
-    return relearned(maximum_posterior(problem), problem.real, by)
-
-
-def relearned(modes: PosteriorModes, readings: FloatArray, by: Filter) -> Filtered:
-    """A filter with the memory that consecutive rows, float[n, sensors], show.
+    """A filter for the model, with the memory that the measured rows of a problem show.
 
     Where contexts remember, errors that remember as well do not average out: the variance of the
     noise counts (1 + r) / (1 - r) times, r being the memory of what modes leave of the readings,
     as far as contexts share it.
     """
-    noise = np.diag(modes.problem.noise**2)
+    modes, readings = maximum_posterior(problem), problem.real
     if len(readings) <= 2 * LAG:
-        none = np.zeros(len(modes.twin.ranges))
-        return Filtered(replace(modes, covariance=noise), none, by)
-    modes = replace(modes, covariance=noise)
+        return Filtered(modes, np.zeros(len(modes.twin.ranges)), by)
     mode = modes.mode(readings)
     memory = drift_memory(mode, modes.twin.ranges)
-    left = np.nan_to_num(readings - modes.twin.simulate(mode.value)) / modes.problem.noise
+    left = np.nan_to_num(readings - modes.twin.simulate(mode.value)) / problem.noise
     of_noise = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), 1e-12))
     shared = np.clip(of_noise, 0.0, 0.9) * np.median(memory)
-    return Filtered(replace(modes, covariance=noise * (1.0 + shared) / (1.0 - shared)), memory, by)
+    covariance = modes.covariance * (1.0 + shared) / (1.0 - shared)
+    return Filtered(replace(modes, covariance=covariance), memory, by)
 
 
 def drift_memory(mode: Mode, ranges: FloatArray) -> FloatArray:

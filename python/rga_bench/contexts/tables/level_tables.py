@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from rga_bench.contexts.floors import FLOORS, TRUE_CONTEXT
-from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import PAPERS
 from rga_bench.contexts.score import Score
+from rga_bench.contexts.setting import LEVELS
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.aggregate import (
     at_level,
@@ -107,7 +107,7 @@ def _levels(result: ContextsResult, title: str, drifts: Sequence[str]) -> TextTa
 def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> TextTable:
     headings = [
         "method", "Error, drifted: A", "B - A", "C - B", "ordinary: B - A", "C - A",
-        "recalibrations: B", "C", "C - B", "taken back: B", "recalled: C",
+        "recalibrations: B", "C", "C - B", "recalled: C",
     ]  # fmt: skip
 
     rows = []
@@ -127,7 +127,6 @@ def _worth(result: ContextsResult, name: str, drifts: Sequence[str]) -> TextTabl
             (mean(learned[0]), ".2f"),
             (mean(learned[1]), ".2f"),
             (paired(learned[1], learned[0]), "+.2f"),
-            (mean(over_drifts(b, lambda played: played.taken_back)), ".2f"),
             (mean(over_drifts(c, lambda played: played.recalled)), ".2f"),
         ]
         cells = ["" if one is None else one.text(form) for one, form in differences]

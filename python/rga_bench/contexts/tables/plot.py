@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from rga_bench.contexts.floors import FLOORS
-from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import ORACLE
+from rga_bench.contexts.setting import LEVELS
 from rga_bench.contexts.tables.aggregate import at_level, mean, over_drifts, scores
 from rga_bench.contexts.tables.level_tables import NULL
 

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from rga_bench.contexts.floors import FLOORS
-from rga_bench.contexts.levels import LEVELS
 from rga_bench.contexts.result import ContextsResult
 from rga_bench.contexts.rows import METHODS, ORACLE, PAPERS
 from rga_bench.contexts.score import Score
+from rga_bench.contexts.setting import LEVELS
 from rga_bench.contexts.stream_results import StreamResult
 from rga_bench.contexts.tables.aggregate import (
     Values,

@@ -1,0 +1,128 @@
+"""Contexts of the rows so far by an estimator, and what the twin simulates there."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga.arrays import FloatArray
+from rga.model import Model
+from rga.twin.archive import Archive
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.messages.hardware import Station
+from rga.twin.messages.queries import Q5, sha256
+from rga.twin.messages.query_bus import QueryResponse
+from rga.twin.row_buffer import RowBuffer
+from rga.twin.simulation_model import SimulationModel
+
+
+class FollowedRows:
+    """The rows so far, with the contexts that were inferred and what was simulated there.
+
+    Attributes:
+        ledger: they.
+
+    Args:
+        exchange: takes queries to the twin.
+        archive: keeps what was inferred.
+        station: what is mounted on the structure.
+        model: as it was given.
+    """
+
+    def __init__(
+        self, exchange: QueryResponse, archive: Archive, station: Station, model: Model
+    ) -> None:
+        self.ledger = RowBuffer.empty(
+            len(station.channels), len(station.measured), len(model.context)
+        )
+        self._exchange, self._archive, self._station = exchange, archive, station
+        self._names, self._laws = list(model.context), list(model.context.values())
+        self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
+
+    @property
+    def latent(self) -> list[int]:
+        """Columns of the contexts that are inferred."""
+        return [self._names.index(name) for name in self._exchange.twin.state.latent]
+
+    def clock(self, rows: slice) -> FloatArray:
+        """Clock of rows [s], on the scale of onsets."""
+        return self._station.origin + self.ledger.time[rows]
+
+    def follow(self, estimator: ContextEstimator | None, first: int, end: int) -> None:
+        """Infer the contexts of rows, and let the twin simulate them (Q5).
+
+        Args:
+            estimator: that infers; None: nothing is inferred.
+            first, end: of the rows.
+        """
+        rows = slice(first, end)
+        contexts, spread = self._prior(rows)
+        if estimator is not None:
+            contexts, spread = self._inferred(estimator, first, end)
+        self.ledger.contexts[rows], self.ledger.spread[rows] = contexts, spread
+        version = self._exchange.twin.state.version
+        answer = self._exchange.ask(self._question(first, end, version, contexts))
+        self.ledger.simulated[rows] = np.where(self._complete(rows), answer.simulated, np.nan)
+        self._archive.keep_rows(first, end, version, self.ledger)
+
+    def simulated_by(self, estimator: ContextEstimator, first: int, end: int) -> FloatArray:
+        """What the twin would simulate of rows, corrected as an estimator has found it.
+
+        Returns:
+            float[rows, channels], NaN where a measured context is missing.
+        """
+        contexts, _ = self._inferred(estimator, first, end)
+        given = self._exchange.twin.simulation()
+        corrected = SimulationModel(given.model, self._station, estimator.correction)
+        version = self._exchange.twin.state.version
+        answer = corrected.follow(self._question(first, end, version, contexts))
+        return np.where(self._complete(slice(first, end)), answer.simulated, np.nan)
+
+    def _inferred(
+        self, estimator: ContextEstimator, first: int, end: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """All contexts of rows and their standard deviations, float[rows, contexts] each."""
+        latent, rows = self.latent, slice(0, end)
+        contexts, spread = self._prior(slice(first, end))
+        contexts[:, latent], spread[:, latent] = estimator.infer(
+            first,
+            self.ledger.readings[rows],
+            self._prior(rows)[0],
+            self.clock(rows),
+            [self._laws[column] for column in latent],
+        )
+        return contexts, spread
+
+    def _question(self, first: int, end: int, version: int, contexts: FloatArray) -> Q5:
+        """What does the twin simulate at contexts of rows, float[rows, contexts]?"""
+        past = slice(0, first)
+        return Q5(
+            row=end - 1,
+            version=version,
+            first=first,
+            rows=end - first,
+            sha256=sha256(contexts),
+            time=self.clock(slice(first, end)),
+            contexts=contexts,
+            time_before=self.clock(past),
+            contexts_before=self.ledger.contexts[past],
+        )
+
+    def _prior(self, rows: slice) -> tuple[FloatArray, FloatArray]:
+        """Contexts as measured, and in the middle of their range where nothing measured them."""
+        count = len(self.ledger.time[rows])
+        contexts = np.tile(self._ranges.mean(axis=1), (count, 1))
+        spread = np.tile(np.ptp(self._ranges, axis=1) / np.sqrt(12), (count, 1))
+        measured = self._measured
+        contexts[:, measured] = self._told()[0][rows]
+        spread[:, measured] = [self._laws[column].noise or 0.0 for column in measured]
+        return contexts, spread
+
+    @property
+    def _measured(self) -> list[int]:
+        return [self._names.index(name) for name in self._station.measured]
+
+    def _told(self) -> tuple[FloatArray, NDArray[np.bool_]]:
+        return self.ledger.last_measured(self._ranges.mean(axis=1)[self._measured])
+
+    def _complete(self, rows: slice) -> NDArray[np.bool_]:
+        """Whether all measured contexts are there, bool[rows, 1]."""
+        return self._told()[1][rows, None]

@@ -1,0 +1,130 @@
+"""What was learned under conditions that come again is taken up again (level C)."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rga
+from rga.errors import InputError
+from rga.model import Model
+from rga.records import Record
+from rga.twin import Settings
+from rga.twin.history import Event
+from rga.twin.runner import Running, taken_up
+
+#: rows in which a gauge is off, and by how many times its noise
+OFF, SIZE = ((80, 120), (160, 200)), 12.0
+PLAYED: dict[str, object] = {
+    "inference": "joint",
+    "detector": "monitor",
+    "arl0": 1000.0,
+    "settle": 20,
+}
+
+
+@pytest.fixture(scope="module")
+def sound(small_stream: Callable[..., Path]) -> tuple[Model, Record, dict[str, object]]:
+    """A model, a record in which nothing happens, and settings."""
+    folder = small_stream(drifts=False, sinks=False, rows=220)
+    model = rga.load_model(folder / "model.json")
+    record = rga.load_record(folder / "record.csv", model)
+    return model, record, json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+
+
+def off(model: Model, record: Record) -> Record:
+    """The same record with a gauge that is off for a while, and again later."""
+    readings = record.readings.copy()
+    name = record.sensors[0]
+    for first, end in OFF:
+        readings[first:end, 0] += SIZE * float(model.sensors[name].noise or 0.0)
+    return replace(record, readings=readings, sha256="off")
+
+
+def played(
+    given: tuple[Model, Record, dict[str, object]], folder: Path, level: str, stop: int = 10**6
+) -> tuple[Event, ...]:
+    """Events of a run without diagnoses, up to a row."""
+    model, record, settings = given
+    chosen = Settings.model_validate(settings | PLAYED | {"level": level})
+    folder.mkdir(exist_ok=True)
+    with taken_up(model, record, folder / "twin.sqlite", chosen, 0) as running:
+        while running.stage not in ("close", "report") and running.row < stop:
+            step(running)
+        return running.history().events
+
+
+def step(running: Running) -> None:
+    if running.stage == "diagnose":
+        running.postpone("not asked here")
+    else:
+        running.step()
+
+
+def test_c_takes_up_what_b_learns_anew(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    model, record, settings = sound
+    given = model, off(model, record), settings
+    found = {level: played(given, tmp_path / level, level) for level in "BC"}
+    recalls = {
+        level: [one for one in events if one.kind == "recall"] for level, events in found.items()
+    }
+    assert recalls["B"] == []
+    learned = {
+        level: [e.kind for e in events].count("recalibration") for level, events in found.items()
+    }
+    assert learned["C"] < learned["B"]
+    healed = recalls["C"][0]
+    # The gauge is as it was in the calibration again.
+    assert OFF[0][1] <= healed.row < OFF[1][0]
+    assert "are as rows 0 to 39 were" in healed.words
+    assert "in doubt" not in healed.words
+    again = [one for one in recalls["C"] if OFF[1][0] <= one.row < OFF[1][1] + 20]
+    assert any("in doubt as it was there" in one.words for one in again)
+    assert healed.gap_after is not None
+    assert healed.gap_before is not None
+    assert healed.gap_after < healed.gap_before
+
+
+def test_nothing_is_recalled_where_nothing_happened(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    kinds = {event.kind for event in played(sound, tmp_path, "C")}
+    assert not kinds & {"recall", "recalibration"}
+
+
+def test_states_outlive_an_interruption(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    model, record, settings = sound
+    given = model, off(model, record), settings
+    whole = played(given, tmp_path / "whole", "C")
+    for stop in (90, 130, 140, 175):
+        played(given, tmp_path / "cut", "C", stop)
+    assert played(given, tmp_path / "cut", "C") == whole
+
+
+def test_a_run_by_an_estimator_of_ones_own_is_not_resumed(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    from rga.twin.calibration.joint_posterior import JointEstimator
+
+    class Own(JointEstimator):
+        kind = "own"
+
+    model, record, settings = sound
+    chosen = Settings.model_validate(settings | PLAYED)
+    place = tmp_path / "twin.sqlite"
+    with taken_up(model, record, place, chosen, 0, learn=Own.learn) as running:
+        while running.row < 60:
+            step(running)
+        words = next(one.words for one in running.events if one.kind == "calibration")
+        assert "of the caller's own" in words
+        assert np.isfinite(running.gap)
+    again = taken_up(model, record, place, chosen, 0, learn=Own.learn)
+    with pytest.raises(InputError, match="hold no estimator"), again:
+        pass
