@@ -18,7 +18,7 @@ Level = Annotated[
     str | None,
     typer.Option(
         metavar="A|B|C",
-        help="A calibrates once, B also recalibrates, C also stores novel contexts (default).",
+        help="A calibrates once, B also recalibrates, C also stores contexts and states (default).",
     ),
 ]
 SettingsFile = Annotated[

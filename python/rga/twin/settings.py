@@ -19,7 +19,7 @@ class Settings(BaseModel):
 
     Attributes:
         level: A calibrates once; B also detects out-of-sync states and recalibrates (T1); C also
-            stores novel contexts (T2).
+            stores novel contexts (T2), and takes up what it learned under conditions that recur.
         inference: of contexts: `joint`, the joint posterior of contexts and structure, by which the
             twin is corrected; `networks`, the paper's, on the model as it is; `amortised`, networks
             on the corrected twin; or `auto`, the joint posterior where it can be had and predicts
