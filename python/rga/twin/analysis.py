@@ -258,8 +258,9 @@ class RealityGapAnalysis:
         rows = standing.since, standing.row
         if rows[1] - rows[0] < RECALL:
             return False
-        before = calibration.gap(*rows)
-        state = calibration.recall(*rows, standing.share)
+        before, share = calibration.gap(*rows), standing.share
+        usual = calibration.usual_gap(standing.calibrated, rows[1] - rows[0], share)
+        state = calibration.recall(*rows, share, usual)
         if state is None:
             return False
         after = calibration.gap(*rows)

@@ -303,14 +303,16 @@ class ContextCapture:
         self.states.append(State(self.learned, version, (first, end), gaps, doubted))
         self.state = len(self.states) - 1
 
-    def recall(self, first: int, end: int, share: float) -> State | None:
+    def recall(self, first: int, end: int, share: float, usual: float) -> State | None:
         """Take up the state that was kept under conditions like those of rows, if there is one.
 
-        It leaves a gap of them as of its own rows, and a smaller one than any other does.
+        It leaves a gap of them as of its own rows, as small as in the first calibration, and
+        smaller than any other state does.
 
         Args:
             first, end: of the rows.
             share: by which the model was off on the rows of the first calibration [-].
+            usual: what the gap of so many rows of that calibration stays below [-].
         """
         version, best, least = self._exchange.twin.state.version, None, self.gap(first, end, share)
         for number, state in enumerate(self.states):
@@ -320,7 +322,7 @@ class ContextCapture:
             gaps = (self.ledger.readings[first:end] - simulated) ** 2
             left = against_expected(gaps, simulated, self.noise, share)
             bound = state.bound(end - first, self._settings.usual, self._seed)
-            if left < least and left <= self.optimism * bound:
+            if left < least and left <= min(usual, self.optimism * bound):
                 best, least = number, left
         if best is None:
             return None
