@@ -245,6 +245,17 @@ def test_derivatives_do_not_leave_the_range(two_bars: dict[str, Any]) -> None:
         simulator.jacobian(none)
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_support_that_is_still_rigid_has_derivatives(two_bars: dict[str, Any]) -> None:
+    rows = {"time": np.array([1.0, 2.0]), "temperature": 10.0, "load": np.array([1e4, 2e4])}
+    sound = rga.Simulator(read_model(two_bars, "test")).jacobian(rows)
+    two_bars["effects"]["later"] = {
+        "kind": "support_flexibility", "support": "E", "dof": "uz", "stiffness": 1e8, "onset": 9.0,
+    }  # fmt: skip
+    found = rga.Simulator(read_model(two_bars, "test")).jacobian(rows)
+    np.testing.assert_allclose(found, sound, rtol=1e-9, atol=1e-12 * np.abs(sound).max())
+
+
 @pytest.mark.parametrize("wrong", [None, [1.0], {"load": []}, {"load": "much"}])
 def test_contexts_that_are_none_are_refused(two_bars: dict[str, Any], wrong: Any) -> None:
     simulator = rga.Simulator(read_model(two_bars, "test"))

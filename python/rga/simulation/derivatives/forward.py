@@ -281,7 +281,8 @@ def _structure_along(
             ahead, behind = (effect.values(one, rows) for one in tables)
             for key in ahead:
                 column, ends = columns[of, key], np.stack([ahead[key], behind[key]])
-                along[:, column, contexts.index(name)] = (ends[0] - ends[1]) / (up + down)
+                moved = _difference(ahead[key], behind[key])
+                along[:, column, contexts.index(name)] = moved / (up + down)
                 low[column] = min(low[column], ends.min())
                 high[column] = max(high[column], ends.max())
     return along, low, high
@@ -297,4 +298,11 @@ def _rates(entries: FloatArray, sides: Sides) -> FloatArray:
     rows, contexts = sides.ahead.shape
     apart = entries.reshape(contexts, 2, rows, entries.shape[1])
     far = (sides.ahead + sides.behind).T[:, :, None]
-    return np.asarray(((apart[:, 0] - apart[:, 1]) / far).transpose(1, 2, 0))
+    moved = _difference(apart[:, 0], apart[:, 1])
+    return np.asarray((moved / far).transpose(1, 2, 0))
+
+
+def _difference(ahead: FloatArray, behind: FloatArray) -> FloatArray:
+    """Ahead less behind; a stiffness may be infinite on both sides."""
+    zero = np.zeros_like(ahead)
+    return np.asarray(np.subtract(ahead, behind, out=zero, where=ahead != behind))
