@@ -28,8 +28,6 @@ from rga.twin.sync.policy import Policy
 Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version
 WORSE = 1.25
-#: rows since a change by which a state that was kept is tried, at the least
-RECALL = 10
 #: of the gap to expect, that may stay after a recalibration whatever the calibration left [-]
 LEAST_ALLOWED = 0.1
 
@@ -162,14 +160,14 @@ class RealityGapAnalysis:
             words += f"; the interval is now {interval} rows"
         standing.interval = interval
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
-        if not doubted:
-            calibration.sound = calibration.learned
-            if settings.level == "C" and not open_alarm:
-                self._integrate(*recent)
-        if left <= usual and not open_alarm:
-            self._keep_state(*recent, doubted)
-        self._begin_again(None)
         standing.doubted = standing.doubted or doubted
+        if not standing.doubted:
+            calibration.sound = calibration.learned
+        if not doubted and settings.level == "C" and not open_alarm:
+            self._integrate(*recent)
+        if left <= usual and not open_alarm:
+            self._keep_state(*recent)
+        self._begin_again(None)
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
         else:
@@ -248,6 +246,7 @@ class RealityGapAnalysis:
         if alarm is None or self.standing.alarm is not None:
             return
         self.standing.alarm, self.standing.since = alarm.row, alarm.since
+        self._calibration.doubt_states(alarm.since)
         self._event("alarm", alarm.row, alarm.words, alarm.sensors)
 
     def _recalled(self) -> bool:
@@ -256,24 +255,23 @@ class RealityGapAnalysis:
         if standing.since is None or not self._policy.alarms:
             return False
         rows = standing.since, standing.row
-        if rows[1] - rows[0] < RECALL:
-            return False
-        before, share = calibration.gap(*rows), standing.share
-        usual = calibration.usual_gap(standing.calibrated, rows[1] - rows[0], share)
-        state = calibration.recall(*rows, share, usual)
+        before = calibration.gap(*rows)
+        state = calibration.recall(*rows, standing.calibrated, standing.share)
         if state is None:
             return False
-        after = calibration.gap(*rows)
-        words = state.taken_up(*rows)
+        after, words = calibration.gap(*rows), state.taken_up(*rows)
         self._event("recall", standing.row - 1, words, before=before, after=after)
         self._begin_again(None)
+        if state.doubted and self._may_ask():
+            standing.diagnosed = None  # it is asked at once
+        standing.doubted = standing.doubted or state.doubted
         standing.alarm = standing.since = None
-        standing.doubted = state.doubted
         return True
 
-    def _keep_state(self, first: int, end: int, doubted: bool = False) -> None:
+    def _keep_state(self, first: int, end: int) -> None:
+        standing = self.standing
         if self._settings.level == "C":
-            self._calibration.keep_state(first, end, self.standing.share, doubted)
+            self._calibration.keep_state(first, end, standing.share, standing.doubted)
 
     def _integrate(self, first: int, end: int) -> None:
         state, ledger = self._exchange.twin.state, self._calibration.ledger

@@ -8,6 +8,20 @@ from rga.arrays import FloatArray
 
 #: share of the neighbours' distances in the design phase that counts as known ground
 KNOWN_GROUND = 0.95
+#: share of their spread by which contexts may lie outside all others and be like them
+BESIDE = 0.1
+
+
+def beside(contexts: FloatArray, others: FloatArray) -> NDArray[np.bool_]:
+    """Which rows have a context that none of others had, bool[rows].
+
+    Args:
+        contexts: of the rows, float[rows, contexts].
+        others: float[others, contexts], one row or more.
+    """
+    low, high = others.min(axis=0), others.max(axis=0)
+    reach = BESIDE * (high - low)
+    return np.asarray(((contexts < low - reach) | (contexts > high + reach)).any(axis=1))
 
 
 def spacing(contexts: FloatArray, width: FloatArray) -> float:

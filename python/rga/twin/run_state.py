@@ -24,6 +24,7 @@ class Standing(BaseModel):
         synchronised: rows when the twin was last calibrated, recalibrated or given a version.
         interval: rows from there to the next recalibration by the clock.
         draws: seeds drawn so far.
+        own: whether an estimator of the caller's own infers.
         state: number of the kept state that is in force; None: none is.
         inference: the way to infer contexts; "auto" until one is chosen.
         learned_under: version of the model that the estimators are about.
@@ -44,6 +45,7 @@ class Standing(BaseModel):
     synchronised: int = 0
     interval: int = 0
     draws: int = 0
+    own: bool = False
     state: int | None = None
     inference: Inference = "auto"
     learned_under: int = 0

@@ -23,7 +23,7 @@ from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
 from rga.twin.messages.middleware import InProcess
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.repository import Identity, Repository, Run
+from rga.twin.repository import Identity, Repository, Run, RunView
 from rga.twin.restore import history_of, ledger_of, replay, standing_of
 from rga.twin.settings import Settings
 from rga.twin.versions import beyond, written
@@ -112,8 +112,9 @@ class Running:
         self._closing: Findings | None = None
         self.resumed_at: int | None = None
         self._kept: dict[str, ContextEstimator | None] = {}
-        self._states = 0
+        self._states: list[State] = []
         self._stale = False
+        self._own = learn is not None
         self._recall()
 
     @property
@@ -268,7 +269,7 @@ class Running:
         calibration = self.calibration
         standing.draws, standing.inference = calibration.draws, calibration.inference
         standing.optimism, standing.state = calibration.optimism, calibration.state
-        standing.learned_under = self._twin.state.version
+        standing.learned_under, standing.own = self._twin.state.version, self._own
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
         self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
         for name in ESTIMATORS:
@@ -276,9 +277,10 @@ class Running:
             if estimator is not None and estimator is not self._kept.get(name):
                 self._archive.keep(name, stored(estimator), row)
                 self._kept[name] = estimator
-        for number, state in enumerate(calibration.states[self._states :], self._states):
-            self._archive.keep(STATE.format(number), state.to_bytes(), row)
-        self._states = len(calibration.states)
+        for number, state in enumerate(calibration.states):
+            if state not in self._states[number : number + 1]:
+                self._archive.keep(STATE.format(number), state.to_bytes(), row)
+        self._states = calibration.states.copy()
 
     def _recall(self) -> None:
         """Go on where the repository says that the run stands."""
@@ -286,6 +288,7 @@ class Running:
         if view.steps == 0:
             return
         self.analysis.standing = standing_of(view)
+        self._check_learner()
         self.resumed_at = self.row
         self._twin.state = replay(view, station.channels)
         synchrony = view.kept("synchrony")
@@ -294,17 +297,33 @@ class Running:
         ledger = ledger_of(
             view, len(station.channels), len(station.measured), len(self._model.context)
         )
-        if self.analysis.standing.learned_under != self._twin.state.version:
-            self._stale = True  # another version was put in force by hand
-            self._kept = dict.fromkeys(ESTIMATORS)
+        self._kept = dict.fromkeys(ESTIMATORS)
+        # Another version may have been put in force by hand.
+        self._stale = self.analysis.standing.learned_under != self._twin.state.version
+        if not self._own:
+            self._read_estimators(view)
+        learned, sound = (self._kept[name] for name in ESTIMATORS)
+        self.calibration.take_up(
+            ledger, self.analysis.standing, learned, sound, self._states.copy()
+        )
+
+    def _read_estimators(self, view: RunView) -> None:
+        """Those that infer, and those of the states that were kept."""
         for name in () if self._stale else ESTIMATORS:
             content = view.kept(name)
             self._kept[name] = None if content is None else read(content, self._twin.simulation())
-        kept = iter(lambda: view.kept(STATE.format(self._states)), None)
-        states = []
-        for content in kept:
-            states.append(State.from_bytes(content, self._twin.simulation))
-            self._states += 1
-        self.calibration.take_up(
-            ledger, self.analysis.standing, self._kept["learned"], self._kept["sound"], states
-        )
+        while (content := view.kept(STATE.format(len(self._states)))) is not None:
+            self._states.append(State.from_bytes(content, self._twin.simulation))
+        number = self.analysis.standing.state
+        if number is not None and not self._stale:
+            self._kept["learned"] = self._states[number].estimator
+
+    def _check_learner(self) -> None:
+        """A run is resumed by what learned in it, which the repository keeps of rga's own alone."""
+        own, place = self.analysis.standing.own, f"model {self._model.name!r}"
+        if own != self._own:
+            whose = "the caller's own estimator" if own else "an estimator of rga"
+            raise InputError(f"{whose} learned in this run", place, "begin a new run")
+        if own and self.stage != "done":
+            problem = "a run by the caller's own estimator cannot be resumed"
+            raise InputError(problem, place, "begin a new run")

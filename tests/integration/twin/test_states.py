@@ -13,8 +13,11 @@ from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record
 from rga.twin import Settings
+from rga.twin.calibration.states import State
 from rga.twin.history import Event
+from rga.twin.messages.hardware import HardwareInterface
 from rga.twin.runner import Running, taken_up
+from rga.twin.simulation_model import SimulationModel
 
 #: rows in which a gauge is off, and by how many times its noise
 OFF, SIZE = ((80, 120), (160, 200)), 12.0
@@ -35,11 +38,11 @@ def sound(small_stream: Callable[..., Path]) -> tuple[Model, Record, dict[str, o
     return model, record, json.loads((folder / "settings.json").read_text(encoding="utf-8"))
 
 
-def off(model: Model, record: Record) -> Record:
+def off(model: Model, record: Record, rows: tuple[tuple[int, int], ...] = OFF) -> Record:
     """The same record with a gauge that is off for a while, and again later."""
     readings = record.readings.copy()
     name = record.sensors[0]
-    for first, end in OFF:
+    for first, end in rows:
         readings[first:end, 0] += SIZE * float(model.sensors[name].noise or 0.0)
     return replace(record, readings=readings, sha256="off")
 
@@ -126,5 +129,75 @@ def test_a_run_by_an_estimator_of_ones_own_is_not_resumed(
         assert "of the caller's own" in words
         assert np.isfinite(running.gap)
     again = taken_up(model, record, place, chosen, 0, learn=Own.learn)
-    with pytest.raises(InputError, match="hold no estimator"), again:
+    with pytest.raises(InputError, match="cannot be resumed"), again:
         pass
+    with (
+        pytest.raises(InputError, match="the caller's own"),
+        taken_up(model, record, place, chosen, 0),
+    ):
+        pass
+
+
+def test_what_is_learned_in_doubt_is_kept_in_doubt(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    model, record, settings = sound
+    clock = settings | PLAYED | {"level": "C", "policy": "hybrid", "interval": 30}
+    begun = 80
+    with taken_up(
+        model,
+        off(model, record, ((begun, 220),)),
+        tmp_path / "twin.sqlite",
+        Settings.model_validate(clock),
+        0,
+    ) as running:
+        while running.stage not in ("close", "report"):
+            step(running)
+        states, standing = running.calibration.states, running.analysis.standing
+        # A recalibration by the clock that explains faulty rows takes no doubt away.
+        assert standing.doubted
+        assert {one.doubted for one in states if one.rows[1] > begun} == {True}
+        assert not states[0].doubted
+        learned_of = [one.rows for one in states if one.estimator is running.calibration.sound]
+        assert all(end <= begun for _, end in learned_of)
+
+
+def test_a_fault_that_begins_as_another_ends_leaves_the_doubt(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    model, record, settings = sound
+    readings, sensors = record.readings.copy(), list(record.sensors)
+    for name, rows, size in (
+        (sensors[0], slice(80, 160), SIZE),
+        (sensors[5], slice(160, None), 3.5),
+    ):
+        readings[rows, sensors.index(name)] += size * float(model.sensors[name].noise or 0.0)
+    given = model, replace(record, readings=readings, sha256="two"), settings
+    asked = [one.row for one in played(given, tmp_path, "C") if one.kind == "diagnosis"]
+    assert asked
+    assert max(asked) > 160
+
+
+def test_a_state_of_networks_is_what_it_was(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+) -> None:
+    model, record, settings = sound
+    chosen = settings | PLAYED | {"level": "C", "inference": "amortised"}
+    given_model = SimulationModel(model, HardwareInterface(record, model).station)
+    with taken_up(
+        model, off(model, record), tmp_path / "twin.sqlite", Settings.model_validate(chosen), 0
+    ) as running:
+        while running.row < 130:
+            step(running)
+        calibration = running.calibration
+        ledger, states = calibration.ledger, calibration.states
+        assert len(states) > 1
+        laws = [list(model.context.values())[column] for column in calibration.latent]
+        given = 0, ledger.readings, ledger.contexts, ledger.time, laws
+        for state in states:
+            again = State.from_bytes(state.to_bytes(), lambda version: given_model)
+            assert (again.rows, again.doubted) == (state.rows, state.doubted)
+            for one, other in zip(
+                state.estimator.infer(*given), again.estimator.infer(*given), strict=True
+            ):
+                np.testing.assert_array_equal(one, other)

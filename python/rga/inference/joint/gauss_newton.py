@@ -12,6 +12,7 @@ from rga.inference.joint.derivatives import Derivatives, derivatives
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.population import Population
 from rga.inference.joint.sensor_errors import CorrectedTwin
+from rga.inference.joint.sparse_changes import sparse_changes
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.joint.volume import Curvature
 from rga.inference.map.initial_guess import QuadraticGuess
@@ -22,11 +23,8 @@ from rga.simulation import Simulator
 
 #: prior spread of the gain of a sensor [-], and of its offset [standard deviations of its noise]
 GAIN, OFFSET = 0.01, 0.3
-#: degrees of freedom of what changes: few parameters do, and by far more than the others
+#: degrees of freedom of what sensors lie by: few of them do, and by far more than the others
 TAILS = 3.0
-#: what parameters have changed by since an earlier result, in units of their priors; what is
-#: thought of it at first, of unknowns and of sensors
-CHANGE, FIRST = 0.03, (0.5, 10.0)
 #: shares of a step that are tried; gain in misfit below which a step is not worth another
 SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 0.5
 #: readings that a sensor's own noise is held against that of all by, and the first guess [spreads]
@@ -36,20 +34,22 @@ HELD_BY, GUESS = 30.0, 5.0
 class JointPrior(NamedTuple):
     """What is known of the parameters before the rows, in units of their standard deviations.
 
-    They are normal around something that has changed, each by Student's distribution.
+    They are normal around something that may have changed.
 
     Attributes:
         mean: unknowns, then gains, then offsets, float[parameters], in their own units.
-        covariance: float[parameters, parameters].
-        change: scale of what each has changed by, float[parameters].
-        first: what is thought of it at first.
-        earlier: whether it is an earlier result.
+        covariance: were the rows that it comes from independent, float[parameters, parameters].
+        pulled: what the model's error at each sensor has pulled them by, float[sensors or more,
+            parameters].
+        change: scale of what each differs by beside that, by Student's distribution,
+            float[parameters].
+        earlier: whether it is an earlier result, since which few of them may have changed.
     """
 
     mean: FloatArray
     covariance: FloatArray
+    pulled: FloatArray
     change: FloatArray
-    first: FloatArray
     earlier: bool
 
     @classmethod
@@ -57,13 +57,13 @@ class JointPrior(NamedTuple):
         """Unknowns as their priors say; sensors are sound, but for some."""
         own = np.repeat([1.0, 0.0], [len(unknowns.centre), 2 * sensors])
         mean = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
-        return cls(mean, np.diag(own), 1.0 - own, 1.0 - own, earlier=False)
+        none = np.zeros((sensors, len(mean)))
+        return cls(mean, np.diag(own), none, 1.0 - own, earlier=False)
 
     @classmethod
-    def later(cls, mean: FloatArray, covariance: FloatArray, unknowns: int) -> "JointPrior":
-        """What was found earlier, with its covariance."""
-        first = np.repeat(FIRST, [unknowns, len(mean) - unknowns])
-        return cls(mean, covariance, np.full(len(mean), CHANGE), first, earlier=True)
+    def later(cls, mean: FloatArray, covariance: FloatArray, pulled: FloatArray) -> "JointPrior":
+        """What was found earlier."""
+        return cls(mean, covariance, pulled, np.zeros(len(mean)), earlier=True)
 
 
 def parameter_units(unknowns: Unknowns, noise: FloatArray) -> FloatArray:
@@ -104,7 +104,8 @@ class Search:
         variance: of what readings differ by from the twin, float[sensors].
         slopes: of readings by parameters in their units, at the last solution.
         covariance: of parameters in their units, were the rows of a sensor independent.
-        pull: what the sensors disagree on about them.
+        pulled: what the model's error at each sensor pulls them by, float[sensors or more,
+            parameters].
     """
 
     def __init__(
@@ -130,9 +131,10 @@ class Search:
         self.told = (self.contexts - self.middle) / self.scale, measured.noise / self.scale
         self.free = (np.arange(len(self.contexts)) < self.many)[:, None]
         self.count = len(unknowns.centre)
+        self.kinds = np.repeat([0, 1, 2], [self.count, len(noise), len(noise)])
         self.unit = parameter_units(unknowns, noise)
         self.prior, self.centre, self.tails = prior, prior.mean, TAILS
-        self._suppose(prior.first**2)
+        self._suppose(prior.change**2)
         self.value, self.variance = self.centre.copy(), (GUESS * noise) ** 2
         none: Derivatives | None = None
         self._known = self.contexts, self.value, none
@@ -270,11 +272,16 @@ class Search:
         change = covariance @ right
 
         self._see_freedom(width)
+        if self.prior.earlier:
+            self._look_for_changes(change[:count])
         self.slopes = slopes * np.sqrt(self.variance)[:, None]
-        # What is wrong with a model stays wrong from row to row: each sensor is one cluster of rows
-        # (Liang and Zeger, Biometrika 73, 1986).
-        pulls = np.einsum("nsp,ns->sp", slopes - near @ through[:, :, :count], off)
-        self.pull = pulls.T @ pulls
+        # What is wrong with a model stays wrong from row to row, and from those of the prior on:
+        # each sensor is one cluster of rows (Liang and Zeger, Biometrika 73, 1986).
+        pulls = self.prior.pulled @ self.precision
+        pulls[: len(self.noise)] += np.einsum(
+            "nsp,ns->sp", slopes - near @ through[:, :, :count], off
+        )
+        self.pulled = pulls @ self.covariance
         return change[:count], alone - through @ change, change[count:]
 
     @property
@@ -342,18 +349,28 @@ class Search:
         ratio = (own + HELD_BY * all_) / (counts + HELD_BY)
         self.variance = self.noise**2 * np.maximum(ratio, 1.0)
 
+    def _look_for_changes(self, change: FloatArray) -> None:
+        """Which parameters have changed since they were found earlier, at the solution at hand."""
+        whole = np.linalg.inv(self.covariance)
+        information, at = whole - self.precision, self._standard(self.value)
+        # What was found earlier is off by the model's error as well.
+        left_open = self.prior.covariance + self.prior.pulled.T @ self.prior.pulled
+        self.evident = sparse_changes(information, whole @ (at + change), left_open, self.kinds)
+
     def _trust(self) -> None:
-        """What parameters have changed by, by Student's distribution.
+        """What sensors lie by, by Student's distribution, and what has changed.
 
         Expectation and maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39, 1977).
         """
-        if np.isinf(self.tails):
-            return
-        own, scale = np.diag(self.prior.covariance), self.prior.change
-        share = self.changed / np.where(self.changed > 0, self.changed + own, 1.0)
-        moved = self._standard(self.value) ** 2 + np.diag(self.covariance)
-        square = share**2 * moved + share * own
-        self._suppose((self.tails * scale**2 + square) / (self.tails + 1.0))
+        if self.prior.earlier:
+            self._suppose(self.evident)
+        elif np.isfinite(self.tails):
+            scale = self.prior.change
+            own = np.diag(self.prior.covariance)
+            share = self.changed / np.where(self.changed > 0, self.changed + own, 1.0)
+            moved = self._standard(self.value) ** 2 + np.diag(self.covariance)
+            square = share**2 * moved + share * own
+            self._suppose((self.tails * scale**2 + square) / (self.tails + 1.0))
 
     def _suppose(self, changed: FloatArray) -> None:
         """That parameters have changed by so much: variances in units of their priors."""

@@ -47,8 +47,10 @@ class Joint:
         values: of them, float[unknowns].
         gains: of the sensors, float[sensors].
         offsets: of the sensors, in their units, float[sensors].
-        sure: covariance of unknowns, gains and offsets in units of their priors,
-            float[parameters, parameters].
+        independent: covariance of unknowns, gains and offsets in units of their priors, were all
+            rows independent, float[parameters, parameters].
+        pulled: what the model's error at each sensor pulls them by, in the same units; behind the
+            sensors, at those that were there earlier, float[sensors or more, parameters].
         noise: standard deviation of the noise of each sensor, as it was given, float[sensors].
         variance: of what readings still differ by from the twin, float[sensors].
         uncertainty: covariance of readings because unknowns are not sure, float[sensors, sensors].
@@ -60,7 +62,8 @@ class Joint:
     values: FloatArray
     gains: FloatArray
     offsets: FloatArray
-    sure: FloatArray
+    independent: FloatArray
+    pulled: FloatArray
     noise: FloatArray
     variance: FloatArray
     uncertainty: FloatArray
@@ -109,28 +112,41 @@ class Joint:
         return row_spread(self.unknowns, parameters, root, variance, contexts, observed, measured)
 
     @property
+    def sure(self) -> FloatArray:
+        """Covariance of parameters in units of their priors, float[parameters, parameters]."""
+        return np.asarray(self.independent + self.pulled.T @ self.pulled)
+
+    @property
     def units(self) -> FloatArray:
         """What `sure` counts unknowns, gains and offsets in, float[unknowns + 2 sensors]."""
         return parameter_units(self.unknowns, self.noise)
 
-    def about(self, unknowns: Unknowns) -> tuple[FloatArray, FloatArray]:
-        """Parameters and their covariance, as of a model with other effects or sensors.
+    def about(self, unknowns: Unknowns) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Parameters, `independent` and `pulled`, as of a model with other effects or sensors.
 
         What was not looked for is as its prior says.
 
         Returns:
-            float[parameters] and, in units of the priors, float[parameters, parameters].
+            float[parameters] and, in units of the priors, float[parameters, parameters] and
+            float[sensors or more, parameters].
         """
-        mine, theirs = self.labels, _labels(unknowns)
-        place = {label: number for number, label in enumerate(mine)}
-        shared = np.array([number for number, label in enumerate(theirs) if label in place], int)
-        taken = [place[theirs[number]] for number in shared]
-        sensors = len(unknowns.model.sensors)
-        value = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
-        sure = np.eye(len(value))
+        place = {label: number for number, label in enumerate(self.labels)}
+        labels, sensors = _labels(unknowns), list(unknowns.model.sensors)
+        shared = np.array([number for number, label in enumerate(labels) if label in place], int)
+        taken = [place[labels[number]] for number in shared]
+        value = np.concatenate([unknowns.centre, np.ones(len(sensors)), np.zeros(len(sensors))])
+        independent = np.eye(len(value))
         value[shared] = self.parameters[taken]
-        sure[np.ix_(shared, shared)] = self.sure[np.ix_(taken, taken)]
-        return value, sure
+        independent[np.ix_(shared, shared)] = self.independent[np.ix_(taken, taken)]
+        mine = list(self.unknowns.model.sensors)
+        gone = [number for number in range(len(self.pulled)) if mine[number : number + 1] == []]
+        gone += [number for number, name in enumerate(mine) if name not in sensors]
+        pulled = np.zeros((len(sensors) + len(gone), len(value)))
+        for row, name in enumerate(sensors):
+            if name in mine:
+                pulled[row, shared] = self.pulled[mine.index(name), taken]
+        pulled[len(sensors) :, shared] = self.pulled[np.ix_(gone, taken)]
+        return value, independent, pulled
 
     @property
     def labels(self) -> list[tuple[str, str]]:
@@ -143,12 +159,18 @@ class Joint:
 
     def carried(self, unknowns: Unknowns) -> "Joint":
         """The same about a model of the same sensors with other effects, not found anew."""
-        value, sure = self.about(unknowns)
+        value, independent, pulled = self.about(unknowns)
         values, gains, offsets = np.split(
             value, [len(unknowns.centre), len(unknowns.centre) + len(self.gains)]
         )
         return replace(
-            self, unknowns=unknowns, values=values, gains=gains, offsets=offsets, sure=sure
+            self,
+            unknowns=unknowns,
+            values=values,
+            gains=gains,
+            offsets=offsets,
+            independent=independent,
+            pulled=pulled,
         )
 
     @property
@@ -263,7 +285,7 @@ def infer_jointly(
         check_plausible(unknowns, table, noise)
     known = JointPrior.fresh(unknowns, len(noise))
     if prior is not None:
-        known = JointPrior.later(*prior.about(unknowns), len(unknowns.centre))
+        known = JointPrior.later(*prior.about(unknowns))
     read = instruments(measured, len(readings), unknowns.model)
     search = Search(unknowns, readings, noise, load_tests, known, read)
     rounds, steps = (ROUNDS, STEPS) if prior is None else LATER
@@ -315,7 +337,7 @@ def _told(search: Search, source: FloatArray) -> Joint:
     """What was found, with how sure it is."""
     search.solve()
     values, gains, offsets = search.split(search.value)
-    sure = search.covariance + search.covariance @ search.pull @ search.covariance
+    sure = search.covariance + search.pulled.T @ search.pulled
     moved = search.slopes @ np.linalg.cholesky(sure)
     moved = moved.transpose(1, 0, 2).reshape(len(gains), -1)
     return Joint(
@@ -323,7 +345,8 @@ def _told(search: Search, source: FloatArray) -> Joint:
         values=values,
         gains=gains,
         offsets=offsets,
-        sure=sure,
+        independent=search.covariance,
+        pulled=search.pulled,
         noise=search.noise,
         variance=search.variance,
         uncertainty=moved @ moved.T / max(len(search.slopes), 1),

@@ -82,4 +82,5 @@ class AmortisedEstimator:
         head, _, both = content.partition(b"\n")
         end = json.loads(head)["joint"]
         joint = JointEstimator.from_bytes(both[:end], simulation)
-        return cls(joint, NetworkEstimator.from_bytes(both[end:], simulation))
+        corrected = SimulationModel(simulation.model, simulation.station, joint.correction)
+        return cls(joint, NetworkEstimator.from_bytes(both[end:], corrected))

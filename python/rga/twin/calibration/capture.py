@@ -15,6 +15,8 @@ from rga.twin.calibration.choice import choose
 from rga.twin.calibration.estimator import ContextEstimator, Learn
 from rga.twin.calibration.expectation import (
     against_expected,
+    channels_against_expected,
+    of_rows,
     rows_against_expected,
     scatter_share,
     usual_bound,
@@ -27,15 +29,16 @@ from rga.twin.calibration.states import State
 from rga.twin.messages.hardware import Packet, Station
 from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Box
 from rga.twin.messages.query_bus import QueryResponse
+from rga.twin.novelty import beside
 from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
 from rga.twin.settings import Inference, Settings
 
 Progress = Callable[[str, float], None]
+#: rows by which a state that was kept is tried, at the least
+RECALL = 10
 #: a context is hardly seen where its interval is this share of what its range alone would give
 HARDLY = 0.7
-#: share of their spread by which contexts may lie outside all earlier ones and be like them
-BESIDE = 0.1
 
 
 class ContextCapture:
@@ -50,7 +53,6 @@ class ContextCapture:
         optimism: gap of rows that the calibration did not learn from, over that of its own [-].
         draws: seeds drawn so far.
         states: that are kept for when their conditions recur.
-        state: number of the one of them that is in force; None: what infers was not kept.
         ranges: smallest and largest of each context, float[contexts, 2].
         noise: standard deviation of each channel's noise, float[channels].
 
@@ -83,7 +85,6 @@ class ContextCapture:
         self.optimism = 1.0
         self.draws = 0
         self.states: list[State] = []
-        self.state: int | None = None
         self._own = own
         self._exchange, self._station = exchange, station
         self._settings, self._seed, self._progress = settings, seed, progress
@@ -109,9 +110,15 @@ class ContextCapture:
         self.rows.ledger, self.draws = ledger, standing.draws
         self.inference, self.optimism = standing.inference, standing.optimism
         self.learned, self.sound = learned, sound
-        self.states, self.state = states, standing.state
+        self.states = states
         if standing.calibrated:
             self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
+
+    @property
+    def state(self) -> int | None:
+        """Number of the kept state that is in force; None: what infers was not kept."""
+        own = [number for number, one in enumerate(self.states) if one.estimator is self.learned]
+        return own[0] if own else None
 
     @property
     def ledger(self) -> RowBuffer:
@@ -137,6 +144,10 @@ class ContextCapture:
         return against_expected(
             self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise, share
         )
+
+    def known_rows(self, first: int, end: int) -> int:
+        """How many of some rows have a gap."""
+        return int(np.isfinite(self.ledger.gaps[first:end]).any(axis=1).sum())
 
     def usual_gap(self, calibrated: int, rows: int, share: float) -> float:
         """What the gap of so many rows stays below, were they as those of the calibration [-].
@@ -180,10 +191,7 @@ class ContextCapture:
         )
         if not len(before) or not self.latent:
             return False
-        low, high = before.min(axis=0), before.max(axis=0)
-        beside = BESIDE * (high - low)
-        out = ((rows < low - beside) | (rows > high + beside)).any(axis=1)
-        return bool(out.mean() > 0.5)
+        return bool(np.mean(beside(rows, before)) > 0.5)
 
     def changes(self, before: ContextEstimator | None) -> tuple[str, ...]:
         """What structure and sensors have changed by most since an estimator, in words."""
@@ -287,50 +295,68 @@ class ContextCapture:
         self._take(learned)
         self.sound = sound
 
-    def keep_state(self, first: int, end: int, share: float, doubted: bool = False) -> None:
-        """Keep what infers now, for rows like these.
+    def keep_state(self, first: int, end: int, share: float, doubted: bool) -> None:
+        """Keep what infers now, for rows like these, unless it is kept already.
 
         Args:
             first, end: of the rows.
             share: by which the model was off on the rows of the first calibration [-].
             doubted: the model is in doubt under their conditions.
         """
-        if self.learned is None or first >= end:
-            return
         rows, ledger = slice(first, end), self.ledger
-        gaps = rows_against_expected(ledger.gaps[rows], ledger.simulated[rows], self.noise, share)
+        if self.learned is None or self.state is not None or not self.known_rows(first, end):
+            return
         version = self._exchange.twin.state.version
-        self.states.append(State(self.learned, version, (first, end), gaps, doubted))
-        self.state = len(self.states) - 1
+        gaps = channels_against_expected(
+            ledger.gaps[rows], ledger.simulated[rows], self.noise, share
+        )
+        contexts = ledger.contexts[rows].copy()
+        self.states.append(State(self.learned, version, (first, end), contexts, gaps, doubted))
 
-    def recall(self, first: int, end: int, share: float, usual: float) -> State | None:
+    def doubt_states(self, since: int) -> None:
+        """States that stand for rows from one on may hide what an alarm is about.
+
+        Args:
+            since: first row that the alarm is about.
+        """
+        self.states = [
+            replace(one, doubted=True) if one.rows[1] > since else one for one in self.states
+        ]
+
+    def recall(self, first: int, end: int, calibrated: int, share: float) -> State | None:
         """Take up the state that was kept under conditions like those of rows, if there is one.
 
-        It leaves a gap of them as of its own rows, as small as in the first calibration, and
-        smaller than any other state does.
+        It explains these rows as its own, leaves a gap as small as in the first calibration, and a
+        smaller one than any other state does. None is taken up where that in force explains them.
 
         Args:
             first, end: of the rows.
-            share: by which the model was off on the rows of the first calibration [-].
-            usual: what the gap of so many rows of that calibration stays below [-].
+            calibrated: rows of the first calibration.
+            share: by which the model was off on these [-].
         """
-        version, best, least = self._exchange.twin.state.version, None, self.gap(first, end, share)
-        for number, state in enumerate(self.states):
-            if number == self.state or state.version != version:
-                continue
-            simulated = self.rows.simulated_by(state.estimator, first, end)
-            gaps = (self.ledger.readings[first:end] - simulated) ** 2
-            left = against_expected(gaps, simulated, self.noise, share)
-            bound = state.bound(end - first, self._settings.usual, self._seed)
-            if left < least and left <= min(usual, self.optimism * bound):
-                best, least = number, left
-        if best is None:
+        known = self.known_rows(first, end)
+        if known < RECALL:
             return None
-        found = self.states[best].estimator
-        self.restore(found, self.sound if self.states[best].doubted else found)
-        self.state = best
-        self.follow(first, end)
-        return self.states[best]
+        usual = self.usual_gap(calibrated, known, share)
+        version, best, least = self._exchange.twin.state.version, None, self.gap(first, end, share)
+        for state in self.states:
+            if state.version != version:
+                continue
+            contexts, simulated = self.rows.under(state.estimator, first, end)
+            squared = (self.ledger.readings[first:end] - simulated) ** 2
+            gaps = channels_against_expected(squared, simulated, self.noise, share)
+            settings = self._settings
+            explained = state.explains(contexts, gaps, self.optimism, settings.usual, self._seed)
+            if explained and state.estimator is self.learned:
+                return None
+            by_row = of_rows(gaps)
+            left = float(np.median(by_row[np.isfinite(by_row)])) if explained else np.inf
+            if left < least and left <= usual:
+                best, least = state, left
+        if best is not None:
+            self.restore(best.estimator, self.sound if best.doubted else best.estimator)
+            self.follow(first, end)
+        return best
 
     def _lesson(self, rows: Sequence[tuple[int, int]]) -> Lesson:
         """All simulations of the version in force, and blocks of measured rows."""
@@ -348,7 +374,7 @@ class ContextCapture:
 
     def _take(self, learned: ContextEstimator | None) -> None:
         """Infer by an estimator from now on; the twin takes over what it found (Q1)."""
-        self.learned, self.state = learned, None
+        self.learned = learned
         if learned is None or learned.correction is None:
             return
         station, row = self._station, max(0, len(self.ledger) - 1)

@@ -5,7 +5,10 @@ makes grows with the response, so the gap under a heavy load must not be held ag
 rows.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from rga.arrays import FloatArray
@@ -66,7 +69,18 @@ def rows_against_expected(
     ...                       np.ones(2), 0.0)
     array([4., 2.])
     """
-    scaled = gaps / (noise**2 + (share * simulated) ** 2)
+    return of_rows(channels_against_expected(gaps, simulated, noise, share))
+
+
+def channels_against_expected(
+    gaps: FloatArray, simulated: FloatArray, noise: FloatArray, share: float
+) -> FloatArray:
+    """The same of each channel in each row, float[rows, channels] [-]."""
+    return np.asarray(gaps / (noise**2 + (share * simulated) ** 2))
+
+
+def of_rows(scaled: FloatArray) -> FloatArray:
+    """Mean over channels of each row, float[rows], of float[rows, channels] with NaN."""
     known = np.isfinite(scaled).any(axis=1)
     by_row = np.full(len(scaled), np.nan)
     by_row[known] = np.nanmean(scaled[known], axis=1)
@@ -75,8 +89,6 @@ def rows_against_expected(
 
 def usual_bound(by_row: FloatArray, rows: int, share: float, seed: int) -> float:
     """What the median over so many rows stays below, were they as the calibration's rows are [-].
-
-    A moving-block bootstrap (Kuensch, Annals of Statistics 17, 1989): neighbours are alike.
 
     Args:
         by_row: gap over the gap to expect of the calibrated rows, float[n], NaN where not known.
@@ -91,10 +103,48 @@ def usual_bound(by_row: FloatArray, rows: int, share: float, seed: int) -> float
     known = by_row[np.isfinite(by_row)]
     if not len(known) or not rows:
         return float("inf")
-    length = max(1, min(round(np.sqrt(len(known))), rows))
+    drawn = [np.median(known[chosen]) for chosen in _stretches(len(known), rows, seed)]
+    return float(np.quantile(drawn, share))
+
+
+def channel_medians(scaled: FloatArray) -> FloatArray:
+    """Median over rows, float[channels], NaN where not known, of float[rows, channels]."""
+    known = np.isfinite(scaled).any(axis=0)
+    medians = np.full(scaled.shape[1], np.nan)
+    medians[known] = np.nanmedian(scaled[:, known], axis=0)
+    return medians
+
+
+def channel_bound(scaled: FloatArray, rows: int, share: float, seed: int) -> float:
+    """What no channel's median over so many rows exceeds, in multiples of that over all rows [-].
+
+    Args:
+        scaled: gap over the gap to expect, float[n, channels], NaN where not known.
+        rows: how many rows the median is over.
+        share: of such stretches in which all channels stay below.
+        seed: of the draws.
+
+    >>> calm = np.random.default_rng(0).chisquare(1, size=(200, 5))
+    >>> 1.2 < channel_bound(calm, 40, 0.99, seed=0) < 5.0
+    True
+    """
+    medians = channel_medians(scaled)
+    known = scaled[np.isfinite(scaled).any(axis=1)][:, medians > 0]
+    if not known.size or not rows:
+        return float("inf")
+    # A reading that is missing is taken as an ordinary one.
+    times = np.nan_to_num(known / medians[medians > 0], nan=1.0)
+    drawn = [np.median(times[one], axis=0).max() for one in _stretches(len(times), rows, seed)]
+    return float(np.quantile(drawn, share))
+
+
+def _stretches(known: int, rows: int, seed: int) -> Iterator[NDArray[np.int64]]:
+    """Numbers of so many of the known rows, again and again, in blocks.
+
+    A moving-block bootstrap (Kuensch, Annals of Statistics 17, 1989): neighbours are alike.
+    """
+    length = max(1, min(round(np.sqrt(known)), rows))
     draw, ahead = np.random.default_rng(seed), np.arange(length)
-    medians = np.empty(DRAWS)
-    for number in range(DRAWS):
-        starts = draw.integers(0, len(known) - length + 1, size=-(-rows // length))
-        medians[number] = np.median(known[(starts[:, None] + ahead).ravel()[:rows]])
-    return float(np.quantile(medians, share))
+    for _ in range(DRAWS):
+        starts = draw.integers(0, known - length + 1, size=-(-rows // length))
+        yield (starts[:, None] + ahead).ravel()[:rows]

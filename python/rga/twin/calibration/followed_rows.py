@@ -63,18 +63,21 @@ class FollowedRows:
         self.ledger.simulated[rows] = np.where(self._complete(rows), answer.simulated, np.nan)
         self._archive.keep_rows(first, end, version, self.ledger)
 
-    def simulated_by(self, estimator: ContextEstimator, first: int, end: int) -> FloatArray:
-        """What the twin would simulate of rows, corrected as an estimator has found it.
+    def under(
+        self, estimator: ContextEstimator, first: int, end: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """What contexts of rows another estimator infers, and what the twin would simulate there.
 
         Returns:
-            float[rows, channels], NaN where a measured context is missing.
+            float[rows, contexts], and float[rows, channels] with the twin corrected as it has
+            found it, NaN where a measured context is missing.
         """
         contexts, _ = self._inferred(estimator, first, end)
         given = self._exchange.twin.simulation()
         corrected = SimulationModel(given.model, self._station, estimator.correction)
         version = self._exchange.twin.state.version
         answer = corrected.follow(self._question(first, end, version, contexts))
-        return np.where(self._complete(slice(first, end)), answer.simulated, np.nan)
+        return contexts, np.where(self._complete(slice(first, end)), answer.simulated, np.nan)
 
     def _inferred(
         self, estimator: ContextEstimator, first: int, end: int

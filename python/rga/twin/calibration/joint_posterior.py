@@ -33,7 +33,8 @@ LEAST_ROWS, LEAST_CHANNELS = 20, 2
 SHOWN, CHANGED = 2, 4.0
 #: fields of a joint posterior that are stored as arrays
 KEPT = (
-    "values", "gains", "offsets", "sure", "noise", "variance", "uncertainty", "source",
+    "values", "gains", "offsets", "independent", "pulled", "noise", "variance", "uncertainty",
+    "source",
 )  # fmt: skip
 
 
@@ -286,10 +287,11 @@ def changes(before: Joint | None, after: Joint | None) -> tuple[str, ...]:
     """
     if before is None or after is None:
         return ()
-    known, sure = before.about(after.unknowns)
+    known, *open_before = before.about(after.unknowns)
+    left = np.diagonal(open_before[0]) + (open_before[1] ** 2).sum(axis=0)
     shared = [label in before.labels for label in after.labels]
     moved = np.where(shared, after.parameters - known, 0.0)
-    size = np.abs(moved / after.units) / np.sqrt(np.diagonal(sure) + np.diagonal(after.sure))
+    size = np.abs(moved / after.units) / np.sqrt(left + np.diagonal(after.sure))
     sensors, count = after.unknowns.model.sensors, len(after.values)
     parts = zip(after.unknowns.parts, known[:count], after.values, strict=True)
     gains, offsets = np.split(moved[count:], 2)

@@ -1,5 +1,6 @@
 """States of a twin that are kept, and taken up again when their conditions recur (level C)."""
 
+import io
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,12 +10,18 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.twin.calibration.estimator import ContextEstimator
-from rga.twin.calibration.expectation import usual_bound
+from rga.twin.calibration.expectation import (
+    channel_bound,
+    channel_medians,
+    of_rows,
+    usual_bound,
+)
 from rga.twin.calibration.learning import read, written
+from rga.twin.novelty import beside
 from rga.twin.simulation_model import SimulationModel
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
     """What infers contexts under some conditions, and what gap it leaves there.
 
@@ -22,25 +29,42 @@ class State:
         estimator: what infers, with what it has found of structure and sensors.
         version: of the model that it is about.
         rows: (first, end) of the rows that it stands for.
-        gaps: of each of these rows over the gap to expect, float[rows], NaN where not known [-].
+        contexts: of these rows, float[rows, contexts].
+        gaps: of these rows over the gap to expect, float[rows, channels], NaN where not known [-].
         doubted: the model is in doubt under these conditions: what was learned hides a change.
     """
 
     estimator: ContextEstimator
     version: int
     rows: tuple[int, int]
+    contexts: FloatArray
     gaps: FloatArray
     doubted: bool = False
 
-    def bound(self, rows: int, share: float, seed: int) -> float:
-        """What the gap of so many rows stays below under its conditions [-].
+    def explains(
+        self, contexts: FloatArray, gaps: FloatArray, optimism: float, share: float, seed: int
+    ) -> bool:
+        """Whether rows are like its own: in contexts, in their gap, and in that of each channel.
 
         Args:
-            rows: how many.
-            share: of such stretches of its own rows that stay below.
+            contexts: of the rows, float[n, contexts].
+            gaps: of the rows over the gap to expect, float[n, channels].
+            optimism: gap of rows that were not learned from, over that of its own rows [-].
+            share: of stretches of its own rows that stay below the bounds.
             seed: of the stretches drawn.
         """
-        return usual_bound(self.gaps, rows, share, seed)
+        by_row = of_rows(gaps)
+        by_row = by_row[np.isfinite(by_row)]
+        if not len(by_row) or np.mean(beside(contexts, self.contexts)) > 0.5:
+            return False
+        bound = usual_bound(of_rows(self.gaps), len(by_row), share, seed)
+        if np.median(by_row) > optimism * bound:
+            return False
+        # A fault of one channel hardly shows in the mean of many.
+        own, theirs = channel_medians(self.gaps), channel_medians(gaps)
+        known = np.isfinite(theirs) & (own > 0)
+        bound = channel_bound(self.gaps, len(by_row), share, seed)
+        return bool(np.all(theirs[known] <= optimism * bound * own[known]))
 
     def taken_up(self, first: int, end: int) -> str:
         """In words, that it is in force again, as rows are like its own.
@@ -57,13 +81,17 @@ class State:
 
     def to_bytes(self) -> bytes:
         """As a repository keeps it."""
-        head = {
-            "version": self.version,
-            "rows": self.rows,
-            "gaps": self.gaps.tolist(),
-            "doubted": self.doubted,
-        }
-        return json.dumps(head).encode() + b"\n" + written(self.estimator)
+        head = {"version": self.version, "rows": self.rows, "doubted": self.doubted}
+        content = io.BytesIO()
+        np.savez(
+            content,
+            allow_pickle=False,
+            head=np.frombuffer(json.dumps(head).encode(), dtype=np.uint8),
+            contexts=self.contexts,
+            gaps=self.gaps,
+            estimator=np.frombuffer(written(self.estimator), dtype=np.uint8),
+        )
+        return content.getvalue()
 
     @classmethod
     def from_bytes(cls, content: bytes, simulation: Callable[[int], SimulationModel]) -> Self:
@@ -76,9 +104,11 @@ class State:
         Raises:
             InputError: the bytes hold something else.
         """
-        head, _, estimator = content.partition(b"\n")
-        known = json.loads(head)
+        with np.load(io.BytesIO(content), allow_pickle=False) as kept:
+            head, estimator, contexts, gaps = (
+                kept[name] for name in ("head", "estimator", "contexts", "gaps")
+            )
+        known = json.loads(head.tobytes())
         first, end = known["rows"]
-        learned = read(estimator, simulation(known["version"]))
-        gaps = np.array(known["gaps"], dtype=float)
-        return cls(learned, known["version"], (first, end), gaps, known["doubted"])
+        learned = read(estimator.tobytes(), simulation(known["version"]))
+        return cls(learned, known["version"], (first, end), contexts, gaps, known["doubted"])

@@ -88,11 +88,18 @@ class HardwareInterface:
         model: names the context variables, and the logger's zero where the record does not.
 
     Raises:
-        InputError: the channels were zeroed over different times.
+        InputError: no sensor, one that the model lacks, or channels that were zeroed over different
+            times.
     """
 
     def __init__(self, record: Record, model: Model) -> None:
         self._record = record
+        place, unknown = f"model {model.name!r}", set(record.sensors) - set(model.sensors)
+        if unknown:
+            names = ", ".join(sorted(unknown))
+            raise InputError(f"it has no sensor {names}", place, "add it, or leave it out")
+        if not record.sensors:
+            raise InputError("the record holds no sensor of it", place, "give one to the record")
         measured = tuple(name for name in model.context if name in record.contexts)
         leading = _zero_rows(record, model)
         zero = {name: record.contexts[name][leading] for name in measured}
