@@ -162,7 +162,7 @@ class RealityGapAnalysis:
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
         standing.doubted = standing.doubted or doubted
         if not standing.doubted:
-            calibration.sound = calibration.learned
+            calibration.trust()
         if not doubted and settings.level == "C" and not open_alarm:
             self._integrate(*recent)
         if left <= usual and not open_alarm:

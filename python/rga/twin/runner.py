@@ -18,6 +18,7 @@ from rga.twin.calibration.estimator import ContextEstimator, Learn
 from rga.twin.calibration.learning import read
 from rga.twin.calibration.learning import written as stored
 from rga.twin.calibration.states import State
+from rga.twin.changes import diagnose_change
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
@@ -30,7 +31,7 @@ from rga.twin.versions import beyond, written
 
 Progress = Callable[[str, float], None]
 #: estimators that the calibration holds, by the names under which they are kept
-ESTIMATORS = ("learned", "sound")
+ESTIMATORS = ("learned", "sound", "given")
 #: name under which a state is kept, by its number
 STATE = "state {}"
 WRITTEN = ("findings.json", "model.json", "report.html")
@@ -248,7 +249,23 @@ class Running:
             self._checkpoint()
 
     def _ask_diagnosis(self) -> Findings:
-        record = self._record.rows(slice(0, self.row))
+        """What has changed since the calibration, if it has; else what was wrong all along."""
+        record, given = self._record.rows(slice(0, self.row)), self.calibration.given
+        state = self._twin.state
+        changed = self.analysis.standing.doubted or bool(state.versions[state.version])
+        if changed and given is not None and given.found is not None:
+            assert given.correction is not None
+            change = diagnose_change(
+                self._model,
+                record,
+                given.found,
+                given.correction,
+                criteria=self._settings.criteria,
+                seed=self._seed,
+                progress=self._progress,
+            )
+            if change is not None:
+                return change
         return diagnose(
             self._model,
             record,
@@ -302,16 +319,17 @@ class Running:
         self._stale = self.analysis.standing.learned_under != self._twin.state.version
         if not self._own:
             self._read_estimators(view)
-        learned, sound = (self._kept[name] for name in ESTIMATORS)
+        learned, sound, given = (self._kept[name] for name in ESTIMATORS)
         self.calibration.take_up(
-            ledger, self.analysis.standing, learned, sound, self._states.copy()
+            ledger, self.analysis.standing, learned, sound, given, self._states.copy()
         )
 
     def _read_estimators(self, view: RunView) -> None:
         """Those that infer, and those of the states that were kept."""
         for name in () if self._stale else ESTIMATORS:
-            content = view.kept(name)
-            self._kept[name] = None if content is None else read(content, self._twin.simulation())
+            content, version = view.kept(name), 1 if name == "given" else self.version
+            if content is not None:
+                self._kept[name] = read(content, self._twin.simulation(version))
         while (content := view.kept(STATE.format(len(self._states)))) is not None:
             self._states.append(State.from_bytes(content, self._twin.simulation))
         number = self.analysis.standing.state

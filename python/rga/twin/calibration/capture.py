@@ -49,6 +49,7 @@ class ContextCapture:
         learned: what infers contexts now; None before the first calibration, or where none is
             inferred.
         sound: what did so when nothing was in doubt: a new version of the model begins there.
+        given: the last such one about the model as it was given.
         inference: the way to infer; "auto" until the first calibration has chosen one.
         optimism: gap of rows that the calibration did not learn from, over that of its own [-].
         draws: seeds drawn so far.
@@ -81,6 +82,7 @@ class ContextCapture:
         self.rows = FollowedRows(exchange, archive, station, model)
         self.learned: ContextEstimator | None = None
         self.sound: ContextEstimator | None = None
+        self.given: ContextEstimator | None = None
         self.inference: Inference = settings.inference
         self.optimism = 1.0
         self.draws = 0
@@ -104,12 +106,13 @@ class ContextCapture:
         standing: Standing,
         learned: ContextEstimator | None,
         sound: ContextEstimator | None,
+        given: ContextEstimator | None,
         states: list[State],
     ) -> None:
         """Go on where a run stood."""
         self.rows.ledger, self.draws = ledger, standing.draws
         self.inference, self.optimism = standing.inference, standing.optimism
-        self.learned, self.sound = learned, sound
+        self.learned, self.sound, self.given = learned, sound, given
         self.states = states
         if standing.calibrated:
             self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
@@ -244,7 +247,7 @@ class ContextCapture:
         lesson, begun = self._lesson([(0, rows)]), None
         if self._own is not None:
             self._take(self._own(lesson))
-            self.sound = self.learned
+            self.trust()
             return "contexts by an estimator of the caller's own"
         words = f"contexts by inference {self.inference!r}, as the settings have it"
         if self.inference not in ("auto", "networks") and (reason := why_not(lesson)):
@@ -259,8 +262,14 @@ class ContextCapture:
             if self.inference == "auto":
                 self.inference, words = chosen.inference, chosen.words
         self._take(learn(self.inference, lesson, begun=begun))
-        self.sound = self.learned
+        self.trust()
         return words
+
+    def trust(self) -> None:
+        """Nothing is in doubt of what infers now."""
+        self.sound, state = self.learned, self._exchange.twin.state
+        if not state.versions[state.version]:
+            self.given = self.learned
 
     def recalibrate(self, calibrated: int, recent: tuple[int, int]) -> None:
         """Q4: refine what was learned, on the latest rows beside those of the first calibration.
@@ -338,19 +347,18 @@ class ContextCapture:
         if known < RECALL:
             return None
         usual = self.usual_gap(calibrated, known, share)
-        version, best, least = self._exchange.twin.state.version, None, self.gap(first, end, share)
+        version, allowed = self._exchange.twin.state.version, self._settings.usual
+        best, least = None, self.gap(first, end, share)
         for state in self.states:
             if state.version != version:
                 continue
             contexts, simulated = self.rows.under(state.estimator, first, end)
             squared = (self.ledger.readings[first:end] - simulated) ** 2
             gaps = channels_against_expected(squared, simulated, self.noise, share)
-            settings = self._settings
-            explained = state.explains(contexts, gaps, self.optimism, settings.usual, self._seed)
+            explained = state.explains(contexts, gaps, self.optimism, allowed, self._seed)
             if explained and state.estimator is self.learned:
                 return None
-            by_row = of_rows(gaps)
-            left = float(np.median(by_row[np.isfinite(by_row)])) if explained else np.inf
+            left = float(np.nanmedian(of_rows(gaps))) if explained else np.inf
             if left < least and left <= usual:
                 best, least = state, left
         if best is not None:

@@ -27,7 +27,8 @@ ALONG = Positive(0.3, 1.5)
 class SupportFlexibility(Effect):
     """A stiffness [N/m or N m/rad] in place of a rigid direction of a support.
 
-    Soft ground, or a column base that turns. A rotation is proposed where a frame member bends with
+    Soft ground, or a column base that turns; two in one direction give way one behind the other. A
+    rotation is proposed where a frame member bends with
     it.
     """
 
@@ -64,7 +65,5 @@ class SupportFlexibility(Effect):
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
         if np.isinf(value["stiffness"]):
             return
-        dof = DOFS.index(self.dof)
         for node in supported(structure, self.support):
-            structure.arrays["fixed"][node, dof] = False
-            structure.add_spring(node, -1, dof, value["stiffness"])
+            structure.give_way(node, DOFS.index(self.dof), value["stiffness"])

@@ -1,0 +1,82 @@
+"""What a structure does otherwise than when the twin was calibrated: a diagnosis of the change."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rga.diagnosis import diagnose
+from rga.errors import InputError
+from rga.findings import Findings
+from rga.findings.criteria import Criteria
+from rga.inference import Joint, Unknowns
+from rga.model import Model
+from rga.records import Record
+from rga.twin.correction import Correction
+from rga.twin.versions import beyond
+
+Progress = Callable[[str, float], None]
+
+
+def diagnose_change(
+    model: Model,
+    record: Record,
+    found: Joint,
+    correction: Correction,
+    *,
+    criteria: Criteria,
+    seed: int,
+    progress: Progress,
+) -> Findings | None:
+    """Diagnose a record on the twin as a calibration corrected it.
+
+    What was not as in the model from the beginning no longer hides what came later. A cause that
+    was there in the calibration is not seen.
+
+    Args:
+        model: as it was given.
+        record: measured data.
+        found: what the calibration found of the model.
+        correction: the same as the twin took it over.
+        criteria: of the diagnosis.
+        seed: of the diagnosis.
+        progress: called with a stage and the share of it that is done.
+
+    Returns:
+        Findings about the model as it was given; None where they name no cause.
+    """
+    corrected = _structure(model, found)
+    readings = _without_sensor_errors(record, found, correction)
+    findings = diagnose(corrected, readings, criteria=criteria, seed=seed, progress=progress)
+    account = findings.account
+    effects = {name: account.extended.effects[name] for name in beyond(corrected, account.extended)}
+    if not effects:
+        return None
+    try:
+        extended = model.extended(effects)
+    except InputError:
+        return None  # about a part that the correction alone has
+    words = (
+        "causes are what has changed since the calibration, which had brought the model to the "
+        "structure as it was then"
+    )
+    told = findings.model_copy(update={"warnings": [*findings.warnings, words]})
+    told._account = replace(account, model=model, extended=extended)
+    return told
+
+
+def _structure(model: Model, found: Joint) -> Model:
+    """The model with its structure as it was found; what was not looked for is as given."""
+    unknowns = Unknowns(model)
+    value, *_ = found.about(unknowns)
+    return unknowns.at(value[: len(unknowns.centre)])
+
+
+def _without_sensor_errors(record: Record, found: Joint, correction: Correction) -> Record:
+    """The record as sound sensors would have read it, the zero of the logger taken off."""
+    beside = dict(zip(found.unknowns.model.sensors, found.offsets.tolist(), strict=True))
+    gains, offsets = correction.of_sensors(tuple(record.sensors))
+    own = np.array([beside.get(name, 0.0) for name in record.sensors])
+    # What a sensor reads beside its gains has the zero in it.
+    zero = own - offsets
+    return replace(record, readings=(record.readings - offsets) / gains - zero)
