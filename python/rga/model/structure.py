@@ -238,23 +238,6 @@ class Structure:
         self.alpha = np.concatenate([self.alpha, self.alpha[hosts]])
         self.host = np.concatenate([self.host, self.host[hosts]])
 
-    def give_way(self, node: int, dof: int, stiffness: float) -> None:
-        """A spring in place of a rigid direction, or behind one that stands there already.
-
-        Args:
-            node, dof: of the direction.
-            stiffness: of the spring [N/m or N m/rad].
-        """
-        arrays = self.arrays
-        if arrays["fixed"][node, dof]:
-            arrays["fixed"][node, dof] = False
-            self.add_spring(node, -1, dof, stiffness)
-            return
-        own = (arrays["spring_node"] == [node, -1]).all(axis=1) & (arrays["spring_dof"] == dof)
-        known = arrays["spring_stiffness"][own]
-        together = known * stiffness / np.maximum(known + stiffness, np.finfo(float).tiny)
-        arrays["spring_stiffness"][own] = together
-
     def add_spring(self, node: int, to: int, dof: int, stiffness: float) -> None:
         """Add a spring between two nodes, or to the ground (to = -1) [N/m or N m/rad]."""
         self.add_springs(np.array([[node, to]]), dof, stiffness)

@@ -73,10 +73,8 @@ class RealityGapAnalysis:
                 near = spacing(stored[:, latent], width)
                 self.standing.distinct = self._settings.distinct or near
             if answer.blind:
-                words = (
-                    f"no channel sees {', '.join(answer.blind)}: held in the middle of the range"
-                )
-                self._event("calibration", 0, words)
+                unseen = ", ".join(answer.blind)
+                self._event("calibration", 0, f"no channel sees {unseen}: held in the middle")
             self.standing.stage = "gather"
         return answer
 
@@ -259,6 +257,10 @@ class RealityGapAnalysis:
         state = calibration.recall(*rows, standing.calibrated, standing.share)
         if state is None:
             return False
+        self._refine(rows)
+        if calibration.changes(state.estimator):
+            calibration.restore(state.estimator, calibration.sound)
+            calibration.follow(*rows)
         after, words = calibration.gap(*rows), state.taken_up(*rows)
         self._event("recall", standing.row - 1, words, before=before, after=after)
         self._begin_again(None)

@@ -233,8 +233,9 @@ class Search:
             if there < here:
                 self.value, self.contexts, self.population = value, contexts, population
                 self._weigh(self._residual(value, contexts), self.freedom)
+                changed = self.changed > 0
                 self._trust()
-                return here - there > WORTH
+                return here - there > WORTH or bool(np.any(changed != (self.changed > 0)))
         return False
 
     def solve(self) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -35,7 +35,7 @@ from rga.simulation import Simulator
 #: earlier result
 ROUNDS, STEPS, AGAIN = 3, 8, 3
 #: rounds and steps from a prior
-LATER = 2, 6
+LATER = 3, 12
 
 
 @dataclass(frozen=True)

@@ -66,4 +66,17 @@ class SupportFlexibility(Effect):
         if np.isinf(value["stiffness"]):
             return
         for node in supported(structure, self.support):
-            structure.give_way(node, DOFS.index(self.dof), value["stiffness"])
+            _give_way(structure, node, DOFS.index(self.dof), value["stiffness"])
+
+
+def _give_way(structure: Structure, node: int, dof: int, stiffness: float) -> None:
+    """A spring in place of a rigid direction, or behind one that stands there already."""
+    arrays = structure.arrays
+    if arrays["fixed"][node, dof]:
+        arrays["fixed"][node, dof] = False
+        structure.add_spring(node, -1, dof, stiffness)
+        return
+    own = (arrays["spring_node"] == [node, -1]).all(axis=1) & (arrays["spring_dof"] == dof)
+    known = arrays["spring_stiffness"][own]
+    together = known * stiffness / np.maximum(known + stiffness, np.finfo(float).tiny)
+    arrays["spring_stiffness"][own] = together
