@@ -58,6 +58,7 @@ def diagnose(
     model: Model,
     record: Record,
     *,
+    parts: Model | None = None,
     criteria: Criteria | None = None,
     seed: int = 0,
     progress: Progress | None = None,
@@ -67,6 +68,8 @@ def diagnose(
     Args:
         model: the structure with its effects and sensors.
         record: measured data.
+        parts: the model in whose parts causes are looked for, where this one has others beside
+            them; None: this one.
         criteria: what decides the verdict; None: the default ones.
         seed: of the bootstrap of the gain.
         progress: called with a stage and the share of it that is done.
@@ -79,11 +82,11 @@ def diagnose(
     """
     tell_progress = progress or (lambda stage, done: None)
     with threadpool_limits(1):
-        return _diagnose(model, record, criteria or Criteria(), seed, tell_progress)
+        return _diagnose(model, parts or model, record, criteria or Criteria(), seed, tell_progress)
 
 
 def _diagnose(
-    model: Model, record: Record, criteria: Criteria, seed: int, progress: Progress
+    model: Model, parts: Model, record: Record, criteria: Criteria, seed: int, progress: Progress
 ) -> Findings:
     def read(done: float) -> None:
         progress("reading the contexts", done)
@@ -97,7 +100,7 @@ def _diagnose(
 
     def searched(prepared: PreparedRecord) -> tuple[Problem, Screening, Found]:
         data = prepared.data.rows(~held_out)
-        candidates = hypotheses(base.model, data.sensors, measured)
+        candidates = hypotheses(parts.without_zeros(), data.sensors, measured)
         start = settled(base, data)
         progress("estimating the noise", 1.0)
         screening = Screening(start, base, candidates, lambda x: progress("screening", x))

@@ -16,6 +16,7 @@ from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.history import Event, Kind
+from rga.twin.judgement import judged
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q1, R1
 from rga.twin.messages.query_bus import QueryResponse
@@ -62,6 +63,14 @@ class RealityGapAnalysis:
         self._pace, self._label = pace, label
         self._policy = Policy.of(settings, pace)
 
+    @property
+    def changed(self) -> bool:
+        """Whether something seems to have changed since the calibration; at the end, had seemed."""
+        standing, state = self.standing, self._exchange.twin.state
+        if standing.stage in ("report", "done"):
+            return standing.about_change
+        return standing.doubted or bool(state.versions[state.version])
+
     def initialise(self) -> R1:
         """Q1: can the twin represent what a calibration needs? Then the design phase is filled."""
         answer = self._ask_twin()
@@ -74,7 +83,8 @@ class RealityGapAnalysis:
                 self.standing.distinct = self._settings.distinct or near
             if answer.blind:
                 unseen = ", ".join(answer.blind)
-                self._event("calibration", 0, f"no channel sees {unseen}: held in the middle")
+                words = f"no channel sees {unseen}: held in the middle of the range"
+                self._event("calibration", 0, words)
             self.standing.stage = "gather"
         return answer
 
@@ -150,7 +160,9 @@ class RealityGapAnalysis:
         after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
         changes, novel = calibration.changes(known), calibration.novel(*recent)
         rows = f"rows {recent[0]} to {recent[1] - 1}"
-        doubted, words = self._judged(rows, expected, left, usual, changes, novel)
+        doubted, words = judged(
+            rows, expected, left, usual, changes if calibration.corrects else None, novel
+        )
         interval = self._policy.next_interval(
             standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
         )
@@ -159,7 +171,7 @@ class RealityGapAnalysis:
         standing.interval = interval
         self._event("recalibration", standing.row - 1, words, before=before, after=after)
         standing.doubted = standing.doubted or doubted
-        if not standing.doubted:
+        if not standing.doubted and not open_alarm:
             calibration.trust()
         if not doubted and settings.level == "C" and not open_alarm:
             self._integrate(*recent)
@@ -170,47 +182,6 @@ class RealityGapAnalysis:
             standing.stage = "diagnose"
         else:
             self._go_on(last, open_alarm)
-
-    def _judged(
-        self,
-        rows: str,
-        before: float,
-        after: float,
-        usual: float,
-        changes: tuple[str, ...],
-        novel: bool,
-    ) -> tuple[bool, str]:
-        """Whether the model is in doubt after a recalibration, and what came of it in words.
-
-        Args:
-            rows: that it was about, in words.
-            before, after: gap over the gap to expect [-].
-            usual: what it stays below on stretches of the calibration [-].
-            changes: of structure and sensors, by which the gap came down.
-            novel: the rows have contexts that none before them had.
-        """
-        expected = (
-            f"times what noise and scatter let expect (stretches of the calibration stay below "
-            f"{usual:.2f})"
-        )
-        if after > usual:
-            return True, (
-                f"no contexts explain {rows}, nor does learning from them: the gap is {after:.2f} "
-                f"{expected}; the model is in doubt"
-            )
-        if before <= usual:
-            return False, f"contexts explain {rows}: the gap is {after:.2f} {expected}"
-        if self._calibration.corrects and (changes or not novel):
-            how = " and ".join(changes) or "many small changes of structure and sensors"
-            return True, (
-                f"no contexts explain {rows}: the gap is {before:.2f} {expected}, and falls to "
-                f"{after:.2f} with {how}; the model is in doubt"
-            )
-        new = " have contexts that none had before" if novel else ""
-        return False, (
-            f"{rows}{new}: learning from them took the gap from {before:.2f} to {after:.2f} "
-            f"{expected}"
-        )
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
@@ -227,13 +198,15 @@ class RealityGapAnalysis:
             closing: no more rows will come.
         """
         standing, state = self.standing, self._exchange.twin.state
+        standing.about_change = self.changed
         self._archive.keep_findings(standing.row - 1, findings.to_json())
         self._event("diagnosis", standing.row - 1, findings.sentence())
-        standing.diagnosed, standing.doubted = standing.row, not effects
-        held = findings.gap.held_out
-        if effects and effects != state.versions[state.version] and held.gain > 0:
+        held, in_force = findings.gap.held_out, state.versions[state.version]
+        # What is named leaves a doubt until a version stands that has it.
+        standing.diagnosed, standing.doubted = standing.row, not effects or effects != in_force
+        if effects and effects != in_force and held.gain > 0:
             self._change_version(effects=effects, gain=held.gain, gain_ci90=held.gain_ci90)
-        elif state.versions[state.version] and not effects:
+        elif in_force and not effects:
             self._change_version(restore=1)
         self._go_on(closing)
         if closing:
@@ -344,6 +317,7 @@ class RealityGapAnalysis:
             words = f"the gap rose: version {old} is in force again"
             self._event("rollback", standing.row - 1, words, before=after, after=before)
         else:
+            standing.doubted = standing.doubted and "effects" not in change
             self._keep_state(*recent)
         self._begin_again(recent[0])
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from rga.diagnosis import diagnose
-from rga.errors import InputError
 from rga.findings import Findings
 from rga.findings.criteria import Criteria
 from rga.inference import Joint, Unknowns
@@ -47,22 +46,33 @@ def diagnose_change(
     """
     corrected = _structure(model, found)
     readings = _without_sensor_errors(record, found, correction)
-    findings = diagnose(corrected, readings, criteria=criteria, seed=seed, progress=progress)
+    findings = diagnose(
+        corrected, readings, parts=model, criteria=criteria, seed=seed, progress=progress
+    )
     account = findings.account
     effects = {name: account.extended.effects[name] for name in beyond(corrected, account.extended)}
     if not effects:
         return None
-    try:
-        extended = model.extended(effects)
-    except InputError:
-        return None  # about a part that the correction alone has
+    extended = model.extended(effects)
     words = (
         "causes are what has changed since the calibration, which had brought the model to the "
-        "structure as it was then"
+        "structure and the sensors as they were then: gaps and curves are of that twin"
     )
-    told = findings.model_copy(update={"warnings": [*findings.warnings, words]})
+    told = findings.model_copy(
+        update={"warnings": [*findings.warnings, words], "model_sha256": model.sha256}
+    )
     told._account = replace(account, model=model, extended=extended)
     return told
+
+
+def in_doubt(findings: Findings) -> Findings:
+    """Findings without a cause while the twin is in doubt: they calm nobody."""
+    words = "the twin is in doubt since a recalibration, and no cause of that was found"
+    change: dict[str, object] = {"warnings": [*findings.warnings, words]}
+    if findings.verdict == "nothing_wrong":
+        unexplained = findings.unexplained.model_copy(update={"looks_like": words})
+        change |= {"verdict": "unknown", "unexplained": unexplained}
+    return findings.model_copy(update=change)
 
 
 def _structure(model: Model, found: Joint) -> Model:

@@ -33,6 +33,7 @@ class Standing(BaseModel):
         distinct: least distance of a novel context, in shares of the ranges.
         diagnosed: rows of the last diagnosis.
         changed: rows when the version last changed.
+        about_change: whether the last diagnosis asked what has changed.
         doubted: whether a recalibration did not bring the gap down and nothing has explained it.
     """
 
@@ -54,4 +55,5 @@ class Standing(BaseModel):
     distinct: float = 0.0
     diagnosed: int | None = None
     changed: int = 0
+    about_change: bool = False
     doubted: bool = False

@@ -18,7 +18,7 @@ from rga.twin.calibration.estimator import ContextEstimator, Learn
 from rga.twin.calibration.learning import read
 from rga.twin.calibration.learning import written as stored
 from rga.twin.calibration.states import State
-from rga.twin.changes import diagnose_change
+from rga.twin.changes import diagnose_change, in_doubt
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
@@ -157,6 +157,11 @@ class Running:
         """Do what is next, and have it acknowledged by the repository."""
         if self.stage == "initialise":
             self._initialise()
+        elif self._stale and self.stage not in ("gather", "calibrate", "report", "done"):
+            with self._archive.step():
+                self.analysis.take_up_version()
+                self._stale = False
+                self._checkpoint()
         elif self.stage in ("diagnose", "close"):
             self._diagnose(self.stage == "close")
         else:
@@ -213,9 +218,6 @@ class Running:
 
     def _advance(self) -> None:
         analysis, stage = self.analysis, self.stage
-        if self._stale and stage not in ("gather", "calibrate"):
-            analysis.take_up_version()
-        self._stale = False
         if stage == "calibrate":
             analysis.calibrate()
             return
@@ -251,28 +253,25 @@ class Running:
     def _ask_diagnosis(self) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along."""
         record, given = self._record.rows(slice(0, self.row)), self.calibration.given
-        state = self._twin.state
-        changed = self.analysis.standing.doubted or bool(state.versions[state.version])
+        model, criteria = self._model, self._settings.criteria
+        changed = self.analysis.changed
         if changed and given is not None and given.found is not None:
             assert given.correction is not None
-            change = diagnose_change(
-                self._model,
+            found = diagnose_change(
+                model,
                 record,
                 given.found,
                 given.correction,
-                criteria=self._settings.criteria,
+                criteria=criteria,
                 seed=self._seed,
                 progress=self._progress,
             )
-            if change is not None:
-                return change
-        return diagnose(
-            self._model,
-            record,
-            criteria=self._settings.criteria,
-            seed=self._seed,
-            progress=self._progress,
+            if found is not None:
+                return found
+        findings = diagnose(
+            model, record, criteria=criteria, seed=self._seed, progress=self._progress
         )
+        return in_doubt(findings) if changed and not findings.causes else findings
 
     @property
     def _all_arrived(self) -> bool:
@@ -326,7 +325,7 @@ class Running:
 
     def _read_estimators(self, view: RunView) -> None:
         """Those that infer, and those of the states that were kept."""
-        for name in () if self._stale else ESTIMATORS:
+        for name in ("given",) if self._stale else ESTIMATORS:
             content, version = view.kept(name), 1 if name == "given" else self.version
             if content is not None:
                 self._kept[name] = read(content, self._twin.simulation(version))

@@ -201,3 +201,27 @@ def test_a_state_of_networks_is_what_it_was(
                 state.estimator.infer(*given), again.estimator.infer(*given), strict=True
             ):
                 np.testing.assert_array_equal(one, other)
+
+
+def test_findings_written_after_an_interruption_are_those_of_the_run(
+    small_stream: Callable[..., Path], tmp_path: Path
+) -> None:
+    folder = small_stream(drifts=False, sinks=True, rows=160)
+    model = rga.load_model(folder / "model.json")
+    record = rga.load_record(folder / "record.csv", model)
+    settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+    chosen = Settings.model_validate(settings | PLAYED)
+    place = tmp_path / "twin.sqlite"
+    with taken_up(model, record, place, chosen, 0) as running:
+        while running.stage != "report":
+            running.step()
+        found = running.findings()
+        assert found.to_json() == running.stored_findings().to_json()
+    assert "has changed since the calibration" in " ".join(found.warnings)
+    assert [one.effect["kind"] for one in found.causes] == ["support_settlement"]
+    assert found.model_sha256 == model.sha256
+    extended = found.account.extended
+    assert len(set(extended.effects) - set(model.effects)) == len(found.causes)
+    with taken_up(model, record, place, chosen, 0) as again:
+        assert again.stage == "report"
+        assert again.findings().to_json() == found.to_json()

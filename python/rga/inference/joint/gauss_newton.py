@@ -233,10 +233,8 @@ class Search:
             if there < here:
                 self.value, self.contexts, self.population = value, contexts, population
                 self._weigh(self._residual(value, contexts), self.freedom)
-                changed = self.changed > 0
-                self._trust()
-                return here - there > WORTH or bool(np.any(changed != (self.changed > 0)))
-        return False
+                return self._trust() or here - there > WORTH
+        return self.prior.earlier and self._trust()
 
     def solve(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Change of the parameters, of the contexts and of their population, in their units.
@@ -358,20 +356,25 @@ class Search:
         left_open = self.prior.covariance + self.prior.pulled.T @ self.prior.pulled
         self.evident = sparse_changes(information, whole @ (at + change), left_open, self.kinds)
 
-    def _trust(self) -> None:
-        """What sensors lie by, by Student's distribution, and what has changed.
-
-        Expectation and maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39, 1977).
-        """
+    def _trust(self) -> bool:
+        """Which parameters are off, as far as is seen now; whether others are than before."""
+        before = self.changed > 0
         if self.prior.earlier:
             self._suppose(self.evident)
         elif np.isfinite(self.tails):
-            scale = self.prior.change
-            own = np.diag(self.prior.covariance)
-            share = self.changed / np.where(self.changed > 0, self.changed + own, 1.0)
-            moved = self._standard(self.value) ** 2 + np.diag(self.covariance)
-            square = share**2 * moved + share * own
-            self._suppose((self.tails * scale**2 + square) / (self.tails + 1.0))
+            self._suppose(self._sensor_errors())
+        return bool(np.any(before != (self.changed > 0)))
+
+    def _sensor_errors(self) -> FloatArray:
+        """What sensors lie by, by Student's distribution: variances in units of their priors.
+
+        Expectation and maximisation (Dempster, Laird and Rubin, J. R. Stat. Soc. B 39, 1977).
+        """
+        scale, own = self.prior.change, np.diag(self.prior.covariance)
+        share = self.changed / np.where(self.changed > 0, self.changed + own, 1.0)
+        moved = self._standard(self.value) ** 2 + np.diag(self.covariance)
+        square = share**2 * moved + share * own
+        return np.asarray((self.tails * scale**2 + square) / (self.tails + 1.0))
 
     def _suppose(self, changed: FloatArray) -> None:
         """That parameters have changed by so much: variances in units of their priors."""

@@ -139,7 +139,7 @@ class Joint:
         value[shared] = self.parameters[taken]
         independent[np.ix_(shared, shared)] = self.independent[np.ix_(taken, taken)]
         mine = list(self.unknowns.model.sensors)
-        gone = [number for number in range(len(self.pulled)) if mine[number : number + 1] == []]
+        gone = list(range(len(mine), len(self.pulled)))
         gone += [number for number, name in enumerate(mine) if name not in sensors]
         pulled = np.zeros((len(sensors) + len(gone), len(value)))
         for row, name in enumerate(sensors):

@@ -7,6 +7,8 @@ from rga.arrays import FloatArray, IntArray
 
 #: evidence from which a parameter is held to have changed [squared standard deviations]
 EVIDENT = 16.0
+#: share of the most that rows say of a parameter, below which they say nothing of another
+SILENT = 1e-9
 #: median of that of parameters that have not
 ORDINARY = float(chi2(1).median())
 
@@ -14,7 +16,7 @@ ORDINARY = float(chi2(1).median())
 def sparse_changes(
     information: FloatArray, pull: FloatArray, covariance: FloatArray, kinds: IntArray
 ) -> FloatArray:
-    """Variances of changes, each chosen by the likelihood of the rows with it integrated out.
+    """Variances of changes, each by the likelihood of the rows with it integrated out as it joins.
 
     Parameters are off by what was left open of them, all together, and few have changed beside
     that, by far more. These are added one by one, the one with the most evidence first, and left
@@ -44,13 +46,15 @@ def sparse_changes(
     seen = information @ np.linalg.inv(np.eye(len(pull)) + covariance @ information)
     left = pull - seen @ covariance @ pull
     changed = np.zeros(len(pull))
+    told = np.diagonal(information) > SILENT * np.diagonal(information).max(initial=0.0)
+    kinds = np.where(told, kinds, -1)
     for _ in range(2 * len(pull)):
         evidence, size = _evidence(seen, left, changed)
         weak = (changed > 0) & (evidence < _limit(evidence, changed, kinds))
         if weak.any():
             changed[np.argmin(np.where(weak, evidence, np.inf))] = 0.0
             continue
-        strongest = int(np.argmax(np.where(changed > 0, 0.0, evidence)))
+        strongest = int(np.argmax(np.where(told & (changed == 0), evidence, -1.0)))
         tried = changed.copy()
         tried[strongest] = max(size[strongest], 0.0)
         # What has changed raises the evidence of others as long as it is not among them.

@@ -5,10 +5,12 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
+from zipfile import BadZipFile
 
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.twin.calibration.estimator import ContextEstimator
 from rga.twin.calibration.expectation import (
     channel_bound,
@@ -104,10 +106,14 @@ class State:
         Raises:
             InputError: the bytes hold something else.
         """
-        with np.load(io.BytesIO(content), allow_pickle=False) as kept:
-            head, estimator, contexts, gaps = (
-                kept[name] for name in ("head", "estimator", "contexts", "gaps")
-            )
+        try:
+            with np.load(io.BytesIO(content), allow_pickle=False) as kept:
+                head, estimator, contexts, gaps = (
+                    kept[name] for name in ("head", "estimator", "contexts", "gaps")
+                )
+        except (ValueError, KeyError, OSError, BadZipFile) as error:
+            problem = "these bytes hold no state of a twin"
+            raise InputError(problem, "stored state", "begin a new run") from error
         known = json.loads(head.tobytes())
         first, end = known["rows"]
         learned = read(estimator.tobytes(), simulation(known["version"]))
