@@ -10,6 +10,7 @@ from rga.findings import Findings
 from rga.findings.criteria import Criteria
 from rga.inference import Joint, Unknowns
 from rga.model import Model
+from rga.model.effect import seconds
 from rga.records import Record
 from rga.twin.correction import Correction
 from rga.twin.versions import beyond
@@ -23,6 +24,7 @@ def diagnose_change(
     found: Joint,
     correction: Correction,
     *,
+    since: float,
     criteria: Criteria,
     seed: int,
     progress: Progress,
@@ -37,12 +39,13 @@ def diagnose_change(
         record: measured data.
         found: what the calibration found of the model.
         correction: the same as the twin took it over.
+        since: clock at the end of the calibration [s]: a change begins later.
         criteria: of the diagnosis.
         seed: of the diagnosis.
         progress: called with a stage and the share of it that is done.
 
     Returns:
-        Findings about the model as it was given; None where they name no cause.
+        Findings about the model as it was given; None where they name no cause that begins later.
     """
     corrected = _structure(model, found)
     readings = _without_sensor_errors(record, found, correction)
@@ -51,7 +54,7 @@ def diagnose_change(
     )
     account = findings.account
     effects = {name: account.extended.effects[name] for name in beyond(corrected, account.extended)}
-    if not effects:
+    if not any(one.onset is not None and seconds(one.onset) > since for one in effects.values()):
         return None
     extended = model.extended(effects)
     words = (

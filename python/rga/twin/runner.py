@@ -262,6 +262,7 @@ class Running:
                 record,
                 given.found,
                 given.correction,
+                since=record.origin + float(record.time[self.analysis.standing.calibrated - 1]),
                 criteria=criteria,
                 seed=self._seed,
                 progress=self._progress,

@@ -14,6 +14,7 @@ from rga.model import Model
 from rga.records import Record
 from rga.twin import Settings
 from rga.twin.calibration.states import State
+from rga.twin.changes import diagnose_change
 from rga.twin.history import Event
 from rga.twin.messages.hardware import HardwareInterface
 from rga.twin.runner import Running, taken_up
@@ -217,6 +218,22 @@ def test_findings_written_after_an_interruption_are_those_of_the_run(
             running.step()
         found = running.findings()
         assert found.to_json() == running.stored_findings().to_json()
+        given = running.calibration.given
+        assert given is not None
+        assert given.found is not None
+        assert given.correction is not None
+        # What begins no later than the calibration ends is no change since then.
+        late = diagnose_change(
+            model,
+            record,
+            given.found,
+            given.correction,
+            since=record.origin + float(record.time[-1]),
+            criteria=chosen.criteria,
+            seed=0,
+            progress=lambda stage, done: None,
+        )
+        assert late is None
     assert "has changed since the calibration" in " ".join(found.warnings)
     assert [one.effect["kind"] for one in found.causes] == ["support_settlement"]
     assert found.model_sha256 == model.sha256
