@@ -28,8 +28,7 @@ class SupportFlexibility(Effect):
     """A stiffness [N/m or N m/rad] in place of a rigid direction of a support.
 
     Soft ground, or a column base that turns; two in one direction give way one behind the other. A
-    rotation is proposed where a frame member bends with
-    it.
+    rotation is proposed where a frame member bends with it.
     """
 
     kind: Literal["support_flexibility"] = "support_flexibility"
