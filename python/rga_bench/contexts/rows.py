@@ -78,7 +78,7 @@ def amortised(lesson: Lesson) -> AmortisedEstimator:
     return AmortisedEstimator.learn(lesson, JointEstimator.learn(lesson))
 
 
-#: filters need rows in order; a few rows that adapt stand for the others in streams
+#: filters need rows in order; in streams are what a twin recalibrates, and two that it cannot
 _IN_ORDER = ("smooth",)
 
 METHODS: dict[str, Row] = {
@@ -89,12 +89,14 @@ METHODS: dict[str, Row] = {
     "CORAL": Row(trained(NETWORKS["CORAL"]), manners=MANNERS),
     "DANN": Row(trained(NETWORKS["DANN"])),
     "DANN + physics, frozen network": Row(trained(NETWORKS["DANN + physics, frozen network"])),
-    "DANN + physics, exact simulator": Row(trained(NETWORKS["DANN + physics, exact simulator"])),
+    "DANN + physics, exact simulator": Row(
+        trained(NETWORKS["DANN + physics, exact simulator"]), manners=MANNERS
+    ),
     "physics only": Row(trained(NETWORKS["physics only"]), manners=MANNERS),
     "network + polish": Row(refined_network, manners=MANNERS),
-    "MAP": Row(_rival(maximum_posterior)),
+    "MAP": Row(_rival(maximum_posterior), manners=MANNERS),
     "MAP, smooth discrepancy": Row(_rival(smooth_discrepancy), manners=MANNERS),
-    "MAP, low-rank discrepancy (EM)": Row(_rival(low_rank_discrepancy)),
+    "MAP, low-rank discrepancy (EM)": Row(_rival(low_rank_discrepancy), manners=MANNERS),
     "iterated Kalman filter": Row(_rival(iterated_kalman), manners=_IN_ORDER),
     "unscented Kalman filter": Row(_rival(unscented_kalman), manners=_IN_ORDER),
     "ensemble Kalman filter": Row(_rival(ensemble_kalman), manners=_IN_ORDER),

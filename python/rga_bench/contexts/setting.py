@@ -19,13 +19,13 @@ class Sizes:
     """How many rows there are.
 
     Attributes:
-        source: simulated rows.
+        source: simulated rows, as many as `rga run` draws.
         unlabelled: measured rows that a method is calibrated on.
         stream: measured rows among which a drift comes.
         test: measured rows that are scored; one half of them under the drift.
     """
 
-    source: int = 1000
+    source: int = 4096
     unlabelled: int = 200
     stream: int = 200
     test: int = 300
@@ -85,15 +85,20 @@ class ContextsSetting:
     sizes: Sizes = Sizes()
 
     def tasks(self, rows: tuple[str, ...]) -> list[ContextsTask]:
-        """Every row on every split, those that share their data one after the other."""
+        """Every row on every split, those that share their data one after the other.
+
+        Drifts come last: they take most of the time.
+        """
         full, first = self.gaps[-1], self.manners[0]
-        often = [(full, first), *([(full, DRIFTING)] if self.drifts else [])]
         seldom = [(gap, first) for gap in self.gaps[:-1]]
         seldom += [(full, manner) for manner in self.manners[1:]]
+        played = [(split, full, first) for split in range(self.splits)]
+        played += [(split, *one) for split in range(self.few) for one in seldom]
+        if self.drifts:
+            played += [(split, full, DRIFTING) for split in range(self.splits)]
         return [
             ContextsTask(self.seed, split, gap, manner, row, self.drifts, self.sizes)
-            for split in range(self.splits)
-            for gap, manner in (often + seldom if split < self.few else often)
+            for split, gap, manner in played
             for row in rows
         ]
 

@@ -121,7 +121,7 @@ def test_real_rows_are_used_where_they_may_be(unlike: PhysicalTwin) -> None:
     """The null of the test above: other rows give another network, but to the source alone."""
     lessons = given(unlike), with_rows(given(unlike), drawn(12, 60, unlike).readings)
     for name in NETWORKS:
-        learn = trained(short(name, **{**FEW, "steps": 120}))
+        learn = trained(short(name, **{**FEW, "steps": 400}))
         one, two = (learn(rows).to_bytes() for rows in lessons)
         assert (one == two) == (name == "source only")
 

@@ -12,6 +12,7 @@ from rga.errors import InputError
 from rga.inference.laws.mixture import Candidates
 from rga.inference.networks.determinism import one_thread
 from rga.inference.networks.layers import ContextPredictor, Encoder, Mixture
+from rga.inference.networks.losses import REACH
 from rga.inference.variables import Variables
 
 FORMAT = "rga context network 1"
@@ -47,7 +48,8 @@ class ContextNetwork:
             measured: measured contexts, float[n, measured], NaN where missing.
 
         Returns:
-            float[n, latent] in their units; they may leave their ranges.
+            float[n, latent] in their units; they leave their ranges by a quarter of their width
+            at most, beyond which no training looks.
 
         Raises:
             InputError: a table of another shape.
@@ -58,7 +60,7 @@ class ContextNetwork:
         """All candidates of every row, with spreads and probabilities; takes what `infer` takes."""
         mixture = self._answer(readings, measured)
         return Candidates(
-            self.physical(mixture.value).numpy(),
+            self.physical(mixture.value.clamp(-REACH, REACH)).numpy(),
             (mixture.log_spread.double().exp() * self._unit).numpy(),
             mixture.log_share.double().exp().numpy(),
             np.arange(mixture.log_share.shape[1]) % self.ways == 1,

@@ -7,8 +7,8 @@ import torch
 from torch import Tensor
 
 from rga.arrays import FloatArray
+from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.variables import Variables
-from rga.simulation import Simulator
 
 #: contexts in physical units, float[n, contexts] in the order of the model -> readings,
 #: float[n, sensors], or float[ways, n, sensors] where the structure may answer in several ways
@@ -23,14 +23,19 @@ class Guide:
     cost of a small matrix product a step.
 
     Args:
-        physics: a differentiable simulation, or a simulator of rows that stand alone.
+        physics: a differentiable simulation, or a simulator of rows that stand alone, of which
+            sensors without a finite reading say nothing.
         measured: measured contexts of all rows, float[rows, measured], NaN where missing.
         variables: sensors and contexts.
         ways: of the network.
     """
 
     def __init__(
-        self, physics: Physics | Simulator, measured: FloatArray, variables: Variables, ways: int
+        self,
+        physics: Physics | TwinOnArrays,
+        measured: FloatArray,
+        variables: Variables,
+        ways: int,
     ) -> None:
         self._physics, self._variables, self._ways = physics, variables, ways
         middle = variables.middle[variables.measured_columns]
@@ -45,16 +50,17 @@ class Guide:
         Args:
             latent: contexts of all rows in their units, float64[rows, modes, latent].
         """
-        if not isinstance(self._physics, Simulator):
+        if not isinstance(self._physics, TwinOnArrays):
             return
         rows, modes, _ = latent.shape
         contexts = self._contexts(torch.arange(rows), latent).numpy()
-        table = dict(zip(self._variables.contexts, contexts.T, strict=True))
-        rates = self._physics.jacobian(table)[:, :, self._variables.latent_columns]
+        rates = self._physics.jacobian(contexts)[:, :, self._variables.latent_columns]
+        readings = self._physics.simulate(contexts)
         self._looked = latent
-        readings = torch.from_numpy(self._physics.predict(table)).float()
-        self._readings = readings.view(rows, modes, -1)
-        self._rates = torch.from_numpy(rates).float().view(rows, modes, *rates.shape[1:])
+        self._readings, self._rates = (
+            torch.from_numpy(np.nan_to_num(part)).float().view(rows, modes, *part.shape[1:])
+            for part in (readings, rates)
+        )
 
     def __call__(self, rows: Tensor, latent: Tensor) -> Tensor:
         """Simulated readings in their units, float[n, modes, sensors].
@@ -63,7 +69,7 @@ class Guide:
             rows: which ones, int[n].
             latent: their contexts in their units, float64[n, modes, latent].
         """
-        if isinstance(self._physics, Simulator):
+        if isinstance(self._physics, TwinOnArrays):
             moved = (latent - self._looked[rows]).float()[..., None]
             return self._readings[rows] + (self._rates[rows] @ moved)[..., 0]
         found = self._physics(self._contexts(rows, latent))

@@ -8,6 +8,7 @@ from torch import nn
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
+from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.networks.augmentation import Corruption
 from rga.inference.networks.context_network import ContextNetwork
 from rga.inference.networks.dataset import Samples
@@ -37,7 +38,7 @@ def train(
     variables: Variables,
     noise: FloatArray,
     seed: int,
-    physics: Physics | Simulator | None = None,
+    physics: Physics | Simulator | TwinOnArrays | None = None,
     start: ContextNetwork | None = None,
     held_out: Callable[[ContextNetwork], float] | None = None,
     progress: Callable[[float], None] | None = None,
@@ -91,6 +92,8 @@ def train(
     guided = [settings.physics is not None and side for side in sides]
     if any(guided) and physics is None:
         physics = pretrain(source, variables, settings, seed=seed)
+    if isinstance(physics, Simulator):
+        physics = TwinOnArrays(physics)
     with one_thread():
         generator = torch.Generator().manual_seed(seed)
         sigma = torch.from_numpy(np.asarray(noise)).float()

@@ -2,18 +2,22 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.inference import Joint
+from rga.inference import Joint, TrainingSettings
 from rga.model import ContextVariable
 from rga.twin.calibration.joint_posterior import JointEstimator, why_not
 from rga.twin.calibration.lesson import Lesson
 from rga.twin.calibration.networks import NetworkEstimator
 from rga.twin.correction import Correction
 from rga.twin.simulation_model import SimulationModel
+
+#: size and steps of the networks, over what settings say: what is left to learn is finer
+FINER = 2
 
 
 class AmortisedEstimator:
@@ -42,7 +46,10 @@ class AmortisedEstimator:
         """
         noise = np.full(len(lesson.noise), np.nan)
         noise[joint.watched] = np.sqrt(np.diagonal(joint.found.covariance))
-        return cls(joint, NetworkEstimator.learn(lesson.corrected(joint.correction, noise), start))
+        corrected = lesson.corrected(joint.correction, noise)
+        return cls(
+            joint, NetworkEstimator.learn(replace(corrected, training=_finer(lesson)), start)
+        )
 
     def refined(self, lesson: Lesson) -> Self:
         """What both become by the new rows of a lesson."""
@@ -84,3 +91,20 @@ class AmortisedEstimator:
         joint = JointEstimator.from_bytes(both[:end], simulation)
         corrected = SimulationModel(simulation.model, simulation.station, joint.correction)
         return cls(joint, NetworkEstimator.from_bytes(both[end:], corrected))
+
+
+def _finer(lesson: Lesson) -> TrainingSettings:
+    """How networks are trained on a corrected twin.
+
+    Gains are found already, and readings fit several contexts only where a load moves.
+    """
+    given, laws = lesson.training, lesson.simulation.model.context
+    alone = all(laws[name].law == "independent" for name in lesson.latent)
+    return given.model_copy(
+        update={
+            "gain": 0.0,
+            "steps": FINER * given.steps,
+            "width": FINER * given.width,
+            "modes": 1 if alone else given.modes,
+        }
+    )

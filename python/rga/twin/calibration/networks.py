@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from typing import Self
 
 import numpy as np
@@ -11,18 +12,21 @@ from torch import Tensor, nn
 
 from rga.arrays import FloatArray
 from rga.inference import ContextNetwork, Samples, Variables, train
+from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.laws.mixture import Candidates, joined
 from rga.inference.laws.over_time import follow_law
 from rga.inference.laws.refine import polish_line
+from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.laplace import birge_ratio, covering_factor, laplace_spread
 from rga.inference.networks.travel_direction import EitherWay
-from rga.model import ContextVariable, Model
+from rga.model import ContextVariable
 from rga.twin.calibration.blocks import BLOCK, block, blocks
 from rga.twin.calibration.lesson import Lesson
 from rga.twin.simulation_model import SimulationModel, broken
 
-#: one simulation in so many is held out from training, to measure how far intervals must reach
-HELD_OUT = 8
+#: one simulation in so many is held out from training, to measure how far intervals must reach,
+#: and one measured row in so many, to tell when to stop
+HELD_OUT, JUDGES = 8, 5
 #: rows on which lines are compared
 ROWS_COMPARED = 200
 
@@ -75,26 +79,31 @@ class NetworkEstimator:
         contexts = np.tile(variables.middle, (len(data.real), 1))
         columns = [variables.contexts.index(name) for name in simulation.station.measured]
         contexts[:, columns] = data.real_contexts
+        real = Samples(np.where(faulty, np.nan, data.real), contexts[:, variables.measured_columns])
+        judges = np.arange(len(real)) % JUDGES == JUDGES - 1
         known = [model.context[name].noise or 0.0 for name in variables.measured]
         level = np.concatenate([np.where(np.isnan(noise), 1.0, noise), known])
         kind = settings.physics if start is None else settings.fine_physics
-        if kind == "exact" and _slow(model, latent):
-            kind = "reduced"
-            settings = settings.model_copy(update={"physics": kind, "fine_physics": kind})
-        physics: nn.Module | None = None
+        physics: nn.Module | TwinOnArrays | None = None
         if kind == "exact":
-            physics = _Exact(simulation, faulty, clock)
-            if data.falling.any():
-                physics = EitherWay(physics, variables.latent_columns[0])
+            physics = _exact(lesson, faulty)
+            if physics is None:
+                reduced = {"physics": "reduced", "fine_physics": "reduced"}
+                settings = settings.model_copy(update=reduced)
         network = train(
             source.rows(unheld),
-            Samples(np.where(faulty, np.nan, data.real), contexts[:, variables.measured_columns]),
+            real.rows(~judges),
             settings,
             variables=variables,
             noise=level,
             seed=lesson.seed,
             physics=physics,
             start=None if start is None else start._network,
+            held_out=partial(
+                _gap, simulation=simulation, rows=real.rows(judges), clock=clock, noise=noise
+            )
+            if judges.any()
+            else None,
             progress=lesson.progress,
         )
         learned = cls(network, simulation, faulty, level, np.ones(len(latent)))
@@ -287,10 +296,47 @@ class NetworkEstimator:
         self._known.clear()
 
 
-def _slow(model: Model, latent: tuple[str, ...]) -> bool:
-    """Whether every row has a structure of its own: then a simulation takes a solve a row."""
+def _gap(
+    network: ContextNetwork,
+    *,
+    simulation: SimulationModel,
+    rows: Samples,
+    clock: float,
+    noise: FloatArray,
+) -> float:
+    """How far measured rows are from the simulation at the contexts inferred for them.
+
+    The mean logarithm of squares: neither a broken channel nor a row without load rules the rest.
+    """
+    variables = network.variables
+    contexts = variables.together(rows.measured, network.infer(rows.readings, rows.measured))
+    contexts = np.where(np.isfinite(contexts), contexts, variables.middle)
+    simulated = simulation.readings(np.full(len(contexts), clock), contexts)
+    off = (rows.readings - simulated) / noise
+    return float(np.mean(np.log1p(off[np.isfinite(off)] ** 2)))
+
+
+def _exact(lesson: Lesson, faulty: NDArray[np.bool_]) -> nn.Module | TwinOnArrays | None:
+    """The exact simulation, as the physics loss takes it.
+
+    None where rows hang together and each has a structure of its own.
+    """
+    simulation, clock = lesson.simulation, lesson.clock
+    model, either = simulation.model, lesson.data.falling.any()
     structural = (effect for effect in model.effects.values() if effect.structural)
-    return any(effect.drivers() & set(latent) for effect in structural)
+    if any(effect.drivers() & set(lesson.latent) for effect in structural):
+        if either or any(effect.remembers for effect in model.effects.values()):
+            return None
+        # A structure of its own for every row takes a solve each: tangents do without.
+        middle = np.array([[np.mean(one.range) for one in model.context.values()]])
+        offsets = simulation.offsets(np.full(1, clock), middle)
+        gains = np.where(faulty, np.nan, simulation.gains)
+        return CorrectedTwin(simulation.simulator, gains, offsets, time=clock)
+    exact = _Exact(simulation, faulty, clock)
+    if not either:
+        return exact
+    column = list(model.context).index(lesson.latent[0])
+    return EitherWay(exact, column)
 
 
 class _Exact(nn.Module):
