@@ -14,6 +14,9 @@ from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import CondensedPaths, Request, variation_between
 from rga.simulation.paths.variation import Variation, VariationWithin
 
+#: half widths of their ranges within which contexts are looked for, and a little more
+BEYOND = 3.1
+
 
 class Assembly:
     """Puts effects on a structure.
@@ -134,26 +137,48 @@ class Assembly:
         )
         if not driving or moving or others:
             return None
+        wide = None
+        with suppress(InputError), np.errstate(all="ignore"):
+            wide = self._varied_within(driving, (1.0, BEYOND), None)
+        return self._varied_within(driving, (1.0,), wide)
+
+    def _varied_within(
+        self, driving: set[str], reaches: tuple[float, ...], beyond: VariationWithin | None
+    ) -> VariationWithin:
+        """What varies where contexts reach so many half widths of their ranges.
+
+        Args:
+            driving: contexts that drive the structure.
+            reaches: the farthest of them last.
+            beyond: what varies within wider limits.
+        """
         ranges = {name: one.range for name, one in self._model.context.items()}
-        ends = [{name: end} for name in ranges if name in driving for end in ranges[name]]
+        middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
+        ends = [
+            {name: middle[name] + reach * (end - middle[name])}
+            for reach in reaches
+            for name in ranges
+            if name in driving
+            for end in ranges[name]
+        ]
         rows: list[dict[str, float]] = [{}, *ends]
-        table = {
-            name: np.array([row.get(name, (low + high) / 2) for row in rows])
-            for name, (low, high) in ranges.items()
-        }
+        table = {name: np.array([row.get(name, middle[name]) for row in rows]) for name in ranges}
         values = self._resolve({**table, "time": np.zeros(len(rows))})
         parameters = self.parameters(values)
-        low, high = parameters.min(axis=0), parameters.max(axis=0)
+        corners = []
+        for count in range(1, len(reaches) + 1):
+            within = parameters[: 1 + len(ends) * count // len(reaches)]
+            corners += [within.min(axis=0), within.max(axis=0)]
 
         def varied() -> Variation | None:
             request = self.request(values, len(rows))
             # At the end of a range there may be no structure.
             with suppress(InputError):
                 if request.change(parameters[0]).linear:
-                    return variation_between(request, np.vstack([parameters[0], low, high]))
+                    return variation_between(request, np.vstack([parameters[0], *corners]))
             return None
 
-        return VariationWithin(low, high, varied)
+        return VariationWithin(corners[-2], corners[-1], varied, beyond)
 
     def loads(self, structure: Structure, values: dict[str, Values]) -> list[Load]:
         """Load patterns on a structure, with a coefficient a row.

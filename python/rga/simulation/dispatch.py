@@ -167,13 +167,16 @@ def answer(request: Request) -> tuple[ResponsePlan, FloatArray]:
 
 def _varied(request: Request) -> Variation | None:
     """What varies between the rows of a request; None where its states are to be solved apart."""
-    states = request.states
-    if len(states) == 1:
-        return unvaried(request.change(states[0]), states.shape[1])
+    states, limits = request.states, request.over_ranges()
     if len(states) > APART:
         return variation_under(request, states)
-    limits = request.over_ranges()
-    return limits.of(states) if limits is not None and limits.varying <= APART else None
+    known = None
+    if limits is not None and limits.varying <= APART and len(states) == len(request.state_of_row):
+        # What was condensed for structures of all rows is cheaper than to condense that of each.
+        known = limits.of(states)
+    if known is None and len(states) == 1:
+        return unvaried(request.change(states[0]), states.shape[1])
+    return known
 
 
 def variation_under(request: Request, states: FloatArray) -> Variation | None:

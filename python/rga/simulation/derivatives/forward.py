@@ -22,11 +22,18 @@ from rga.simulation.paths.factorisation import Factorisation
 from rga.simulation.paths.variation import unvaried
 
 if TYPE_CHECKING:
-    from rga.simulation.simulator import Response, Simulator
+    from rga.simulation.simulator import Simulator
 
 #: step of differences, as a share of the range of a context, and its least: nearer to an end of
 #: the range than that, the difference is taken to the other side alone
 STEP, LEAST = 1e-4, 1e-6
+#: what a linear path cannot do, or names no row and place of
+LEFT_TO_OTHERS = (
+    _core.UnstableSample,
+    DependentTerms,
+    _core.UnstableStructure,
+    _core.InvalidInput,
+)
 
 
 @dataclass(frozen=True)
@@ -86,10 +93,10 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
     out = np.zeros((len(table["time"]), len(model.sensors), len(model.context)))
     if not (contexts := _followed(simulator)):
         return out
-    response = simulator.respond(table)
+    values = simulator.resolve(table)
     columns = _columns(simulator, contexts)
     rates = None
-    for tangent in _tangents(simulator, response, contexts):
+    for tangent in _tangents(simulator, table, values, contexts):
         try:
             found = tangent.system.differentiate(
                 tangent.coefficients,
@@ -97,14 +104,18 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
                 tangent.coefficient_rates,
                 tangent.stiffness_rates,
             )
-        except (_core.UnstableSample, DependentTerms):
+        except LEFT_TO_OTHERS:
             continue  # the next path decides
         rates = found * tangent.per_si[:, None]
         break
     if rates is not None and simulator.reads_plainly:
         out[:, :, columns] = rates
         return out
-    sides, shown = _sides(simulator, response, contexts), []
+    response, sides, shown = (
+        simulator.respond(table),
+        _sides(simulator, table, values, contexts),
+        [],
+    )
     for number, one in enumerate(sides.tables):
         if rates is None:
             shown.append(simulator.predict(one))
@@ -112,10 +123,8 @@ def jacobian(simulator: "Simulator", table: Values) -> FloatArray:
         way = -sides.behind if number % 2 else sides.ahead
         along = rates[:, :, number // 2] * way[:, [number // 2]]
         moved = response.quantities + along
-        values = sides.of(number, len(moved))
-        shown.append(
-            simulator.read(replace(response, contexts=one, values=values, quantities=moved))
-        )
+        own = sides.of(number, len(moved))
+        shown.append(simulator.read(replace(response, contexts=one, values=own, quantities=moved)))
     ahead, behind = np.stack(shown[::2], 2), np.stack(shown[1::2], 2)
     out[:, :, columns] = (ahead - behind) / (sides.ahead + sides.behind)[:, None]
     return out
@@ -137,13 +146,12 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
         return out
     if not simulator.reads_plainly:
         return _product(gradients, jacobian(simulator, table))
-    response = simulator.respond(table)
-    for tangent in _tangents(simulator, response, contexts):
+    for tangent in _tangents(simulator, table, simulator.resolve(table), contexts):
         try:
             found = tangent.system.pull_back(
                 tangent.coefficients, tangent.stiffness, gradients * tangent.per_si
             )
-        except (_core.UnstableSample, DependentTerms):
+        except LEFT_TO_OTHERS:
             continue  # the next path decides
         by_loads, by_stiffness = np.split(found, [tangent.coefficients.shape[1]], axis=1)
         along = _product(by_loads, tangent.coefficient_rates)
@@ -178,8 +186,10 @@ def _of_structure_alone(simulator: "Simulator", contexts: list[str]) -> list[str
     return [name for name in contexts if name not in others]
 
 
-def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) -> Sides:
-    model, table = simulator.model, response.contexts
+def _sides(
+    simulator: "Simulator", table: Values, own: dict[str, Values], contexts: list[str]
+) -> Sides:
+    model = simulator.model
     ahead, behind, tables = [], [], []
     for name in contexts:
         here = table[name]
@@ -190,8 +200,8 @@ def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) ->
     if any(effect.remembers for effect in model.effects.values()):
         apart = [simulator.resolve(one) for one in tables]
         values = {
-            name: {key: np.concatenate([one[name][key] for one in apart]) for key in own}
-            for name, own in response.values.items()
+            name: {key: np.concatenate([one[name][key] for one in apart]) for key in keys}
+            for name, keys in own.items()
         }
     else:
         values = simulator.resolve(
@@ -199,7 +209,7 @@ def _sides(simulator: "Simulator", response: "Response", contexts: list[str]) ->
         )
         for name, effect in model.effects.items():
             for key in effect.of_all_rows:
-                values[name][key] = np.tile(response.values[name][key], len(tables))
+                values[name][key] = np.tile(own[name][key], len(tables))
     columns = _columns(simulator, contexts)
     return Sides(columns, np.stack(ahead, 1), np.stack(behind, 1), tables, values)
 
@@ -217,15 +227,15 @@ def _steps(value: FloatArray, low: float, high: float) -> tuple[FloatArray, Floa
 
 
 def _tangents(
-    simulator: "Simulator", response: "Response", contexts: list[str]
+    simulator: "Simulator", table: Values, values: dict[str, Values], contexts: list[str]
 ) -> Iterator[Tangent]:
     """Linear paths at the rows, the cheapest first; none where there is no tangent."""
-    rows = len(response.contexts["time"])
-    middle = simulator.assembly.request(response.values, rows)
+    rows = len(table["time"])
+    middle = simulator.assembly.request(values, rows)
     alone = _of_structure_alone(simulator, contexts)
-    along, low, high = _structure_along(simulator, response, contexts, alone)
+    along, low, high = _structure_along(simulator, table, values, contexts, alone)
     of_loads = [number for number, name in enumerate(contexts) if name not in alone]
-    sides = _sides(simulator, response, [contexts[number] for number in of_loads])
+    sides = _sides(simulator, table, values, [contexts[number] for number in of_loads])
     if of_loads:
         moved = simulator.assembly.parameters(sides.values)
         along[:, :, of_loads] = _rates(moved, sides)
@@ -259,7 +269,11 @@ def _tangents(
 
 
 def _structure_along(
-    simulator: "Simulator", response: "Response", contexts: list[str], alone: list[str]
+    simulator: "Simulator",
+    table: Values,
+    values: dict[str, Values],
+    contexts: list[str],
+    alone: list[str],
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """How structural parameters follow contexts that change the structure alone.
 
@@ -267,11 +281,11 @@ def _structure_along(
         Derivatives, float[rows, parameters, contexts], which of other contexts are zero, and
         smallest and largest of each parameter on both sides of the rows, float[parameters] each.
     """
-    model, table = simulator.model, response.contexts
-    rows, here = len(table["time"]), simulator.assembly.parameters(response.values)
+    model = simulator.model
+    rows, here = len(table["time"]), simulator.assembly.parameters(values)
     along = np.zeros((rows, here.shape[1], len(contexts)))
     low, high = here.min(axis=0), here.max(axis=0)
-    columns = {one: number for number, one in enumerate(simulator.assembly.keys(response.values))}
+    columns = {one: number for number, one in enumerate(simulator.assembly.keys(values))}
     for name in alone:
         up, down = _steps(table[name], *model.context[name].range)
         tables = {**table, name: table[name] + up}, {**table, name: table[name] - down}

@@ -90,12 +90,17 @@ class VariationWithin:
     Args:
         low, high: the limits, float[parameters] each.
         find: what varies between them; None where it is more than straight stiffnesses.
+        beyond: the same within wider limits.
     """
 
     def __init__(
-        self, low: FloatArray, high: FloatArray, find: Callable[[], Variation | None]
+        self,
+        low: FloatArray,
+        high: FloatArray,
+        find: Callable[[], Variation | None],
+        beyond: "VariationWithin | None" = None,
     ) -> None:
-        self._low, self._high, self._find = low, high, find
+        self._low, self._high, self._find, self._beyond = low, high, find, beyond
 
     @property
     def varying(self) -> int:
@@ -105,7 +110,7 @@ class VariationWithin:
     def of(self, states: FloatArray) -> Variation | None:
         """What varies between states, float[states, parameters]; None if they lie elsewhere."""
         if not ((self._low <= states) & (states <= self._high)).all():
-            return None
+            return None if self._beyond is None else self._beyond.of(states)
         return self._varied
 
     @cached_property
