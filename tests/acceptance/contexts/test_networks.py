@@ -136,6 +136,17 @@ def test_the_same_seed_gives_the_same_bits(unlike: PhysicalTwin) -> None:
     assert other.to_bytes() != one.to_bytes()
 
 
+def test_exact_physics_are_the_simulator_where_each_row_has_a_structure(
+    unlike: PhysicalTwin,
+) -> None:
+    """Bearings and stiffness follow contexts here; the frozen network does not stand in."""
+    frozen, exact = (
+        trained(short(f"DANN + physics, {kind}", **FEW))(given(unlike))
+        for kind in ("frozen network", "exact simulator")
+    )
+    assert frozen.to_bytes() != exact.to_bytes()
+
+
 def test_physics_narrow_the_gap(unlike: PhysicalTwin) -> None:
     asked, simulation = drawn(9, 300, unlike), given(unlike).simulation
 

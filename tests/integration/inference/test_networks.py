@@ -94,6 +94,16 @@ def test_a_missing_and_a_broken_channel_are_survived(
     assert error(broken) == pytest.approx(error(missing), rel=1e-3)
 
 
+def test_contexts_stay_where_the_training_looked(trained: ContextNetwork) -> None:
+    """However far readings are from all that was simulated."""
+    readings = np.random.default_rng(1).normal(0.0, 1e3, (200, len(trained.variables.sensors)))
+    found = trained.infer(readings, np.zeros((200, 1)))
+    low, high = np.transpose(trained.variables.ranges)[:, trained.variables.latent_columns]
+    beyond = np.maximum(low - found, found - high) / (high - low)
+    assert (beyond <= 0.25 + 1e-6).all()
+    assert (beyond > 0.0).any()
+
+
 def test_two_trainings_give_equal_bytes_for_any_number_of_threads(forwards: Model) -> None:
     threads = torch.get_num_threads()
     results = []

@@ -52,6 +52,36 @@ def test_a_stiffness_follows_the_temperature_by_hand() -> None:
         simulator.predict({"air": 70.0})
 
 
+def test_two_bases_that_give_way_stand_one_behind_the_other() -> None:
+    """A hanging bar sinks by F L / EA, and by F / k of each of them."""
+    area, modulus, length, load = 0.004, 2e11, 3.0, 1e5
+    plain = {
+        "rga_model": 1,
+        "name": "bar",
+        "plane": "xz",
+        "materials": {"steel": {"E": modulus, "alpha": 0.0}},
+        "sections": {"bar": {"A": area}},
+        "nodes": {"top": [0, 0, length], "low": [0, 0, 0]},
+        "members": {"bar": {"nodes": ["top", "low"], "section": "bar", "material": "steel"}},
+        "supports": {
+            "top": {"node": "top", "fixed": ["ux", "uz"]},
+            "low": {"node": "low", "fixed": ["ux"]},
+        },
+        "sensors": {
+            "z": {"kind": "displacement", "node": "low", "direction": [0, 0, -1], "unit": "m"}
+        },
+    }
+    pull = {"kind": "nodal_load", "forces": {"low": [0, 0, -load]}}
+    soft = {"kind": "support_flexibility", "support": "top", "dof": "uz"}
+    rod = load * length / (modulus * area)
+    for given in ((), (5e7,), (5e7, 2e7), (2e7, 5e7), (5e7, 2e7, 1e7)):
+        bases = {f"base {n}": {**soft, "stiffness": k} for n, k in enumerate(given)}
+        model = read_model({**plain, "effects": {"pull": pull, **bases}}, "test")
+        shown = Simulator(model).predict({})
+        expected = rod + sum(load / stiffness for stiffness in given)
+        np.testing.assert_allclose(shown, [[expected]], rtol=1e-12)
+
+
 def test_a_stiffness_follows_members_that_warm_late() -> None:
     """The order of the effects does not matter, and lag and stiffness are those of hand."""
     rate = {"kind": "stiffness_temperature", "group": "bottom", "rate": -0.01}
