@@ -148,6 +148,7 @@ class Effect(BaseModel):
         return cls.on_sensors or any(mark.of == "sensor" for mark in cls.place_fields().values())
 
     @classmethod
+    @cache
     def overrides(cls, method: str) -> bool:
         """True where a kind has a `change_...` method, or `loads`, of its own.
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -87,10 +88,19 @@ class Simulator:
             return self
         return Simulator(self.model.model_copy(update={"effects": kept}), self._structure)
 
+    @cached_property
+    def driven(self) -> dict[str, list[str]]:
+        """Context variables that drive effects of the model, with the names of these effects."""
+        found: dict[str, list[str]] = {}
+        for name, effect in self.model.effects.items():
+            for context in sorted(effect.drivers()):
+                found.setdefault(context, []).append(name)
+        return found
+
     @property
     def needed(self) -> set[str]:
         """Context variables that drive effects of the model."""
-        return set().union(*(effect.drivers() for effect in self.model.effects.values()))
+        return set(self.driven)
 
     def predict(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
         """Simulated sensor values.
@@ -247,7 +257,7 @@ class Simulator:
                 table[name] = np.zeros(rows)
                 continue
             if name not in given:
-                if name in self.needed:
+                if name in self.driven:
                     raise InputError(
                         f"the context {name!r} is missing", "contexts", "give a value a row"
                     )

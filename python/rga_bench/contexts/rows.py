@@ -105,7 +105,7 @@ METHODS: dict[str, Row] = {
     "joint posterior": Row(JointEstimator.learn),
     "joint posterior, 20 load tests": Row(JointEstimator.learn, load_tests=20, manners=MANNERS),
     "joint posterior, 60 load tests": Row(JointEstimator.learn, load_tests=60, manners=MANNERS),
-    "amortised": Row(amortised),
+    "amortised": Row(amortised, manners=MANNERS),
     "neural posterior (sbi)": Row(_rival(neural_posterior), manners=MANNERS, needs=("sbi",)),
     "CORAL (skada)": Row(_rival(skada_coral), manners=MANNERS, needs=("skada", "sklearn")),
     "DANN (skada)": Row(_rival(skada_dann), manners=MANNERS, needs=("skada", "sklearn", "skorch")),

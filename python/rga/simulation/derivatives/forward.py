@@ -163,8 +163,7 @@ def pull_back(simulator: "Simulator", table: Values, gradients: FloatArray) -> F
 
 def _followed(simulator: "Simulator") -> list[str]:
     """Contexts that drive something."""
-    needed = simulator.needed
-    return [name for name in simulator.model.context if name in needed]
+    return [name for name in simulator.model.context if name in simulator.driven]
 
 
 def _columns(simulator: "Simulator", contexts: list[str]) -> list[int]:
@@ -175,15 +174,15 @@ def _columns(simulator: "Simulator", contexts: list[str]) -> list[int]:
 
 def _of_structure_alone(simulator: "Simulator", contexts: list[str]) -> list[str]:
     """Those of the contexts that change the structure, and nothing else, of their row alone."""
-    effects = simulator.model.effects.values()
-    if any(one.overrides("change_contexts") or one.overrides("change_values") for one in effects):
-        return []
-    others: set[str] = set()
-    for one in effects:
+    effects = simulator.model.effects
+    others = set()
+    for name, one in effects.items():
+        if one.overrides("change_contexts") or one.overrides("change_values"):
+            return []
         loading = one.overrides("loads") or one.overrides("change_loads")
         if loading or not one.structural or one.remembers or one.of_all_rows:
-            others |= one.drivers()
-    return [name for name in contexts if name not in others]
+            others.add(name)
+    return [name for name in contexts if others.isdisjoint(simulator.driven[name])]
 
 
 def _sides(
@@ -289,10 +288,8 @@ def _structure_along(
     for name in alone:
         up, down = _steps(table[name], *model.context[name].range)
         tables = {**table, name: table[name] + up}, {**table, name: table[name] - down}
-        for of, effect in model.effects.items():
-            if name not in effect.drivers():
-                continue
-            ahead, behind = (effect.values(one, rows) for one in tables)
+        for of in simulator.driven[name]:
+            ahead, behind = (model.effects[of].values(one, rows) for one in tables)
             for key in ahead:
                 column, ends = columns[of, key], np.stack([ahead[key], behind[key]])
                 moved = _difference(ahead[key], behind[key])
