@@ -59,6 +59,7 @@ def diagnose(
     record: Record,
     *,
     parts: Model | None = None,
+    calm: float | None = None,
     criteria: Criteria | None = None,
     seed: int = 0,
     progress: Progress | None = None,
@@ -70,6 +71,8 @@ def diagnose(
         record: measured data.
         parts: the model in whose parts causes are looked for, where this one has others beside
             them; None: this one.
+        calm: clock [s] up to which nothing acts that is looked for, so that the scatter shows
+            there as it is; None: it is estimated from all rows, beside causes.
         criteria: what decides the verdict; None: the default ones.
         seed: of the bootstrap of the gain.
         progress: called with a stage and the share of it that is done.
@@ -82,11 +85,19 @@ def diagnose(
     """
     tell_progress = progress or (lambda stage, done: None)
     with threadpool_limits(1):
-        return _diagnose(model, parts or model, record, criteria or Criteria(), seed, tell_progress)
+        return _diagnose(
+            model, parts or model, record, calm, criteria or Criteria(), seed, tell_progress
+        )
 
 
 def _diagnose(
-    model: Model, parts: Model, record: Record, criteria: Criteria, seed: int, progress: Progress
+    model: Model,
+    parts: Model,
+    record: Record,
+    calm: float | None,
+    criteria: Criteria,
+    seed: int,
+    progress: Progress,
 ) -> Findings:
     def read(done: float) -> None:
         progress("reading the contexts", done)
@@ -100,6 +111,9 @@ def _diagnose(
 
     def searched(prepared: PreparedRecord) -> tuple[Problem, Screening, Found]:
         data = prepared.data.rows(~held_out)
+        if calm is not None:
+            before = settled(base, data.rows(data.time <= calm))
+            data = replace(data, scatter=before.levels)
         candidates = hypotheses(parts.without_zeros(), data.sensors, measured)
         start = settled(base, data)
         progress("estimating the noise", 1.0)

@@ -173,7 +173,7 @@ class Assembly:
         def varied() -> Variation | None:
             request = self.request(values, len(rows))
             # At the end of a range there may be no structure.
-            with suppress(InputError):
+            with suppress(InputError), np.errstate(all="ignore"):
                 if request.change(parameters[0]).linear:
                     return variation_between(request, np.vstack([parameters[0], *corners]))
             return None

@@ -50,7 +50,13 @@ def diagnose_change(
     corrected = _structure(model, found)
     readings = _without_sensor_errors(record, found, correction)
     findings = diagnose(
-        corrected, readings, parts=model, criteria=criteria, seed=seed, progress=progress
+        corrected,
+        readings,
+        parts=model,
+        calm=since,
+        criteria=criteria,
+        seed=seed,
+        progress=progress,
     )
     account = findings.account
     effects = {name: account.extended.effects[name] for name in beyond(corrected, account.extended)}

@@ -98,6 +98,8 @@ class Data:
         belief: what is believed of the contexts.
         tare: the rows whose mean was taken off every channel.
         criteria: what decides a verdict.
+        scatter: levels of the families of the scatter, where they were seen on other rows;
+            None: they are estimated.
     """
 
     sensors: tuple[str, ...]
@@ -107,6 +109,7 @@ class Data:
     belief: Belief
     tare: Tare
     criteria: Criteria
+    scatter: FloatArray | None = None
     _about: list[tuple[Belief, Vicinity]] = field(default_factory=list, init=False, compare=False)
     _tried: dict[tuple[Vicinity, str, bool], tuple[FloatArray, bool]] = field(
         default_factory=dict, init=False, compare=False

@@ -169,7 +169,10 @@ def pose(
     scatter = scatter_effects(simulator, data, simulated, patterns, factors, calibrations)
     levels = before.levels if before is not None else MEDIANS
     covariance = Covariance(rows, scatter.effects, scatter.spread(levels))
-    levels = scatter_levels(covariance, scatter, residual, levels)
+    if data.scatter is None:
+        levels = scatter_levels(covariance, scatter, residual, levels)
+    else:
+        levels = data.scatter
     covariance = covariance.with_spread(scatter.spread(levels))
     return Problem(
         data=data,
