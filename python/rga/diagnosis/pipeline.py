@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.arrays import FloatArray
+from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.assemble.causes import causes, fault_cause
 from rga.diagnosis.assemble.contexts import contexts
 from rga.diagnosis.assemble.effects import cause_name, effects_of, fault_effect
@@ -52,6 +52,8 @@ from rga.records import Record
 from rga.simulation import Simulator
 
 Progress = Callable[[str, float], None]
+#: fewer rows show too little of the scatter
+SHOW_SCATTER = 20
 
 
 def diagnose(
@@ -112,8 +114,7 @@ def _diagnose(
     def searched(prepared: PreparedRecord) -> tuple[Problem, Screening, Found]:
         data = prepared.data.rows(~held_out)
         if calm is not None:
-            before = settled(base, data.rows(data.time <= calm))
-            data = replace(data, scatter=before.levels)
+            data = _with_scatter_of(data, data.time <= calm, base)
         candidates = hypotheses(parts.without_zeros(), data.sensors, measured)
         start = settled(base, data)
         progress("estimating the noise", 1.0)
@@ -210,6 +211,16 @@ def _diagnose(
     findings._account = account
     progress("done", 1.0)
     return findings
+
+
+def _with_scatter_of(data: Data, calm: BoolArray, base: Simulator) -> Data:
+    """Data whose scatter is that of the rows in which nothing acts, bool[rows].
+
+    A cause that acts for long enough would else pass for scatter.
+    """
+    if calm.sum() < SHOW_SCATTER:
+        return data
+    return replace(data, scatter=settled(base, data.rows(calm)).levels)
 
 
 def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:

@@ -1,9 +1,12 @@
 """The order of the steps: a record in, findings out, and nothing found where nothing is hidden."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from rga.arrays import FloatArray
 from rga.diagnosis.pipeline import diagnose
 from rga.findings import Findings
 from rga.model import Model
@@ -44,6 +47,29 @@ def test_where_nothing_is_hidden_nothing_is_found(
     _, null, _ = diagnosed
     assert (null.verdict, null.causes, null.warnings) == ("nothing_wrong", [], [])
     assert null.gap.held_out.gain == 0.0
+
+
+def test_the_scatter_is_that_of_rows_in_which_nothing_acts(
+    model: Model, measured_record: Callable[..., Record]
+) -> None:
+    """What acts later does not raise it; too few of these rows say nothing."""
+    sound = measured_record(model)
+    time, rows = sound.time, len(sound.time)
+    half = rows // 2
+    moved = sound.readings.copy()
+    moved[half:] *= np.random.default_rng(3).normal(1.0, 0.05, moved.shape[1])
+    off = replace(sound, readings=moved)
+
+    def levels(record: Record, calm: float | None) -> FloatArray:
+        found = diagnose(model, record, calm=calm).account.found
+        assert found is not None
+        return found.problem.levels
+
+    calm = float(time[half - 1])
+    free = levels(off, None)
+    np.testing.assert_array_equal(levels(off, calm), levels(sound, calm))
+    assert free[1] > 1.5 * levels(off, calm)[1]
+    np.testing.assert_array_equal(levels(off, float(time[5])), free)
 
 
 def test_progress_is_said_in_stages(diagnosed: tuple[Findings, Findings, Said]) -> None:
