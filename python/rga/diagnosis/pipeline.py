@@ -52,7 +52,7 @@ from rga.records import Record
 from rga.simulation import Simulator
 
 Progress = Callable[[str, float], None]
-#: fewer rows show too little of the scatter
+#: fewer readings of most channels show too little of the scatter
 SHOW_SCATTER = 20
 
 
@@ -218,7 +218,7 @@ def _with_scatter_of(data: Data, calm: BoolArray, base: Simulator) -> Data:
 
     A cause that acts for long enough would else pass for scatter.
     """
-    if calm.sum() < SHOW_SCATTER:
+    if np.median(data.observed[calm].sum(axis=0)) < SHOW_SCATTER:
         return data
     return replace(data, scatter=settled(base, data.rows(calm)).levels)
 

@@ -137,20 +137,27 @@ class Assembly:
         )
         if not driving or moving or others:
             return None
-        wide = None
-        with suppress(InputError), np.errstate(all="ignore"):
-            wide = self._varied_within(driving, (1.0, BEYOND), None)
+
+        def wide() -> VariationWithin | None:
+            # A kind of one's own need not know what it is so far out.
+            with suppress(Exception), np.errstate(all="ignore"):
+                return self._varied_within(driving, (1.0, BEYOND))
+            return None
+
         return self._varied_within(driving, (1.0,), wide)
 
     def _varied_within(
-        self, driving: set[str], reaches: tuple[float, ...], beyond: VariationWithin | None
+        self,
+        driving: set[str],
+        reaches: tuple[float, ...],
+        beyond: Callable[[], VariationWithin | None] = lambda: None,
     ) -> VariationWithin:
         """What varies where contexts reach so many half widths of their ranges.
 
         Args:
             driving: contexts that drive the structure.
             reaches: the farthest of them last.
-            beyond: what varies within wider limits.
+            beyond: finds what varies within wider limits.
         """
         ranges = {name: one.range for name, one in self._model.context.items()}
         middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
@@ -173,7 +180,8 @@ class Assembly:
         def varied() -> Variation | None:
             request = self.request(values, len(rows))
             # At the end of a range there may be no structure.
-            with suppress(InputError), np.errstate(all="ignore"):
+            missing = Exception if len(reaches) > 1 else InputError
+            with suppress(missing), np.errstate(all="ignore"):
                 if request.change(parameters[0]).linear:
                     return variation_between(request, np.vstack([parameters[0], *corners]))
             return None

@@ -20,6 +20,7 @@ from rga.twin.calibration.expectation import usual_bound
 from rga.twin.calibration.joint_posterior import JointEstimator, changes, why_not
 from rga.twin.calibration.learning import learn, read, written
 from rga.twin.calibration.lesson import Lesson
+from rga.twin.calibration.networks import NetworkEstimator
 from rga.twin.messages.hardware import HardwareInterface
 from rga.twin.messages.queries import Q3, R4, Box, sha256
 from rga.twin.simulation_model import SimulationModel
@@ -255,6 +256,20 @@ def test_rows_without_readings_change_nothing(drawn: Drawn, learned: JointEstima
     outage = drawn.lesson(slice(40, 60))
     data = outage.data.model_copy(update={"real": np.full_like(outage.data.real, np.nan)})
     assert learned.refined(replace(outage, data=data)) is learned
+
+
+@pytest.mark.parametrize("silent", [slice(None), slice(4, None, 5)])
+def test_networks_learn_where_no_row_can_judge_them(drawn: Drawn, silent: slice) -> None:
+    """Rows without readings, all of them or the very ones that might have been held out."""
+    lesson = drawn.lesson(slice(0, 20))
+    real = lesson.data.real.copy()
+    real[silent] = np.nan
+    rows = replace(lesson, data=lesson.data.model_copy(update={"real": real}))
+    learned = NetworkEstimator.learn(rows)
+    for one in (learned, learned.refined(rows)):
+        value, spread = drawn.infer(one, 0, 20)
+        assert np.isfinite(value).all()
+        assert np.isfinite(spread).all()
 
 
 def test_a_silent_channel_hides_no_change(small_stream: Stream, learned: JointEstimator) -> None:

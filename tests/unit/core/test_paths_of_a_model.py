@@ -1,5 +1,6 @@
 """Which exact path a model is simulated by, and that it agrees with structures built anew."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,10 @@ import pytest
 import rga
 from rga.errors import InputError, UnstableStructureError
 from rga.model import read_model
+from rga.model.effects.members.member_stiffness import MemberStiffness
 from rga.model.schema import EndSprings
 from rga.model.structure import Structure, build_structure
-from rga.simulation.paths.variation import variation
+from rga.simulation.paths.variation import Variation, variation
 
 
 def model_with(effects: dict[str, Any], kind: str = "truss") -> rga.Model:
@@ -85,7 +87,7 @@ ZONE = {"kind": "rigid_end_zone", "group": "bottom", "length": {"context": "loss
 RIGIDITY = {"kind": "joint_rigidity", "group": "bottom", "stiffness": {"context": "bearing"}}
 
 
-def contexts(rows: int, **fixed: float) -> dict[str, Any]:
+def contexts(rows: int, **fixed: Any) -> dict[str, Any]:
     draw = np.random.default_rng(rows)
     drawn = {
         "load": draw.uniform(0, 20, rows),
@@ -263,3 +265,60 @@ def test_contexts_that_are_none_are_refused(two_bars: dict[str, Any], wrong: Any
         simulator.predict(wrong)
     with pytest.raises(InputError):
         simulator.jacobian(wrong)
+
+
+def test_what_bends_to_both_sides_alike_is_not_straight() -> None:
+    """A cubic about the middle goes through the middle and both ends of a line."""
+    start = build_structure(model_with({}))
+
+    def variation_of(law: Callable[[float], float]) -> Variation | None:
+        def change(state: Any) -> Structure:
+            changed = start.copy()
+            changed.arrays["E"][[2, 5]] *= law(float(state[0]))
+            return changed
+
+        return variation(change, np.array([[1.0], [0.5], [1.5]]))
+
+    assert variation_of(lambda p: 1.0 + 4.0 * (p - 1.0) ** 3) is None
+    assert variation_of(lambda p: p) is not None
+
+
+def test_a_kind_need_not_know_what_it_is_far_beyond_its_range(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Rows in the range, one or many, and a little beyond are simulated by themselves."""
+    plain = MemberStiffness.values
+
+    def values(self: MemberStiffness, contexts: Any, rows: int) -> Any:
+        if contexts["loss"].max() > 1.05:
+            raise ValueError("not known")
+        return plain(self, contexts, rows)
+
+    losses = np.array([0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.04])
+    wanted = rga.Simulator(model_with({"loss": LOSS})).predict(contexts(7, loss=losses))
+    monkeypatch.setattr(MemberStiffness, "values", values)
+    simulator = rga.Simulator(model_with({"loss": LOSS}))
+    np.testing.assert_allclose(
+        simulator.predict(contexts(7, loss=losses)), wanted, rtol=1e-9, atol=1e-12
+    )
+    for row in range(7):
+        one = {name: column[row : row + 1] for name, column in contexts(7, loss=losses).items()}
+        np.testing.assert_allclose(simulator.predict(one)[0], wanted[row], rtol=1e-9, atol=1e-12)
+
+
+def test_derivatives_where_contexts_change_the_structure_alone() -> None:
+    """The load is what it is: nothing but a stiffness follows a context."""
+    content = model_with({"loss": LOSS})
+    effects = {name: one for name, one in content.effects.items() if name != "sun"}
+    effects["tip"] = effects["tip"].model_copy(update={"factor": 10.0})
+    simulator = rga.Simulator(content.model_copy(update={"effects": effects}))
+    loss, step = np.array([0.6, 0.8, 0.9]), 1e-6
+    ahead, behind = (simulator.predict({"loss": loss + way * step}) for way in (1, -1))
+    found = simulator.jacobian({"loss": loss})
+    column = list(content.context).index("loss")
+    np.testing.assert_allclose(
+        found[:, :, column], (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-8
+    )
+    assert not np.delete(found, column, axis=2).any()
+    along = simulator.pull_back({"loss": loss}, np.ones((3, 3)))[:, column]
+    np.testing.assert_allclose(along, found[:, :, column].sum(axis=1), rtol=1e-9)

@@ -29,6 +29,8 @@ class Stopping:
         return self._vain > PATIENCE
 
     def best(self, last: ContextNetwork) -> ContextNetwork:
-        """The best network that was looked at, the last one included."""
+        """The best network that was looked at, the last one too; this one, if none is judged."""
         self.enough(last)
+        if not self._kept:
+            return last
         return ContextNetwork.from_bytes(self._kept)

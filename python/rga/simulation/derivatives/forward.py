@@ -234,8 +234,8 @@ def _tangents(
     alone = _of_structure_alone(simulator, contexts)
     along, low, high = _structure_along(simulator, table, values, contexts, alone)
     of_loads = [number for number, name in enumerate(contexts) if name not in alone]
-    sides = _sides(simulator, table, values, [contexts[number] for number in of_loads])
     if of_loads:
+        sides = _sides(simulator, table, values, [contexts[number] for number in of_loads])
         moved = simulator.assembly.parameters(sides.values)
         along[:, :, of_loads] = _rates(moved, sides)
         low, high = np.minimum(low, moved.min(axis=0)), np.maximum(high, moved.max(axis=0))

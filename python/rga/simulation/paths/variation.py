@@ -14,6 +14,8 @@ from rga.model.structure import Structure
 
 #: rows at which straightness is checked, beside the ends of each parameter
 CHECKED = 6
+#: and of what lies between the smallest and largest parameters
+ASKEW = (0.17, 0.71)
 #: share of the range of a parameter that a value is from both ends to be looked at as well
 INSIDE = 0.1
 
@@ -90,7 +92,7 @@ class VariationWithin:
     Args:
         low, high: the limits, float[parameters] each.
         find: what varies between them; None where it is more than straight stiffnesses.
-        beyond: the same within wider limits.
+        beyond: finds the same within wider limits; None where there are none.
     """
 
     def __init__(
@@ -98,7 +100,7 @@ class VariationWithin:
         low: FloatArray,
         high: FloatArray,
         find: Callable[[], Variation | None],
-        beyond: "VariationWithin | None" = None,
+        beyond: Callable[[], "VariationWithin | None"] = lambda: None,
     ) -> None:
         self._low, self._high, self._find, self._beyond = low, high, find, beyond
 
@@ -110,8 +112,12 @@ class VariationWithin:
     def of(self, states: FloatArray) -> Variation | None:
         """What varies between states, float[states, parameters]; None if they lie elsewhere."""
         if not ((self._low <= states) & (states <= self._high)).all():
-            return None if self._beyond is None else self._beyond.of(states)
+            return None if self._wider is None else self._wider.of(states)
         return self._varied
+
+    @cached_property
+    def _wider(self) -> "VariationWithin | None":
+        return self._beyond()
 
     @cached_property
     def _varied(self) -> Variation | None:
@@ -152,8 +158,10 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
             return None
     low, high = states.min(axis=0), states.max(axis=0)
     chosen = np.unique(np.linspace(0, len(states) - 1, CHECKED).astype(int))
-    # Parameters that act together show at the far corner, where all have moved.
-    looked_at = np.vstack([states[chosen], np.where(high > states[0], high, low)])
+    # Parameters that act together show at the far corner, where all have moved; what bends to both
+    # sides alike shows at places that do not mirror each other.
+    between = [np.where(low < high, low + share * (high - low), low) for share in ASKEW]
+    looked_at = np.vstack([states[chosen], np.where(high > states[0], high, low), *between])
     others = [change(state) for state in looked_at]
     truth = np.stack([_stiffness(other, lengths) for other in others])
     shared = ((slope != 0).sum(axis=0) > 1) & (first > 0)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.inference import ContextNetwork, Samples, Variables, train
 from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.laws.mixture import Candidates, joined
@@ -27,6 +28,8 @@ from rga.twin.simulation_model import SimulationModel, broken
 #: one simulation in so many is held out from training, to measure how far intervals must reach,
 #: and one measured row in so many, to tell when to stop
 HELD_OUT, JUDGES = 8, 5
+#: how far networks reach from the middle of a range, in widths of it, and a little more
+OUTERMOST = 0.76
 #: rows on which lines are compared
 ROWS_COMPARED = 200
 
@@ -80,7 +83,8 @@ class NetworkEstimator:
         columns = [variables.contexts.index(name) for name in simulation.station.measured]
         contexts[:, columns] = data.real_contexts
         real = Samples(np.where(faulty, np.nan, data.real), contexts[:, variables.measured_columns])
-        judges = np.arange(len(real)) % JUDGES == JUDGES - 1
+        read = np.isfinite(real.readings).any(axis=1)
+        judges = read & (np.cumsum(read) % JUDGES == 0)
         known = [model.context[name].noise or 0.0 for name in variables.measured]
         level = np.concatenate([np.where(np.isnan(noise), 1.0, noise), known])
         kind = settings.physics if start is None else settings.fine_physics
@@ -311,15 +315,18 @@ def _gap(
     variables = network.variables
     contexts = variables.together(rows.measured, network.infer(rows.readings, rows.measured))
     contexts = np.where(np.isfinite(contexts), contexts, variables.middle)
+    contexts = np.clip(contexts, *np.transpose(variables.ranges))
     simulated = simulation.readings(np.full(len(contexts), clock), contexts)
     off = (rows.readings - simulated) / noise
-    return float(np.mean(np.log1p(off[np.isfinite(off)] ** 2)))
+    seen = np.isfinite(off)
+    return float(np.mean(np.log1p(off[seen] ** 2))) if seen.any() else np.inf
 
 
 def _exact(lesson: Lesson, faulty: NDArray[np.bool_]) -> nn.Module | TwinOnArrays | None:
     """The exact simulation, as the physics loss takes it.
 
-    None where rows hang together and each has a structure of its own.
+    None where rows hang together and each has a structure of its own, or where none stands as far
+    out as networks reach.
     """
     simulation, clock = lesson.simulation, lesson.clock
     model, either = simulation.model, lesson.data.falling.any()
@@ -331,12 +338,24 @@ def _exact(lesson: Lesson, faulty: NDArray[np.bool_]) -> nn.Module | TwinOnArray
         middle = np.array([[np.mean(one.range) for one in model.context.values()]])
         offsets = simulation.offsets(np.full(1, clock), middle)
         gains = np.where(faulty, np.nan, simulation.gains)
-        return CorrectedTwin(simulation.simulator, gains, offsets, time=clock)
+        twin = CorrectedTwin(simulation.simulator, gains, offsets, time=clock)
+        return twin if _stands(twin) else None
     exact = _Exact(simulation, faulty, clock)
     if not either:
         return exact
     column = list(model.context).index(lesson.latent[0])
     return EitherWay(exact, column)
+
+
+def _stands(twin: TwinOnArrays) -> bool:
+    """Whether there is a structure at each context as far out as networks reach."""
+    middle, width = twin.ranges.mean(axis=1), np.ptp(twin.ranges, axis=1)
+    ends = np.concatenate([side * OUTERMOST * np.diag(width) for side in (-1.0, 1.0)])
+    try:
+        twin.simulate(middle + ends)
+    except InputError:
+        return False
+    return True
 
 
 class _Exact(nn.Module):
