@@ -34,7 +34,7 @@ leave the least gap."""
 def page(result: ContextsResult, command: str) -> MarkdownPage:
     """All tables, and what they mean."""
     figures = {"methods.png": "methods"}
-    if result.setting.drifts:
+    if any(one.played for one in result.outcomes):
         figures["levels.png"] = "levels"
     return MarkdownPage(
         "loi.md",
@@ -65,8 +65,8 @@ def _about(result: ContextsResult) -> list[str]:
 
 def _tables(result: ContextsResult) -> list[TextTable]:
     """All tables."""
-    levels = papers(result)
+    levels = [one for one in papers(result) if one.rows]
     if levels:
         levels.insert(1, published())
-    others = [by_context(result), targets(result), cost(result)]
-    return [*levels, *worth(result), *by_place(result), *(one for one in others if one.rows)]
+    found = [*worth(result), *by_place(result), by_context(result), targets(result), cost(result)]
+    return [*levels, *(one for one in found if one.rows)]
