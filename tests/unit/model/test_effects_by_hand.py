@@ -1,5 +1,7 @@
 """Effects against what they do by hand: stiffness and temperature, creep, loads that lean, play."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -8,17 +10,19 @@ from rga.errors import InputError
 from rga.model import read_model
 from rga.simulation import Simulator
 
+#: of a bar [m2, N/m2, m], and the load that it hangs [N]
+AREA, MODULUS, LENGTH, LOAD = 0.004, 2e11, 3.0, 1e5
 
-def test_a_stiffness_follows_the_temperature_by_hand() -> None:
-    """Of a hanging bar: EA as below the kink, and straight in the temperature above it."""
-    area, modulus, length, load = 0.004, 2e11, 3.0, 1e5
-    hanging = {
+
+def hanging_bar(**more: Any) -> dict[str, Any]:
+    """A model of a bar that hangs from one support, its lower end guided."""
+    return {
         "rga_model": 1,
         "name": "bar",
         "plane": "xz",
-        "materials": {"steel": {"E": modulus, "alpha": 0.0}},
-        "sections": {"bar": {"A": area}},
-        "nodes": {"top": [0, 0, length], "low": [0, 0, 0]},
+        "materials": {"steel": {"E": MODULUS, "alpha": 0.0}},
+        "sections": {"bar": {"A": AREA}},
+        "nodes": {"top": [0, 0, LENGTH], "low": [0, 0, 0]},
         "members": {
             "bar": {"nodes": ["top", "low"], "section": "bar", "material": "steel", "groups": ["g"]}
         },
@@ -26,26 +30,31 @@ def test_a_stiffness_follows_the_temperature_by_hand() -> None:
             "top": {"node": "top", "fixed": ["ux", "uz"]},
             "low": {"node": "low", "fixed": ["ux"]},
         },
-        "context": {"air": {"unit": "degC", "range": [-20, 40]}},
-        "effects": {
-            "pull": {"kind": "nodal_load", "forces": {"low": [0, 0, -load]}},
-            "warmth": {
-                "kind": "temperature",
-                "groups": {"g": 1.0},
-                "delta": {"context": "air", "minus": 10.0},
-            },
-        },
         "sensors": {
             "z": {"kind": "displacement", "node": "low", "direction": [0, 0, -1], "unit": "m"}
         },
+        **more,
     }
+
+
+PULL = {"kind": "nodal_load", "forces": {"low": [0, 0, -LOAD]}}
+
+
+def test_a_stiffness_follows_the_temperature_by_hand() -> None:
+    """Of a hanging bar: EA as below the kink, and straight in the temperature above it."""
+    warmth = {
+        "kind": "temperature",
+        "groups": {"g": 1.0},
+        "delta": {"context": "air", "minus": 10.0},
+    }
+    context = {"air": {"unit": "degC", "range": [-20, 40]}}
     air = np.array([-10.0, 5.0, 10.0, 13.0, 14.0, 30.0, 31.0])
     for more, above in (({}, air - 10), ({"kink": 12.0}, np.maximum(air - 12, 0))):
         own = {"kind": "stiffness_temperature", "group": "g", "rate": -0.02, **more}
-        effects = {**hanging["effects"], "own": own}
-        simulator = Simulator(read_model({**hanging, "effects": effects}, "test"))
+        effects = {"pull": PULL, "warmth": warmth, "own": own}
+        simulator = Simulator(read_model(hanging_bar(context=context, effects=effects), "test"))
         shown = simulator.predict({"air": air})[:, 0]
-        expected = load * length / (modulus * area * (1 - 0.02 * above))
+        expected = LOAD * LENGTH / (MODULUS * AREA * (1 - 0.02 * above))
         np.testing.assert_allclose(shown, expected, rtol=1e-12)
         assert simulator.plan({"air": air}).path == "C2"
     with pytest.raises(InputError, match="leaves no stiffness"):
@@ -54,31 +63,13 @@ def test_a_stiffness_follows_the_temperature_by_hand() -> None:
 
 def test_two_bases_that_give_way_stand_one_behind_the_other() -> None:
     """A hanging bar sinks by F L / EA, and by F / k of each of them."""
-    area, modulus, length, load = 0.004, 2e11, 3.0, 1e5
-    plain = {
-        "rga_model": 1,
-        "name": "bar",
-        "plane": "xz",
-        "materials": {"steel": {"E": modulus, "alpha": 0.0}},
-        "sections": {"bar": {"A": area}},
-        "nodes": {"top": [0, 0, length], "low": [0, 0, 0]},
-        "members": {"bar": {"nodes": ["top", "low"], "section": "bar", "material": "steel"}},
-        "supports": {
-            "top": {"node": "top", "fixed": ["ux", "uz"]},
-            "low": {"node": "low", "fixed": ["ux"]},
-        },
-        "sensors": {
-            "z": {"kind": "displacement", "node": "low", "direction": [0, 0, -1], "unit": "m"}
-        },
-    }
-    pull = {"kind": "nodal_load", "forces": {"low": [0, 0, -load]}}
     soft = {"kind": "support_flexibility", "support": "top", "dof": "uz"}
-    rod = load * length / (modulus * area)
+    rod = LOAD * LENGTH / (MODULUS * AREA)
     for given in ((), (5e7,), (5e7, 2e7), (2e7, 5e7), (5e7, 2e7, 1e7)):
         bases = {f"base {n}": {**soft, "stiffness": k} for n, k in enumerate(given)}
-        model = read_model({**plain, "effects": {"pull": pull, **bases}}, "test")
+        model = read_model(hanging_bar(effects={"pull": PULL, **bases}), "test")
         shown = Simulator(model).predict({})
-        expected = rod + sum(load / stiffness for stiffness in given)
+        expected = rod + sum(LOAD / stiffness for stiffness in given)
         np.testing.assert_allclose(shown, [[expected]], rtol=1e-12)
 
 
