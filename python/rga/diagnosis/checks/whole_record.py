@@ -59,7 +59,9 @@ class WholeRecord:
         for name in belief.lines:
             line = np.polyfit(clock, belief.table[name], 1)
             changes[name] = np.polyval(line, self.data.time - part.data.time[0])
-        whole = replace(self.data, belief=self.data.belief.with_values(changes))
+        whole = replace(
+            self.data, belief=self.data.belief.with_values(changes), scatter=part.data.scatter
+        )
         if not belief.latent:
             return whole
         problem = pose(part.simulator, whole, factors=part.factors)

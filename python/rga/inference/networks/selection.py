@@ -6,7 +6,7 @@ network that hides what the model lacks in the contexts; the second alone one th
 from real rows.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -28,24 +28,34 @@ WORSE = 1.1
 
 
 def unlabelled_gap(
-    network: ContextNetwork, *, simulator: Simulator, readings: FloatArray, noise: FloatArray
+    network: ContextNetwork,
+    *,
+    simulate: Callable[[FloatArray], FloatArray],
+    rows: Samples,
+    noise: FloatArray,
 ) -> float:
     """How far real rows are from the simulation at the contexts inferred for them.
 
+    Logarithms of the squares: neither a broken channel nor a row without load rules the rest.
+
     Args:
-        network: of which all contexts are latent.
-        simulator: of its model.
-        readings: real rows, float[n, sensors], NaN where missing.
+        network: infers the latent contexts.
+        simulate: readings, float[n, sensors], at contexts in the order of the model,
+            float[n, contexts].
+        rows: real ones; latent contexts in them are not looked at.
         noise: standard deviation of each sensor, float[sensors].
 
     Returns:
-        Mean squared residual over the variance of the noise [-].
+        Mean of log(1 + squared residual over the variance of the noise) [-]; infinite where
+        nothing was read.
     """
     variables = network.variables
-    value, _ = network.candidates(readings, np.empty((len(readings), 0))).mean()
-    inside = np.clip(value, *np.transpose(variables.ranges))
-    simulated = simulator.predict(dict(zip(variables.contexts, inside.T, strict=True)))
-    return float(np.nanmean(((readings - simulated) / noise) ** 2))
+    contexts = variables.together(rows.measured, network.infer(rows.readings, rows.measured))
+    contexts = np.where(np.isfinite(contexts), contexts, variables.middle)
+    contexts = np.clip(contexts, *np.transpose(variables.ranges))
+    off = (rows.readings - simulate(contexts)) / noise
+    seen = np.isfinite(off)
+    return float(np.mean(np.log1p(off[seen] ** 2))) if seen.any() else np.inf
 
 
 @dataclass(frozen=True)
@@ -104,7 +114,11 @@ def choose(
     known = unseen.known(variables, "source")
     wander = np.random.default_rng(seed).standard_normal(unseen.readings.shape)
     noisy = unseen.readings + noise * wander
-    judge = partial(unlabelled_gap, simulator=simulator, readings=held_out.readings, noise=noise)
+
+    def simulate(contexts: FloatArray) -> FloatArray:
+        return simulator.predict(dict(zip(variables.contexts, contexts.T, strict=True)))
+
+    judge = partial(unlabelled_gap, simulate=simulate, rows=held_out, noise=noise)
 
     def attempt(settings: TrainingSettings) -> SelectionTrial:
         network = train(

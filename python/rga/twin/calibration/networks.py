@@ -19,6 +19,7 @@ from rga.inference.laws.over_time import follow_law
 from rga.inference.laws.refine import polish_line
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.laplace import birge_ratio, covering_factor, laplace_spread
+from rga.inference.networks.selection import unlabelled_gap
 from rga.inference.networks.travel_direction import EitherWay
 from rga.model import ContextVariable
 from rga.twin.calibration.blocks import BLOCK, block, blocks
@@ -94,6 +95,10 @@ class NetworkEstimator:
             if physics is None:
                 reduced = {"physics": "reduced", "fine_physics": "reduced"}
                 settings = settings.model_copy(update=reduced)
+
+        def simulate(contexts: FloatArray) -> FloatArray:
+            return simulation.readings(np.full(len(contexts), clock), contexts)
+
         network = train(
             source.rows(unheld),
             real.rows(~judges),
@@ -103,9 +108,7 @@ class NetworkEstimator:
             seed=lesson.seed,
             physics=physics,
             start=None if start is None else start._network,
-            held_out=partial(
-                _gap, simulation=simulation, rows=real.rows(judges), clock=clock, noise=noise
-            )
+            held_out=partial(unlabelled_gap, simulate=simulate, rows=real.rows(judges), noise=noise)
             if judges.any()
             else None,
             progress=lesson.progress,
@@ -298,28 +301,6 @@ class NetworkEstimator:
         value, spread = self.infer(0, readings, contexts, time, laws)
         self._factor = covering_factor(value - unseen.latent, spread)
         self._known.clear()
-
-
-def _gap(
-    network: ContextNetwork,
-    *,
-    simulation: SimulationModel,
-    rows: Samples,
-    clock: float,
-    noise: FloatArray,
-) -> float:
-    """How far measured rows are from the simulation at the contexts inferred for them.
-
-    The mean logarithm of squares: neither a broken channel nor a row without load rules the rest.
-    """
-    variables = network.variables
-    contexts = variables.together(rows.measured, network.infer(rows.readings, rows.measured))
-    contexts = np.where(np.isfinite(contexts), contexts, variables.middle)
-    contexts = np.clip(contexts, *np.transpose(variables.ranges))
-    simulated = simulation.readings(np.full(len(contexts), clock), contexts)
-    off = (rows.readings - simulated) / noise
-    seen = np.isfinite(off)
-    return float(np.mean(np.log1p(off[seen] ** 2))) if seen.any() else np.inf
 
 
 def _exact(lesson: Lesson, faulty: NDArray[np.bool_]) -> nn.Module | TwinOnArrays | None:
