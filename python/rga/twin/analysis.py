@@ -31,6 +31,8 @@ Effects = dict[str, dict[str, Any]]
 WORSE = 1.25
 #: of the gap to expect, that may stay after a recalibration whatever the calibration left [-]
 LEAST_ALLOWED = 0.1
+#: rows that a new version learns from at the least
+LEAST_LEARNED = 10
 
 
 class RealityGapAnalysis:
@@ -322,14 +324,15 @@ class RealityGapAnalysis:
         self._begin_again(recent[0])
 
     def _under_the_same(self, effects: Effects) -> int:
-        """First of the latest rows that stand under the structure that is in force now."""
+        """First of the latest rows that stand under the structure that effects say."""
         standing = self.standing
-        if standing.alarm is not None:
-            return standing.alarm
         rows = range(standing.row)
         onsets = [one["onset"] for one in effects.values() if one.get("onset") is not None]
-        begun = [bisect_left(rows, onset, key=self._label) for onset in onsets]
-        return min(max([standing.changed, *begun]), max(0, standing.row - self._pace.settle))
+        if onsets:
+            first = max(bisect_left(rows, onset, key=self._label) for onset in onsets)
+        else:
+            first = standing.changed if standing.alarm is None else standing.alarm
+        return min(first, max(0, standing.row - LEAST_LEARNED))
 
     def _design(self) -> None:
         """The design phase of the version in force: simulations over the ranges of the contexts."""
