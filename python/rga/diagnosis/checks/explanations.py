@@ -4,7 +4,7 @@ Free gains on every channel fit better than most causes and explain nothing. Wha
 also hold for channels that were not fitted: whole groups of them are left out in turn.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -51,6 +51,12 @@ def sensor_groups(model: Model, sensors: Sequence[str]) -> dict[str, list[str]]:
         word = sensor.groups[0] if sensor.groups else " ".join([sensor.kind, *of[:1]])
         groups.setdefault(word, []).append(name)
     return groups
+
+
+def groups_left_out(model: Model, sensors: Sequence[str]) -> list[list[str]]:
+    """Groups of like sensors that can be left out in turn: none where they all are one group."""
+    groups = list(sensor_groups(model, sensors).values())
+    return groups if len(groups) > 1 else []
 
 
 def compare(
@@ -174,26 +180,31 @@ def _gap(problem: Problem, simulated: FloatArray) -> float:
     return float(square[problem.data.observed].mean())
 
 
-def unseen_gaps(problem: Problem, base: Simulator, fits: Sequence[Fit]) -> list[float]:
-    """Gaps on groups of channels, each left out of the fit in turn; nan where there is one group.
+def unseen_gaps(
+    problem: Problem,
+    base: Simulator,
+    fits: Sequence[Fit],
+    groups: Iterable[Sequence[str]] | None = None,
+) -> list[float]:
+    """Gaps on groups of channels, each left out of the fit in turn; nan where none can be.
 
     Args:
         problem: with all channels.
         base: the simulator without causes.
         fits: the explanations, as fitted to all channels.
+        groups: those left out; None: all of them, of which there must be two.
     """
-    groups = sensor_groups(base.model, problem.data.sensors)
-    if len(groups) < 2:
-        return [float("nan")] * len(fits)
+    if groups is None:
+        groups = groups_left_out(base.model, problem.data.sensors)
     squares: list[list[FloatArray]] = [[] for _ in fits]
     spread = variance(problem)
-    for names in groups.values():
+    for names in groups:
         columns = [problem.data.sensors.index(name) for name in names]
         seen = problem.data.observed[:, columns]
         for own, part in zip(squares, refit(hiding(problem, names), base, fits), strict=True):
             square = problem.whole_residual(part.simulated) ** 2 / spread
             own.append(square[:, columns][seen])
-    return [float(np.concatenate(own).mean()) for own in squares]
+    return [float(np.concatenate(own).mean()) if own else np.nan for own in squares]
 
 
 def _free_gains(problem: Problem, nothing: Tried) -> FloatArray:

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gaps
+from rga.diagnosis.checks.explanations import groups_left_out, hiding, unseen_gaps
 from rga.diagnosis.search.laplace import Alternative, Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found, without_cause
@@ -27,8 +27,7 @@ def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
 
     Causes on a sensor of its own say nothing of other channels, and are kept.
     """
-    groups = sensor_groups(base.model, problem.data.sensors)
-    if len(groups) < 2:
+    if not groups_left_out(base.model, problem.data.sensors):
         return current
     while len(current.hypotheses) > 1:
         fewer = [
@@ -95,7 +94,7 @@ def with_better_prediction(found: Found) -> Found:
         for one in ranked
         if one.behind < criteria.log_odds and not one.hypothesis.kind.at_sensors()
     ]
-    if not rivals or len(sensor_groups(base.model, problem.data.sensors)) < 2:
+    if not rivals or not groups_left_out(base.model, problem.data.sensors):
         return found
     whole, *gaps = unseen_gaps(problem, base, [found.fit, *(one.fit for _, one in rivals)])
     better = [

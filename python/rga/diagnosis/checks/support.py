@@ -9,12 +9,12 @@ harms nobody else, stays where held-out rows do not speak against it, or where i
 and they do not surely get worse. No cause stands on a reading or two: an outlier is no cause.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from rga.diagnosis.checks.explanations import hiding, sensor_groups, unseen_gaps
+from rga.diagnosis.checks.explanations import groups_left_out, hiding, unseen_gaps
 from rga.diagnosis.checks.whole_record import WholeRecord, about
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Fit, evidence_without, refit
@@ -90,20 +90,36 @@ def _least_supported(found: Found, start: Problem, whole: WholeRecord, seed: int
 def gaps_left_out(found: Found) -> tuple[float, float] | None:
     """Gap of channels left out of the fit, without the causes of the structure and with them.
 
-    None where nothing can be left out, or no cause is one of the structure.
+    Of groups that are less likely with the causes; None where there is no such group.
     """
     hypotheses = found.fit.hypotheses
     numbers = [k for k, one in enumerate(hypotheses) if not one.kind.on_sensors]
-    groups = sensor_groups(found.base.model, found.problem.data.sensors)
-    if not numbers or len(groups) < 2:
+    if not numbers:
         return None
     without = without_cause(found.problem, found.base, found.fit, *numbers)
-    before, after = unseen_gaps(found.problem, found.base, [without, found.fit])
+    against = [names for names, odds in _against(found, without) if odds > 0]
+    if not against:
+        return None
+    before, after = unseen_gaps(found.problem, found.base, [without, found.fit], against)
     return before, after
 
 
 def worsens(found: Found, without: Fit) -> bool:
     """Whether channels that were left out get worse by a cause.
+
+    Args:
+        found: with the cause.
+        without: fitted without it.
+    """
+    criteria = found.problem.criteria.naming
+    bare, gap = unseen_gaps(found.problem, found.base, [without, found.fit])
+    if not gap > criteria.worse_gap * bare:
+        return False
+    return max(odds for _, odds in _against(found, without)) > criteria.group_against
+
+
+def _against(found: Found, without: Fit) -> Iterator[tuple[list[str], float]]:
+    """Groups of channels, and the log-odds by which each speaks against a cause.
 
     What a cause leads by on all channels is its lead on those outside a group, and what it makes
     of the group's readings given the others.
@@ -112,21 +128,11 @@ def worsens(found: Found, without: Fit) -> bool:
         found: with the cause.
         without: fitted without it.
     """
-    problem, base, causes = found.problem, found.base, found.fit
-    criteria = problem.criteria.naming
-    groups = sensor_groups(base.model, problem.data.sensors)
-    if len(groups) < 2:
-        return False
-    bare, gap = unseen_gaps(problem, base, [without, causes])
-    if gap <= criteria.worse_gap * bare:
-        return False
-    lead = causes.log_evidence - without.log_evidence
-    against = []
-    for names in groups.values():
-        part = hiding(problem, names)
-        beside, alone = refit(part, base, [causes, without])
-        against.append(beside.log_evidence - alone.log_evidence - lead)
-    return max(against) > criteria.group_against
+    lead = found.fit.log_evidence - without.log_evidence
+    for names in groups_left_out(found.base.model, found.problem.data.sensors):
+        part = hiding(found.problem, names)
+        beside, alone = refit(part, found.base, [found.fit, without])
+        yield names, beside.log_evidence - alone.log_evidence - lead
 
 
 def stands_on_few(found: Found, without: Fit) -> bool:

@@ -9,7 +9,7 @@ behind its force, and others with it: a loop over what a channel should read is 
 channels. A cause that follows the linear part of such a response is none.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,8 @@ MOST_COURSES, LEFT = 1 / 12, 1e-3
 SHOWN = 1e-3
 #: correlation from which on two readings drive the same loop
 ALIKE = 0.97
+#: courses that stand for nothing, beside each shape, and their seed
+CONTROLS, SEED = 8, 0
 
 
 @dataclass(frozen=True)
@@ -72,22 +74,28 @@ def curves(problem: Problem) -> list[Curve]:
     courses = _courses(load_basis(problem.simulator, data))
     known = courses.shape[1]
     sizes, squared, count = np.zeros((3, sensors, len(tried)))
+    nothing = _wandering(tried)
+    chance_squared = np.full((sensors, len(nothing.T)), np.nan)
     for sensor in range(sensors):
         free = int(data.observed[:, sensor].sum()) - known - 1
         if free < known:
             continue
         shapes = np.column_stack([one.shape[:, sensor] for one in tried])
-        columns = np.column_stack([courses, shapes, left[:, sensor]]).T[:, None]
+        columns = np.column_stack([courses, shapes, nothing, left[:, sensor]]).T[:, None]
         white = rows.whiten(columns, np.full(len(columns), sensor)[:, None])[:, 0].T
         span, _ = np.linalg.qr(white[:, :known])
         rest = white[:, known:] - span @ (span.T @ white[:, known:])
-        along, reading = rest[:, :-1], rest[:, -1]
+        reading = rest[:, -1]
+        along, wandering = np.split(rest[:, :-1], [len(tried)], axis=1)
         size = (along**2).sum(0)
-        seen = size > LEFT * (white[:, known:-1] ** 2).sum(0)
+        seen = size > LEFT * (white[:, known : known + len(tried)] ** 2).sum(0)
         product = along[:, seen].T @ reading
+        variance = (reading**2).sum() / free
         sizes[sensor, seen] = product / size[seen] / problem.noise.sigma[sensor]
-        squared[sensor, seen] = product**2 / size[seen] / ((reading**2).sum() / free)
+        squared[sensor, seen] = product**2 / size[seen] / variance
         count[sensor, seen] = 1
+        chance_squared[sensor] = (wandering.T @ reading) ** 2 / (wandering**2).sum(0) / variance
+    squared /= _excess(chance_squared)
     chance = chi2.sf(squared.sum(0), np.maximum(count.sum(0), 1))
     largest = sensors * chi2.sf(squared.max(0, initial=0.0), 1)
     found: dict[str, tuple[float, Curve]] = {}
@@ -173,6 +181,36 @@ def _loops(problem: Problem) -> list[_Shape]:
         _Shape(words, _in_all(linear, sensors), _in_all(one, sensors), True, len(loops.T))
         for linear, one in zip(together.T, loops.T, strict=True)
     ]
+
+
+def _wandering(tried: Sequence[_Shape]) -> FloatArray:
+    """Chance courses, `CONTROLS` as slow as each shape tried, float[rows, shapes * CONTROLS]."""
+    shapes = np.column_stack([one.shape.mean(axis=1) for one in tried])
+    shapes = shapes - shapes.mean(axis=0)
+    power = np.maximum((shapes**2).sum(axis=0), 1e-300)
+    slow = np.clip((shapes[1:] * shapes[:-1]).sum(axis=0) / power, 0.0, 1.0).repeat(CONTROLS)
+    steps = np.random.default_rng(SEED).standard_normal((len(shapes), len(slow)))
+    courses: FloatArray = steps.copy()
+    for row in range(1, len(steps)):
+        courses[row] = slow * courses[row - 1] + np.sqrt(1 - slow**2) * steps[row]
+    return courses
+
+
+def _excess(squared: FloatArray) -> FloatArray:
+    """How much more the readings go with courses that stand for nothing than chance says [-].
+
+    Args:
+        squared: with each, over the variance, float[sensors, shapes * CONTROLS]; NaN where too
+            little is read.
+
+    Returns:
+        Of those as slow as each shape, float[shapes].
+    """
+    read = np.isfinite(squared).all(axis=1)
+    if not read.any():
+        return np.ones(squared.shape[1] // CONTROLS)
+    of_shapes: FloatArray = squared[read].mean(axis=0).reshape(-1, CONTROLS).mean(axis=1)
+    return np.maximum(1.0, of_shapes)
 
 
 def _in_all(course: FloatArray, sensors: int) -> FloatArray:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from known_problem import candidate, change_of, found_with, with_white_noise
-from rga.diagnosis.checks.support import supported, worsens
+from rga.diagnosis.checks.explanations import groups_left_out, unseen_gaps
+from rga.diagnosis.checks.support import gaps_left_out, supported, worsens
 from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
 from rga.diagnosis.search.hypothesis import Hypothesis
@@ -90,3 +91,30 @@ def test_channels_get_worse_where_their_gap_and_their_likelihood_say_so(
         lambda problem, base, fits: [gap if one.hypotheses else 1.0 for one in fits],
     )
     assert worsens(replace(found, fit=sure), without) == against
+
+
+def test_a_group_that_alone_knows_a_cause_speaks_for_it(noisy: Problem, sunk: Hypothesis) -> None:
+    """The others, which know its parameter badly, miss that group by more than without it."""
+    sigma, gauge = noisy.noise.sigma, noisy.data.sensors.index("S L0-L1")
+    off = noisy.residual(noisy.simulated) + change_of(noisy, sunk, 0.2)
+    off[:, gauge] -= 0.15 * sigma[gauge]
+    found = found_with(with_white_noise(noisy, off), [sunk])
+    signatures = found.fit.signatures.copy()
+    signatures[0, gauge] = 0.1 * sigma[gauge]
+    found = replace(found, fit=replace(found.fit, signatures=signatures))
+    without = fit(found.problem, noisy.simulator, [], [])
+    before, after = unseen_gaps(found.problem, noisy.simulator, [without, found.fit])
+    assert after > 1.5 * before
+    unseen = gaps_left_out(found)
+    assert unseen is None or unseen[1] < 1.1 * unseen[0]
+
+
+def test_groups_that_are_less_likely_with_a_cause(noisy: Problem, sunk: Hypothesis) -> None:
+    found = found_with(noisy, [sunk])
+    surer = replace(found.fit, log_evidence=-20.0)
+    surer.without.update(found.fit.without)
+    groups = groups_left_out(noisy.simulator.model, noisy.data.sensors)
+    without = fit(noisy, noisy.simulator, [], [])
+    assert gaps_left_out(replace(found, fit=surer)) == tuple(
+        unseen_gaps(noisy, noisy.simulator, [without, surer], groups)
+    )

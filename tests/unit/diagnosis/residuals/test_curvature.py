@@ -83,6 +83,22 @@ def test_a_joint_that_slips_lags_behind_its_force(healthy: Problem, slips: bool)
     assert all(np.abs(one.sizes).argmax() == 3 for one in found)
 
 
+@pytest.mark.parametrize("slips", [True, False])
+def test_noise_that_wanders_is_no_loop(healthy: Problem, slips: bool) -> None:
+    """Every channel has a slow part beside its quick noise, which no noise of one rate has."""
+    draw = np.random.default_rng(7)
+    steps = draw.standard_normal(healthy.data.readings.shape)
+    slow = np.zeros_like(steps)
+    for row in range(1, len(steps)):
+        slow[row] = 0.97 * slow[row - 1] + np.sqrt(1 - 0.97**2) * steps[row]
+    shown = healthy.simulated[:, [3]]
+    pushed = loop((shown - shown.mean()) / shown.std(), np.array([1.0]))
+    added = slow + (2.0 * pushed * np.sign(pattern(healthy)) if slips else 0.0)
+    data = replace(healthy.data, readings=healthy.data.readings + added * healthy.noise.sigma)
+    found = curves(settled(healthy.simulator, data))
+    assert any("lag" in one.words for one in found) == slips
+
+
 def test_errors_of_a_context_are_no_loop() -> None:
     """They are in the driver and in what is left: of a play they take part, of a loop none."""
     draw = np.random.default_rng(5)
