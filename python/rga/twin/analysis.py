@@ -4,7 +4,6 @@ It reaches the twin and the repository through queries alone. Each public method
 step of a run.
 """
 
-from bisect import bisect_left
 from collections.abc import Callable
 from typing import Any
 
@@ -25,8 +24,8 @@ from rga.twin.run_state import Standing
 from rga.twin.settings import Pace, Settings
 from rga.twin.sync.detector import synchrony
 from rga.twin.sync.policy import Policy
+from rga.twin.versions import Effects, first_row_under
 
-Effects = dict[str, dict[str, Any]]
 #: a gap that rises by more than this factor speaks against a new version
 WORSE = 1.25
 #: of the gap to expect, that may stay after a recalibration whatever the calibration left [-]
@@ -326,12 +325,10 @@ class RealityGapAnalysis:
     def _under_the_same(self, effects: Effects) -> int:
         """First of the latest rows that stand under the structure that effects say."""
         standing = self.standing
-        rows = range(standing.row)
-        onsets = [one["onset"] for one in effects.values() if one.get("onset") is not None]
-        if onsets:
-            first = max(bisect_left(rows, onset, key=self._label) for onset in onsets)
-        else:
-            first = standing.changed if standing.alarm is None else standing.alarm
+        begun = first_row_under(effects, standing.row, self._label)
+        first = standing.changed if begun is None else begun
+        if standing.alarm is not None:
+            first = max(first, standing.alarm)
         return min(first, max(0, standing.row - LEAST_LEARNED))
 
     def _design(self) -> None:

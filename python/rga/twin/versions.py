@@ -2,6 +2,8 @@
 
 import hashlib
 import json
+from bisect import bisect_left
+from collections.abc import Callable
 from typing import Any
 
 from pydantic import ValidationError
@@ -31,6 +33,18 @@ def beyond(given: Model, model: Model) -> Effects:
     """Effects that a model has beyond the one given, as they stand in a model file."""
     effects = model_content(model)["effects"]
     return {name: effect for name, effect in effects.items() if name not in given.effects}
+
+
+def first_row_under(effects: Effects, rows: int, label: Callable[[int], str | float]) -> int | None:
+    """The first row from which on all effects act; None where none says when it began.
+
+    Args:
+        effects: of a version.
+        rows: of the record so far.
+        label: how the record writes the time of a row.
+    """
+    onsets = [one["onset"] for one in effects.values() if one.get("onset") is not None]
+    return max((bisect_left(range(rows), onset, key=label) for onset in onsets), default=None)
 
 
 def written(model: Model) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from rga.twin.novelty import novel, spacing
 from rga.twin.row_buffer import RowBuffer
 from rga.twin.settings import Settings
 from rga.twin.sync.window_rule import WindowRule
+from rga.twin.versions import first_row_under
 
 
 def record(model: dict[str, Any], rows: int = 5, **more: Any) -> Record:
@@ -32,6 +33,16 @@ def station(model: dict[str, Any], **more: Any) -> Station:
 
 def first_question(place: Station, **more: Any) -> Q1:
     return Q1(row=0, channels=place.channels, measured=place.measured, **more)
+
+
+@pytest.mark.parametrize(
+    ("onsets", "first"), [([], None), ([None], None), ([1200.0], 2), ([1200.0, 2500.0, None], 5)]
+)
+def test_a_version_stands_from_the_last_of_its_causes_on(
+    onsets: list[float | None], first: int | None
+) -> None:
+    effects = {f"cause {number}": {"onset": onset} for number, onset in enumerate(onsets)}
+    assert first_row_under(effects, 10, lambda row: 600.0 * row) == first
 
 
 def test_messages_come_back_from_the_log() -> None:
