@@ -1,5 +1,7 @@
 """Reasons why false alarms may come more often than they should."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from rga.arrays import FloatArray
@@ -15,7 +17,7 @@ SAME = 0.6
 
 
 def assumption_warnings(
-    reference: Reference, baseline: FloatArray, simulated: TailModel, columns: list[int]
+    reference: Reference, baseline: FloatArray, simulated: TailModel, names: Sequence[str]
 ) -> tuple[str, ...]:
     """What speaks against the promise about false alarms, in words.
 
@@ -23,7 +25,7 @@ def assumption_warnings(
         reference: that was learned from the baseline.
         baseline: float[rows, sensors], NaN where missing.
         simulated: what thresholds are made of.
-        columns: of the sensors, as the user counts them.
+        names: of the sensors.
     """
     found = []
     if memory_of(reference.weights) > MEMORIES[-1] + WITHIN:
@@ -36,15 +38,13 @@ def assumption_warnings(
             "the baseline changes by itself more than its memory explains: false alarms will come "
             "more often; take a longer one, or one during which nothing changes"
         )
-    same = [
-        column for column, readings in zip(columns, baseline.T, strict=True) if coarse(readings)
-    ]
+    same = [name for name, readings in zip(names, baseline.T, strict=True) if coarse(readings)]
     if same:
         found.append(
             f"{named(same)} mostly one value: with steps so coarse false alarms may come more often"
         )
     innovations = after_prediction(baseline - reference.level, reference.weights)
-    copies = [columns[one] for one in repeating(reference.normal_scores(innovations))]
+    copies = [names[one] for one in repeating(reference.normal_scores(innovations))]
     if copies:
         found.append(
             f"{named(copies)} nearly what others of them read: false alarms will come more often; "
@@ -60,8 +60,8 @@ def coarse(readings: FloatArray) -> bool:
     return bool(counts.max(initial=0) > SAME * len(known))
 
 
-def named(sensors: list[int]) -> str:
+def named(sensors: Sequence[str]) -> str:
     """Sensors as the subject of a sentence about what they read."""
     if len(sensors) == 1:
         return f"sensor {sensors[0]} reads"
-    return f"sensors {', '.join(map(str, sensors))} read"
+    return f"sensors {', '.join(sensors)} read"

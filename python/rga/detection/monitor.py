@@ -1,6 +1,7 @@
 """The monitor: alarms about any change of a stream, as rare without one as its user tolerates."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Literal, Self
 
@@ -51,6 +52,7 @@ class SyncMonitor:
         arl0: rows between false alarms (average run length without a change), 100 to 1e12;
             `rows_between` counts them from alarms per month.
         seed: of the simulation of thresholds.
+        names: of the sensors, by which warnings call them; None: by their numbers.
 
     Raises:
         InputError: the baseline is no table of numbers, or has no sensor with 30 readings that are
@@ -67,7 +69,14 @@ class SyncMonitor:
         (307, (1,), 'step')
     """
 
-    def __init__(self, baseline: ArrayLike, *, arl0: float = 10_000.0, seed: int = 0) -> None:
+    def __init__(
+        self,
+        baseline: ArrayLike,
+        *,
+        arl0: float = 10_000.0,
+        seed: int = 0,
+        names: Sequence[str] | None = None,
+    ) -> None:
         given = table(baseline, "the baseline")
         within(given, 0, "the baseline")
         self._unwatched = unwatched(given)
@@ -82,8 +91,9 @@ class SyncMonitor:
             rows.shape[1], length, simulated_memory(memory), _arl0(arl0), _seed(seed)
         )
         self._begin(reference, simulated, arl0, seed)
-        columns = np.flatnonzero(self._watched).tolist()
-        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, columns)
+        watched = np.flatnonzero(self._watched).tolist()
+        called = [str(column) if names is None else names[column] for column in watched]
+        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, called)
 
     @classmethod
     def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:

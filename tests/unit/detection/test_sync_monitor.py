@@ -263,6 +263,8 @@ def test_sensors_that_repeat_others_are_warned_of() -> None:
     copied = np.c_[rows, rows[:, 1]]
     (warning,) = SyncMonitor(copied, arl0=500).warnings
     assert warning.startswith("sensors 1, 4 read nearly what others of them read")
+    (warning,) = SyncMonitor(copied, arl0=500, names="abcde").warnings
+    assert warning.startswith("sensors b, e read nearly what others of them read")
 
 
 def test_coarse_readings_are_warned_of() -> None:

@@ -30,6 +30,8 @@ SETTLEMENT, SUNK = 0.005, 0.1
 SPREAD = 32
 #: how much warmer one side gets than the other, per unit of a context that warms
 SIDEWAYS = 0.5
+#: relative change from which on it is told as a multiple
+LARGE = 0.5
 
 
 @dataclass(frozen=True)
@@ -70,9 +72,15 @@ class StructuralParameter:
         >>> sunk = StructuralParameter("settlement of east", {}, "displacement", {}, 0, 1, (-1, 1))
         >>> sunk.changed(0.0, -0.0011)
         'settlement of east -0.0011 m'
+        >>> soft = replace(sunk, name="bearing east", key="factor", driven={"log10": True})
+        >>> soft.changed(0.0, 0.02), soft.changed(0.0, -1.4)
+        ('bearing east +4.7 %', 'bearing east 0.04 times what it was')
         """
         if self.driven.get("log10"):
-            return f"{self.name} {10.0 ** (after - before) - 1.0:+.2%}"
+            factor = 10.0 ** (after - before)
+            if abs(factor - 1.0) < LARGE:
+                return f"{self.name} {100 * (factor - 1.0):+.2g} %"
+            return f"{self.name} {factor:.2g} times what it was"
         return f"{self.name} {after - before:+.2g}" + ("" if self.follows else " m")
 
 

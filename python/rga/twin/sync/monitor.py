@@ -80,5 +80,5 @@ class Monitored:
     def _learn(self, residuals: FloatArray) -> None:
         baseline = residuals[self._baseline :]
         if len(unwatched(baseline)) < len(self._channels):
-            self._monitor = SyncMonitor(baseline, arl0=self._settings.arl0)
+            self._monitor = SyncMonitor(baseline, arl0=self._settings.arl0, names=self._channels)
             self._began = len(residuals)
