@@ -176,7 +176,8 @@ def _off_axis(
 
 
 def _gap(problem: Problem, simulated: FloatArray) -> float:
-    square = problem.whole_residual(simulated) ** 2 / variance(problem)
+    left = problem.data.readings - problem.with_contexts(simulated)
+    square = left**2 / variance(problem)
     return float(square[problem.data.observed].mean())
 
 
@@ -187,6 +188,9 @@ def unseen_gaps(
     groups: Iterable[Sequence[str]] | None = None,
 ) -> list[float]:
     """Gaps on groups of channels, each left out of the fit in turn; nan where none can be.
+
+    Over the variance of the prediction: what the other channels do not know of a cause counts as
+    not known.
 
     Args:
         problem: with all channels.
@@ -200,10 +204,10 @@ def unseen_gaps(
     spread = variance(problem)
     for names in groups:
         columns = [problem.data.sensors.index(name) for name in names]
-        seen = problem.data.observed[:, columns]
+        seen, readings = problem.data.observed[:, columns], problem.data.readings[:, columns]
         for own, part in zip(squares, refit(hiding(problem, names), base, fits), strict=True):
-            square = problem.whole_residual(part.simulated) ** 2 / spread
-            own.append(square[:, columns][seen])
+            square = (readings - problem.with_contexts(part.simulated)[:, columns]) ** 2
+            own.append((square / (spread[:, columns] + part.left_open(columns)))[seen])
     return [float(np.concatenate(own).mean()) if own else np.nan for own in squares]
 
 

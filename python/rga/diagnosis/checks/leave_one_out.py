@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.arrays import BoolArray, FloatArray
+from rga.arrays import FloatArray
 from rga.diagnosis.checks.explanations import hiding, sensor_groups, variance
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.stepwise import Found, without_cause
@@ -50,7 +50,9 @@ class Unseen:
         channels: names.
         measured, without, with_causes: readings, and their prediction by the model as it was
             given and by the causes, float[rows, channels]; NaN where nothing was measured.
-        gap_without, gap_with: mean squared residual over variance [-].
+        left_open: standard deviation of the prediction by the causes, from what the other
+            channels do not know of them, float[rows, channels].
+        gap_without, gap_with: mean squared residual over the variance of the prediction [-].
     """
 
     group: str
@@ -58,6 +60,7 @@ class Unseen:
     measured: FloatArray
     without: FloatArray
     with_causes: FloatArray
+    left_open: FloatArray
     gap_without: float
     gap_with: float
 
@@ -116,19 +119,23 @@ def unseen_groups(found: Found) -> list[Unseen]:
         if not seen.any():
             continue
 
-        def gap(one: Fit, columns: list[int] = columns, seen: BoolArray = seen) -> float:
-            squares = problem.whole_residual(one.simulated) ** 2 / spread
-            return float(squares[:, columns][seen].mean())
+        readings = problem.data.readings[:, columns]
+        predicted = [problem.with_contexts(one.simulated)[:, columns] for one in (nothing, blind)]
+        gaps = [
+            (readings - shown) ** 2 / (spread[:, columns] + one.left_open(columns))
+            for one, shown in zip((nothing, blind), predicted, strict=True)
+        ]
 
         words.append(
             Unseen(
                 group=word,
                 channels=list(names),
-                measured=np.where(seen, problem.data.readings[:, columns], np.nan),
-                without=(nothing.simulated + problem.shift)[:, columns],
-                with_causes=(blind.simulated + problem.shift)[:, columns],
-                gap_without=gap(nothing),
-                gap_with=gap(blind),
+                measured=np.where(seen, readings, np.nan),
+                without=predicted[0],
+                with_causes=predicted[1],
+                left_open=np.sqrt(blind.left_open(columns)),
+                gap_without=float(gaps[0][seen].mean()),
+                gap_with=float(gaps[1][seen].mean()),
             )
         )
     return words

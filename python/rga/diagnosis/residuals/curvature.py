@@ -75,7 +75,7 @@ def curves(problem: Problem) -> list[Curve]:
     known = courses.shape[1]
     sizes, squared, count = np.zeros((3, sensors, len(tried)))
     nothing = _wandering(tried)
-    chance_squared = np.full((sensors, len(nothing.T)), np.nan)
+    chance_squared = np.full((sensors, len(tried)), np.nan)
     for sensor in range(sensors):
         free = int(data.observed[:, sensor].sum()) - known - 1
         if free < known:
@@ -94,7 +94,7 @@ def curves(problem: Problem) -> list[Curve]:
         sizes[sensor, seen] = product / size[seen] / problem.noise.sigma[sensor]
         squared[sensor, seen] = product**2 / size[seen] / variance
         count[sensor, seen] = 1
-        chance_squared[sensor] = (wandering.T @ reading) ** 2 / (wandering**2).sum(0) / variance
+        chance_squared[sensor] = _by_chance(along, wandering, reading) / variance
     squared /= _excess(chance_squared)
     chance = chi2.sf(squared.sum(0), np.maximum(count.sum(0), 1))
     largest = sensors * chi2.sf(squared.max(0, initial=0.0), 1)
@@ -196,21 +196,41 @@ def _wandering(tried: Sequence[_Shape]) -> FloatArray:
     return courses
 
 
+def _by_chance(along: FloatArray, wandering: FloatArray, reading: FloatArray) -> FloatArray:
+    """How much a channel goes with courses that stand for nothing, each shape taken out first.
+
+    Args:
+        along: the shapes, float[rows, shapes].
+        wandering: their chance courses, float[rows, shapes * CONTROLS].
+        reading: what is left of the channel, float[rows].
+
+    Returns:
+        Mean square along the courses of each shape, float[shapes].
+    """
+    size = np.sqrt(np.maximum((along**2).sum(0), 1e-300))
+    shape = along / size
+    courses = wandering.reshape(*shape.shape, CONTROLS)
+    own = np.einsum("rs,rsk->sk", shape, courses)
+    left = np.einsum("r,rsk->sk", reading, courses) - (shape.T @ reading)[:, None] * own
+    length = np.einsum("rsk,rsk->sk", courses, courses) - own**2
+    return np.asarray((left**2 / np.maximum(length, 1e-300)).mean(axis=1))
+
+
 def _excess(squared: FloatArray) -> FloatArray:
     """How much more the readings go with courses that stand for nothing than chance says [-].
 
     Args:
-        squared: with each, over the variance, float[sensors, shapes * CONTROLS]; NaN where too
-            little is read.
+        squared: with those of each shape, over the variance, float[sensors, shapes]; NaN where
+            too little is read.
 
     Returns:
-        Of those as slow as each shape, float[shapes].
+        Less the deviation that so few squares have by chance, float[shapes].
     """
-    read = np.isfinite(squared).all(axis=1)
-    if not read.any():
-        return np.ones(squared.shape[1] // CONTROLS)
-    of_shapes: FloatArray = squared[read].mean(axis=0).reshape(-1, CONTROLS).mean(axis=1)
-    return np.maximum(1.0, of_shapes)
+    read = squared[np.isfinite(squared).all(axis=1)]
+    if not len(read):
+        return np.ones(squared.shape[1])
+    by_chance = np.sqrt(2 / (len(read) * CONTROLS))
+    return np.asarray(np.maximum(1.0, read.mean(axis=0) - by_chance))
 
 
 def _in_all(course: FloatArray, sensors: int) -> FloatArray:

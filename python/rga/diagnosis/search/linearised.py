@@ -92,6 +92,26 @@ class Problem:
         """The same with the tails."""
         return np.where(self.data.observed, self.data.readings - simulated - self.shift, 0.0)
 
+    def with_contexts(self, simulated: FloatArray) -> FloatArray:
+        """A simulation with latent contexts where the readings put them beside it.
+
+        Args:
+            simulated: about the belief, float[rows, sensors].
+
+        Returns:
+            float[rows, sensors].
+        """
+        belief, rows = self.data.belief, self.covariance.rows
+        shifted = simulated + self.shift
+        latent = [number for number, name in enumerate(belief.spread) if name in belief.latent]
+        if not latent:
+            return shifted
+        residual = self.residual(simulated)
+        scatter = self.covariance.scatter.at(self.covariance.scatter_estimate(residual))
+        error = rows.context_error(residual - scatter)[:, latent]
+        moved = np.einsum("tsi,ti->ts", rows.context_jacobian[:, :, latent], error)
+        return np.asarray(shifted + moved)
+
     def explained_by_scatter(self, residual: FloatArray) -> FloatArray:
         """The part of a residual that scatter and contexts take up, float[rows, sensors]."""
         scatter = self.covariance.scatter.at(self.covariance.scatter_estimate(residual))

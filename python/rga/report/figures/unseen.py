@@ -7,6 +7,7 @@ from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Unseen
+from rga.model.parameter import NORMAL_90
 from rga.model.schema import Model
 from rga.report.figures.figure_style import AFTER, BEFORE, MEASURED, grid, inline, label, style
 from rga.report.text.quantities import scale
@@ -32,14 +33,17 @@ def draw_unseen(groups: list[Unseen], model: Model) -> Markup | None:
         )  # fmt: skip
         for place, (one, column) in enumerate(shown):
             axes = figure.add_subplot(cells[place // COLUMNS, place % COLUMNS])
-            values = [a[:, column] for a in (one.without, one.with_causes, one.measured)]
-            largest = float(np.nanmax(np.abs(values)))
+            shown_as = (one.without, one.with_causes, one.measured, NORMAL_90 * one.left_open)
+            values = [each[:, column] for each in shown_as]
+            largest = float(np.nanmax(np.abs(values[:3])))
             factor, unit = scale(model.sensors[one.channels[column]].unit, largest)
-            without, with_causes, measured = (factor * _thin(each) for each in values)
+            without, with_causes, measured, either_way = (factor * _thin(a) for a in values)
             finite = np.concatenate([without, with_causes, measured[np.isfinite(measured)]])
             ends = [float(finite.min()), float(finite.max())]
             axes.plot(ends, ends, color=MEASURED, lw=0.7, zorder=1)
             axes.plot(without, measured, "^", color=BEFORE, markersize=2.7, alpha=0.6, mew=0)
+            beside = (with_causes - either_way, with_causes + either_way)
+            axes.hlines(measured, *beside, color=AFTER, lw=0.5, alpha=0.25, zorder=1)
             axes.plot(with_causes, measured, "o", color=AFTER, markersize=2.7, alpha=0.8, mew=0)
             axes.set_title(f"{label(one.group)}: {label(one.channels[column], 18)}")
             axes.set_xlabel(f"predicted [{unit}]", labelpad=1.5)
@@ -50,9 +54,10 @@ def draw_unseen(groups: list[Unseen], model: Model) -> Markup | None:
                 Line2D([], [], ls="", color=BEFORE, marker="^", markersize=4, label="without"),
                 Line2D([], [], ls="", color=AFTER, marker="o", markersize=4, label="with causes"),
                 Line2D([], [], color=MEASURED, lw=0.8, label="measured = predicted"),
+                Line2D([], [], color=AFTER, lw=0.8, alpha=0.5, label="90 % of what is left open"),
             ],
             loc="upper center",
-            ncols=3,
+            ncols=4,
         )
         names = ", ".join(label(one.group) for one, _ in shown)
         return inline(figure, "unseen", f"Channels predicted without being fitted: {names}.")

@@ -65,10 +65,13 @@ def test_every_group_is_predicted_without_it(noisy: Problem, sunk: Hypothesis) -
     assert sorted(name for one in groups.values() for name in one.channels) == sorted(
         problem.data.sensors
     )
-    # No other channel shows the settlement: without the displacements it is not there.
+    # No other channel shows the settlement: without the displacements it is left open.
     moved = groups["displacement"]
-    assert moved.gap_with == pytest.approx(moved.gap_without, rel=0.01)
+    assert moved.with_causes == pytest.approx(moved.without, rel=0.01)
     assert moved.gap_without > 5
+    assert moved.gap_with < 1
+    off = np.abs(moved.measured - moved.without)
+    assert (off < 2 * moved.left_open + 4 * problem.noise.sigma[:4]).all()
     for group, one in groups.items():
         if group != "displacement":
             assert one.gap_with == pytest.approx(1.0, abs=0.3)

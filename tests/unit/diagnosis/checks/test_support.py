@@ -93,8 +93,8 @@ def test_channels_get_worse_where_their_gap_and_their_likelihood_say_so(
     assert worsens(replace(found, fit=sure), without) == against
 
 
-def test_a_group_that_alone_knows_a_cause_speaks_for_it(noisy: Problem, sunk: Hypothesis) -> None:
-    """The others, which know its parameter badly, miss that group by more than without it."""
+def test_what_others_do_not_know_of_a_cause_is_not_known(noisy: Problem, sunk: Hypothesis) -> None:
+    """The others put its parameter elsewhere, and leave it open: the group is no worse by it."""
     sigma, gauge = noisy.noise.sigma, noisy.data.sensors.index("S L0-L1")
     off = noisy.residual(noisy.simulated) + change_of(noisy, sunk, 0.2)
     off[:, gauge] -= 0.15 * sigma[gauge]
@@ -104,7 +104,7 @@ def test_a_group_that_alone_knows_a_cause_speaks_for_it(noisy: Problem, sunk: Hy
     found = replace(found, fit=replace(found.fit, signatures=signatures))
     without = fit(found.problem, noisy.simulator, [], [])
     before, after = unseen_gaps(found.problem, noisy.simulator, [without, found.fit])
-    assert after > 1.5 * before
+    assert after < before
     unseen = gaps_left_out(found)
     assert unseen is None or unseen[1] < 1.1 * unseen[0]
 
