@@ -113,6 +113,23 @@ def test_what_has_happened_since_is_found(model: Model, other: Model, happened: 
         )
 
 
+def test_a_crowd_beyond_its_range_makes_no_structure_softer(model: Model, other: Model) -> None:
+    """Rows that lay at the end of the range would have to be explained by the structure."""
+    unknowns, noise, source = Unknowns(model), noise_of(model), drawn(model, 300, 29)
+    ordinary = drawn(model, 80, 30)
+    readings = measured(other, ordinary, 31)
+    first = infer_jointly(unknowns, readings, noise, source)
+    crowded = drawn(model, 50, 32)
+    crowded[:, 0] = np.linspace(4.2, 5.5, 50)
+    later = infer_jointly(unknowns, measured(other, crowded, 33), noise, source, prior=first)
+    before, after = (one.infer(readings).value[:, 0] for one in (first, later))
+    assert np.median(after / before) == pytest.approx(1.0, abs=0.02)
+    found = later.infer(measured(other, crowded, 33))
+    assert np.median(found.value[:, 0] / before.mean()) > 4.0 / before.mean()
+    off = measured(other, crowded, 33) - later.twin.simulate(found.value)
+    assert np.sqrt((off**2).mean()) < 0.03
+
+
 def test_derivatives_are_those_of_the_readings(model: Model) -> None:
     contexts, unknowns = drawn(model, 6, 15), Unknowns(model)
     values = unknowns.centre + 0.3 * unknowns.spread

@@ -1,6 +1,6 @@
 """Gauss-Newton steps of the contexts of all rows and the unknowns of the structure together."""
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -175,14 +175,15 @@ class Search:
         twin = self.measured.beside(self.twin)
         simulated = Rows(source, twin.simulate(source))
         read = self.measured.behind(self.readings[: self.many])
-        variance = self.measured.behind_noise(np.sqrt(self.variance)) ** 2
-        guess = QuadraticGuess(simulated, np.sqrt(variance), self.ranges, seed=0)
+        deviation = self.measured.behind_noise(np.sqrt(self.variance))
+        guess = QuadraticGuess(simulated, deviation, self.ranges, seed=0)
+        known = twin.simulate, twin.jacobian, read, np.diag(deviation**2)
         # That contexts lie in their ranges says how stiff a structure is that is not known yet.
-        infer = mode_beyond if self.prior.earlier else posterior_mode
-        mode, kept = (
-            infer(twin.simulate, twin.jacobian, read, np.diag(variance), self.ranges, start)
-            for start in (guess(read), self.contexts[: self.many])
-        )
+        if self.prior.earlier:
+            infer = partial(mode_beyond, *known, self.measured.behind_noise(self.noise))
+        else:
+            infer = partial(posterior_mode, *known)
+        mode, kept = (infer(self.ranges, one) for one in (guess(read), self.contexts[: self.many]))
         better = (mode.misfit < kept.misfit)[:, None]
         placed = np.where(better, mode.value, kept.value)
         self.contexts = np.vstack([placed, self.contexts[self.many :]])

@@ -27,7 +27,7 @@ from rga.inference.joint.sensor_errors import CorrectedTwin
 from rga.inference.joint.structural_parameters import Unknowns
 from rga.inference.map.array_simulator import TwinOnArrays
 from rga.inference.map.initial_guess import QuadraticGuess
-from rga.inference.map.posterior_mode import Mode, mode_beyond
+from rga.inference.map.posterior_mode import REACH, Mode, mode_beyond, posterior_mode
 from rga.inference.rows import Rows
 from rga.simulation import Simulator
 
@@ -82,7 +82,8 @@ class Joint:
         """
         table = table_of("readings", readings, len(self.gains))
         known = instruments(measured, len(table), self.unknowns.model)
-        found = RowModes(self.twin, self.covariance, self.source, known)(table, known)
+        modes = RowModes(self.twin, self.variance, self.source, known, self.uncertainty)
+        found = modes(table, known)
         variance = np.tile(self.variance, (len(table), 1))
         unsure = self.spread(found.value, np.isfinite(table), known, variance)
         return replace(found, spread=np.maximum(found.spread, unsure))
@@ -199,25 +200,30 @@ class RowModes:
 
     Args:
         twin: it.
-        covariance: of what readings may differ by from it, float[sensors, sensors].
+        variance: of what readings differ by from it, float[sensors].
         source: contexts to start from, float[m, contexts].
         measured: contexts that instruments read; which, and how well.
+        uncertainty: covariance of readings because the twin is not sure, float[sensors, sensors];
+            it widens intervals. None: the twin is sure.
     """
 
     def __init__(
         self,
         twin: TwinOnArrays,
-        covariance: FloatArray,
+        variance: FloatArray,
         source: FloatArray,
         measured: MeasuredContexts,
+        uncertainty: FloatArray | None = None,
     ) -> None:
-        sensors, self._bare = len(covariance), twin
+        sensors, self._bare = len(variance), twin
         self._twin, self._ranges = measured.beside(twin), measured.widest(twin.ranges)
-        noise = measured.behind_noise(np.sqrt(np.diagonal(covariance)))
-        self._covariance = np.diag(noise**2)
-        self._covariance[:sensors, :sensors] = covariance
+        self._noise = measured.behind_noise(np.sqrt(variance))
+        self._unsure = None
+        if uncertainty is not None:
+            self._unsure = np.diag(self._noise**2)
+            self._unsure[:sensors, :sensors] += uncertainty
         simulated = Rows(source, self._twin.simulate(source))
-        self._guess = QuadraticGuess(simulated, noise, self._ranges, seed=0)
+        self._guess = QuadraticGuess(simulated, self._noise, self._ranges, seed=0)
 
     def simulate(self, contexts: FloatArray) -> FloatArray:
         """Readings of the sensors without noise, float[n, sensors], of float[n, contexts]."""
@@ -230,15 +236,18 @@ class RowModes:
             readings: float[n, sensors], NaN where missing.
             measured: contexts that instruments read at these rows, the same ones.
         """
-        read = measured.behind(readings)
-        return mode_beyond(
-            self._twin.simulate,
-            self._twin.jacobian,
-            read,
-            self._covariance,
-            self._ranges,
-            self._guess(read),
+        read, twin, ranges = measured.behind(readings), self._twin, self._ranges
+        own = np.diag(self._noise**2)
+        found = mode_beyond(
+            twin.simulate, twin.jacobian, read, own, self._noise, ranges, self._guess(read)
         )
+        if self._unsure is None:
+            return found
+        # Other rows show more or less of what is not sure: it widens, and moves nothing.
+        wide = posterior_mode(
+            twin.simulate, twin.jacobian, read, self._unsure, ranges, found.value, 0, REACH
+        )
+        return replace(found, spread=wide.spread)
 
 
 def infer_jointly(

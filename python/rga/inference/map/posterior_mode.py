@@ -12,9 +12,11 @@ from rga.numerics.gauss_newton import minimise
 
 #: steps at most; gain of a step [chi square] below which a row rests
 STEPS, GAIN = 20, 1e-2
-#: half widths of a range that a context reaches at most, gain [chi square] for which a row leaves a
-#: range, and share of the half width from which on a context stands at an end
+#: half widths of a range that a context reaches at most, gain [twice the log likelihood] for which
+#: a row leaves a range, and share of the half width from which on a context stands at an end
 REACH, LEAVES, CLOSE = 3.0, 10.0, 1.0 - 1e-9
+#: degrees of freedom of Student's distribution by which that gain is counted
+TAILS = 3.0
 
 OfContexts = Callable[[FloatArray], FloatArray]
 
@@ -96,24 +98,34 @@ def mode_beyond(
     jacobian: OfContexts,
     readings: FloatArray,
     covariance: FloatArray,
+    noise: FloatArray,
     ranges: FloatArray,
     start: FloatArray,
 ) -> Mode:
     """The same, in which a row leaves the ranges where it cannot be explained inside.
 
     Ranges are what is expected, and a structure sees a crowd that nobody expected. Rows that stand
-    at an end of a range are tried beyond it, and stay there where that explains them far better.
+    at an end of a range are tried beyond it, and stay there where many sensors are explained far
+    better: a few that lie are left what they are, and what is not sure of a structure is no reason
+    to think that a row lies inside.
+
+    Args:
+        noise: standard deviation of each reading, float[sensors].
     """
     inside = posterior_mode(simulate, jacobian, readings, covariance, ranges, start)
     middle, scale = standard(ranges)
     stuck = np.flatnonzero((np.abs(inside.value - middle) > scale * EDGE * CLOSE).any(axis=1))
     if not len(stuck):
         return inside
-    begun = inside.value[stuck]
-    beyond = posterior_mode(
-        simulate, jacobian, readings[stuck], covariance, ranges, begun, reach=REACH
-    )
-    better = beyond.misfit < inside.misfit[stuck] - LEAVES
+    begun, read = inside.value[stuck], readings[stuck]
+    beyond = posterior_mode(simulate, jacobian, read, covariance, ranges, begun, reach=REACH)
+
+    def unlikely(value: FloatArray) -> FloatArray:
+        square = ((read - simulate(value)) / noise) ** 2
+        by_sensor = np.where(np.isfinite(square), (TAILS + 1.0) * np.log1p(square / TAILS), 0.0)
+        return np.asarray(by_sensor.sum(axis=1) + (((value - middle) / scale) ** 2).sum(axis=1))
+
+    better = unlikely(beyond.value) < unlikely(begun) - LEAVES
     for own, other in zip(vars(inside).values(), vars(beyond).values(), strict=True):
         own[stuck[better]] = other[better]
     return inside

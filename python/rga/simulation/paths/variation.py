@@ -138,6 +138,8 @@ def variation(change: Callable[[FloatArray], Structure], states: FloatArray) -> 
         change: makes the structure of a state.
         states: parameters, float[states, parameters]; two states or more.
     """
+    if not np.isfinite(states).all():
+        return None
     start = change(states[0])
     lengths = start.lengths
     first = _stiffness(start, lengths)

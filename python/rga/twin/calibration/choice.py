@@ -59,14 +59,14 @@ def choose(lesson: Lesson) -> InferenceChoice:
     found, own = learned.found, lesson.noise[learned.watched]
     readings = readings_of(lesson, found.unknowns, learned.watched)
     measured = instruments(lesson.simulation, lesson.data.real_contexts)
-    joint = RowModes(found.twin, found.covariance, found.source, measured)
+    joint = RowModes(found.twin, found.variance, found.source, measured, found.uncertainty)
     twin = TwinOnArrays(Simulator(found.unknowns.model), time=lesson.clock)
-    given = RowModes(twin, np.diag(own**2), found.source, measured)
+    given = RowModes(twin, own**2, found.source, measured)
     off = readings[~held] - given.simulate(given(readings[~held], _rows(measured, ~held)).value)
     # What the model is off by counts as noise, as it does for the joint posterior.
     count = np.isfinite(off).sum(axis=0)
     variance = np.maximum(np.nansum(off**2, axis=0) / np.maximum(count, 1), own**2)
-    given = RowModes(twin, np.diag(variance), found.source, measured)
+    given = RowModes(twin, variance, found.source, measured)
     unseen = readings[held], _rows(measured, held)
     mine, others = (_off_by(one, *unseen, own) for one in (joint, given))
     words = (

@@ -223,7 +223,7 @@ class JointEstimator:
                 time = float(onsets[phase - 1] if phase else np.nextafter(onsets[0], -np.inf))
             found = self.found
             self._modes[phase] = RowModes(
-                found.twin_at(time), found.covariance, found.source, measured
+                found.twin_at(time), found.variance, found.source, measured, found.uncertainty
             )
         return self._modes[phase]
 
