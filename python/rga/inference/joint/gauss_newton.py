@@ -196,9 +196,12 @@ class Search:
         self.volume = self._volume_slope()
 
     def _reached(self) -> FloatArray:
-        """Half widths of its range that each row's context may reach, float[rows, contexts]."""
-        beyond = np.abs(self.contexts - self.middle) > EDGE * self.scale * (2.0 - CLOSE)
-        return np.where(beyond, REACH, 1.0)
+        """Half widths of its range that each row's context may reach, float[rows, contexts].
+
+        Were a row that stands at an end held there, it would say that its context is known.
+        """
+        at_end = np.abs(self.contexts - self.middle) > EDGE * self.scale * CLOSE
+        return np.where(at_end & self.prior.earlier, REACH, 1.0)
 
     def _volume_slope(self) -> FloatArray:
         bent = self._curvature
