@@ -157,6 +157,23 @@ def variance(problem: Problem) -> FloatArray:
     return np.asarray(problem.noise.deviation**2 + problem.zero_variance + contexts)
 
 
+def left_open(fit: Fit, columns: Sequence[int]) -> FloatArray:
+    """Variance of a simulation by what is left open of its parameters.
+
+    Args:
+        fit: it.
+        columns: sensors.
+
+    Returns:
+        float[rows, columns].
+    """
+    signatures = fit.signatures[:, list(columns)]
+    if not len(signatures):
+        return np.zeros((len(fit.simulated), len(columns)))
+    moved = np.linalg.solve(fit.information, signatures.reshape(len(signatures), -1))
+    return np.asarray((signatures * moved.reshape(signatures.shape)).sum(0).T)
+
+
 def _off_axis(
     problem: Problem, base: Simulator, best: Sequence[Prospect]
 ) -> list[tuple[list[Hypothesis], list[float]]]:
@@ -207,7 +224,7 @@ def unseen_gaps(
         seen, readings = problem.data.observed[:, columns], problem.data.readings[:, columns]
         for own, part in zip(squares, refit(hiding(problem, names), base, fits), strict=True):
             square = (readings - problem.with_contexts(part.simulated)[:, columns]) ** 2
-            own.append((square / (spread[:, columns] + part.left_open(columns)))[seen])
+            own.append((square / (spread[:, columns] + left_open(part, columns)))[seen])
     return [float(np.concatenate(own).mean()) if own else np.nan for own in squares]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.checks.explanations import hiding, sensor_groups, variance
+from rga.diagnosis.checks.explanations import hiding, left_open, sensor_groups, variance
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.stepwise import Found, without_cause
 from rga.model.parameter import listed
@@ -122,7 +122,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
         readings = problem.data.readings[:, columns]
         predicted = [problem.with_contexts(one.simulated)[:, columns] for one in (nothing, blind)]
         gaps = [
-            (readings - shown) ** 2 / (spread[:, columns] + one.left_open(columns))
+            (readings - shown) ** 2 / (spread[:, columns] + left_open(one, columns))
             for one, shown in zip((nothing, blind), predicted, strict=True)
         ]
 
@@ -133,7 +133,7 @@ def unseen_groups(found: Found) -> list[Unseen]:
                 measured=np.where(seen, readings, np.nan),
                 without=predicted[0],
                 with_causes=predicted[1],
-                left_open=np.sqrt(blind.left_open(columns)),
+                left_open=np.sqrt(left_open(blind, columns)),
                 gap_without=float(gaps[0][seen].mean()),
                 gap_with=float(gaps[1][seen].mean()),
             )

@@ -85,21 +85,6 @@ class Fit:
             np.asarray(np.sqrt(np.diag(np.linalg.inv(self.information)))) if len(self.z) else self.z
         )
 
-    def left_open(self, columns: Sequence[int]) -> FloatArray:
-        """Variance of the simulation by what is left open of the parameters.
-
-        Args:
-            columns: sensors.
-
-        Returns:
-            float[rows, columns].
-        """
-        signatures = self.signatures[:, list(columns)]
-        if not len(signatures):
-            return np.zeros((len(self.simulated), len(columns)))
-        moved = np.linalg.solve(self.information, signatures.reshape(len(signatures), -1))
-        return np.asarray((signatures * moved.reshape(signatures.shape)).sum(0).T)
-
 
 @dataclass(frozen=True)
 class Alternative:
