@@ -86,10 +86,13 @@ def test_half_a_crossing_says_the_same() -> None:
 
 
 def test_explanations_are_judged_on_unseen_channels(findings: rga.Findings) -> None:
-    by_kinds = {tuple(e["kind"] for e in one.effects): one for one in findings.explanations}
+    # The likeliest of each kind: it stands first.
+    likeliest = reversed(findings.explanations)
+    by_kinds = {tuple(e["kind"] for e in one.effects): one for one in likeliest}
     nothing = by_kinds[()]
     (gains,) = (one for one in findings.explanations if one.words.startswith("a free gain"))
     floor = by_kinds[("floor_participation",)]
+    assert floor.remark == "what is named"
     bearing = by_kinds[("support_spring",)]
     assert gains.gap < floor.gap
     assert floor.gap_unseen_channels is not None
