@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rga.arrays import BoolArray, FloatArray
+from rga.arrays import FloatArray
 from rga.diagnosis.assemble.causes import causes, fault_cause
 from rga.diagnosis.assemble.contexts import contexts
 from rga.diagnosis.assemble.effects import cause_name, effects_of, fault_effect
@@ -43,6 +43,7 @@ from rga.diagnosis.search.stepwise import (
     without_needless,
 )
 from rga.diagnosis.verdict import reasons_for_doubt, verdict
+from rga.errors import InputError
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.criteria import Criteria
@@ -61,7 +62,7 @@ def diagnose(
     record: Record,
     *,
     parts: Model | None = None,
-    calm: float | None = None,
+    calm: Record | None = None,
     criteria: Criteria | None = None,
     seed: int = 0,
     progress: Progress | None = None,
@@ -73,7 +74,7 @@ def diagnose(
         record: measured data.
         parts: the model in whose parts causes are looked for, where this one has others beside
             them; None: this one.
-        calm: clock [s] up to which nothing acts that is looked for, so that the scatter shows
+        calm: measured rows in which nothing acts that is looked for, so that the scatter shows
             there as it is; None: it is estimated from all rows, beside causes.
         criteria: what decides the verdict; None: the default ones.
         seed: of the bootstrap of the gain.
@@ -96,7 +97,7 @@ def _diagnose(
     model: Model,
     parts: Model,
     record: Record,
-    calm: float | None,
+    calm: Record | None,
     criteria: Criteria,
     seed: int,
     progress: Progress,
@@ -110,11 +111,10 @@ def _diagnose(
     # What a logger took off is a part of the data: a late effect shows whole all the same.
     base = Simulator(model.without_zeros())
     measured = set(record.contexts)
+    scatter = None if calm is None else _scatter_of(model, calm, criteria)
 
     def searched(prepared: PreparedRecord) -> tuple[Problem, Screening, Found]:
-        data = prepared.data.rows(~held_out)
-        if calm is not None:
-            data = _with_scatter_of(data, data.time <= calm, base)
+        data = replace(prepared.data.rows(~held_out), scatter=scatter)
         candidates = hypotheses(parts.without_zeros(), data.sensors, measured)
         start = settled(base, data)
         progress("estimating the noise", 1.0)
@@ -213,14 +213,18 @@ def _diagnose(
     return findings
 
 
-def _with_scatter_of(data: Data, calm: BoolArray, base: Simulator) -> Data:
-    """Data whose scatter is that of the rows in which nothing acts, bool[rows].
+def _scatter_of(model: Model, calm: Record, criteria: Criteria) -> FloatArray | None:
+    """Levels of the scatter in rows in which nothing acts; None where they show too little.
 
     A cause that acts for long enough would else pass for scatter.
     """
-    if np.median(data.observed[calm].sum(axis=0)) < SHOW_SCATTER:
-        return data
-    return replace(data, scatter=settled(base, data.rows(calm)).levels)
+    if np.median(np.isfinite(calm.readings).sum(axis=0)) < SHOW_SCATTER:
+        return None
+    try:
+        data = prepare(model, calm, lambda done: None, criteria).data
+    except InputError:
+        return None
+    return settled(Simulator(model.without_zeros()), data).levels
 
 
 def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:

@@ -54,22 +54,23 @@ def test_the_scatter_is_that_of_rows_in_which_nothing_acts(
 ) -> None:
     """What acts later does not raise it; too few of these rows say nothing."""
     sound = measured_record(model)
-    time, rows = sound.time, len(sound.time)
-    half = rows // 2
+    half = len(sound.time) // 2
     moved = sound.readings.copy()
     moved[half:] *= np.random.default_rng(3).normal(1.0, 0.05, moved.shape[1])
     off = replace(sound, readings=moved)
 
-    def levels(record: Record, calm: float | None) -> FloatArray:
+    def levels(record: Record, calm: Record | None) -> FloatArray:
         found = diagnose(model, record, calm=calm).account.found
         assert found is not None
         return found.problem.levels
 
-    calm = float(time[half - 1])
+    calm = off.rows(slice(0, half))
     free = levels(off, None)
     np.testing.assert_array_equal(levels(off, calm), levels(sound, calm))
     assert free[1] > 1.5 * levels(off, calm)[1]
-    np.testing.assert_array_equal(levels(off, float(time[5])), free)
+    np.testing.assert_array_equal(levels(off, off.rows(slice(0, 5))), free)
+    unread = replace(calm, readings=np.zeros_like(calm.readings))
+    np.testing.assert_array_equal(levels(off, unread), free)
 
 
 def test_progress_is_said_in_stages(diagnosed: tuple[Findings, Findings, Said]) -> None:

@@ -90,14 +90,15 @@ def _least_supported(found: Found, start: Problem, whole: WholeRecord, seed: int
 def gaps_left_out(found: Found) -> tuple[float, float] | None:
     """Gap of channels left out of the fit, without the causes of the structure and with them.
 
-    Of groups that are less likely with the causes; None where there is no such group.
+    Of groups that speak against the causes; None where there is no such group.
     """
     hypotheses = found.fit.hypotheses
     numbers = [k for k, one in enumerate(hypotheses) if not one.kind.on_sensors]
     if not numbers:
         return None
     without = without_cause(found.problem, found.base, found.fit, *numbers)
-    against = [names for names, odds in _against(found, without) if odds > 0]
+    least = found.problem.criteria.naming.group_against
+    against = [names for names, odds in _against(found, without) if odds > least]
     if not against:
         return None
     before, after = unseen_gaps(found.problem, found.base, [without, found.fit], against)
