@@ -55,9 +55,9 @@ class SyncMonitor:
         names: of the sensors, by which warnings call them; None: by their numbers.
 
     Raises:
-        InputError: the baseline is no table of numbers, or has no sensor with 30 readings that are
-            not all alike; a number beyond 1e60 in size; `arl0` below 100 or above 1e12; a seed
-            below 0.
+        InputError: the baseline is no table of numbers, has a number of names that is not that of
+            its sensors, or no sensor with 30 readings that are not all alike; a number beyond 1e60
+            in size; `arl0` below 100 or above 1e12; a seed below 0.
 
     Examples:
         >>> import numpy as np
@@ -79,6 +79,10 @@ class SyncMonitor:
     ) -> None:
         given = table(baseline, "the baseline")
         within(given, 0, "the baseline")
+        called = [str(column) for column in range(given.shape[1])] if names is None else names
+        if len(called) != given.shape[1]:
+            what = f"{len(called)} names of {given.shape[1]} sensors"
+            raise InputError(what, "names", "give one for each column of the baseline")
         self._unwatched = unwatched(given)
         self._watched = np.array([one not in self._unwatched for one in range(given.shape[1])])
         if not self._watched.any():
@@ -91,9 +95,8 @@ class SyncMonitor:
             rows.shape[1], length, simulated_memory(memory), _arl0(arl0), _seed(seed)
         )
         self._begin(reference, simulated, arl0, seed)
-        watched = np.flatnonzero(self._watched).tolist()
-        called = [str(column) if names is None else names[column] for column in watched]
-        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, called)
+        watched = [called[column] for column in np.flatnonzero(self._watched).tolist()]
+        self._warnings: tuple[str, ...] = assumption_warnings(reference, rows, simulated, watched)
 
     @classmethod
     def known(cls, n_sensors: int, *, arl0: float = 10_000.0, seed: int = 0) -> Self:

@@ -48,7 +48,8 @@ def reasons_for_doubt(
         dropped: causes that only the readings fitted spoke for.
         off: channels and groups that do not fit.
         gained: gap of the held-out rows.
-        unseen: gap of channels left out, without the causes of the structure and with them.
+        unseen: gap of channels left out that speak against the causes of the structure, without
+            these and with them.
     """
     fallen = [
         f"{place_words([one.kind.title, *one.place.values()])}"
@@ -72,8 +73,8 @@ def reasons_for_doubt(
         )
     if unseen is not None and unseen[1] > criteria.unseen_rise * unseen[0]:
         reasons.append(
-            "channels left out of the fit are predicted worse with the causes: their gap is "
-            f"{unseen[0]:.3g} times the noise without and {unseen[1]:.3g} with them"
+            "channels left out of the fit that speak against the causes are predicted worse with "
+            f"them: their gap is {unseen[0]:.3g} times the noise without and {unseen[1]:.3g} with"
         )
     if gained.after > criteria.held_out_gap:
         members, gains = found.problem.levels[:2]

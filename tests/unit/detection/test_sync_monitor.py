@@ -265,6 +265,8 @@ def test_sensors_that_repeat_others_are_warned_of() -> None:
     assert warning.startswith("sensors 1, 4 read nearly what others of them read")
     (warning,) = SyncMonitor(copied, arl0=500, names="abcde").warnings
     assert warning.startswith("sensors b, e read nearly what others of them read")
+    with pytest.raises(InputError, match="2 names of 5 sensors"):
+        SyncMonitor(copied, arl0=500, names="ab")
 
 
 def test_coarse_readings_are_warned_of() -> None:

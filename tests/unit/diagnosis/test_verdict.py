@@ -94,7 +94,7 @@ def test_a_gap_that_the_causes_do_not_close_is_a_warning(cause: Found, nothing: 
 
 def test_channels_left_out_that_get_worse_are_a_warning(cause: Found) -> None:
     (words,) = reasons(cause, unseen=(1.0, 3.0))
-    assert "channels left out of the fit are predicted worse" in words
+    assert "channels left out of the fit that speak against the causes" in words
     assert reasons(cause, unseen=(3.0, 1.0)) == []
 
 

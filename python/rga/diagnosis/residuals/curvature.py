@@ -74,14 +74,14 @@ def curves(problem: Problem) -> list[Curve]:
     courses = _courses(load_basis(problem.simulator, data))
     known = courses.shape[1]
     sizes, squared, count = np.zeros((3, sensors, len(tried)))
-    nothing = _wandering(tried)
+    controls = _wandering(tried)
     chance_squared = np.full((sensors, len(tried)), np.nan)
     for sensor in range(sensors):
         free = int(data.observed[:, sensor].sum()) - known - 1
         if free < known:
             continue
         shapes = np.column_stack([one.shape[:, sensor] for one in tried])
-        columns = np.column_stack([courses, shapes, nothing, left[:, sensor]]).T[:, None]
+        columns = np.column_stack([courses, shapes, controls, left[:, sensor]]).T[:, None]
         white = rows.whiten(columns, np.full(len(columns), sensor)[:, None])[:, 0].T
         span, _ = np.linalg.qr(white[:, :known])
         rest = white[:, known:] - span @ (span.T @ white[:, known:])
@@ -107,8 +107,8 @@ def curves(problem: Problem) -> list[Curve]:
                 most = data.sensors[int(np.abs(curve.sizes).argmax())]
                 curve = replace(curve, words=f"{one.words}, most of all channel {most}")
             # One loop shows over many readings, and with other widths.
-            known = found.get(one.words)
-            found[one.words] = min(known or (likely, curve), (likely, curve), key=lambda at: at[0])
+            other = found.get(one.words)
+            found[one.words] = min(other or (likely, curve), (likely, curve), key=lambda at: at[0])
     return [curve for _, curve in found.values()]
 
 

@@ -55,8 +55,8 @@ class FitCriteria(CriteriaGroup):
     unseen_rise: Multiple = criterion(
         1.5,
         "-",
-        "gap on groups of channels left out that are less likely with causes of the structure than "
-        "without, with these over without, from which on the record is not called explained",
+        "gap on groups of channels left out that speak against causes of the structure, with these "
+        "over without, from which on the record is not called explained",
         "judgement: a true cause brings it down or leaves it; causes that undo each other on the "
         "channels fitted raise it",
     )
