@@ -36,14 +36,14 @@ def explanations(tried: Sequence[Tried], found: Found, record: Record) -> list[E
             effects = [content(effect) for effect in estimated_effects(one.fit, record)]
             words = " + ".join(effect_words(effect) for effect in effects) or "the model as it is"
             odds = one.fit.log_evidence
-            remark = _remark(one, nothing, named, found)
+            remark = _remark(one, named, found)
         explanations.append(
             Explanation(
                 words=words,
                 effects=effects,
                 log_odds=max(round(odds, DECIMALS), -1e9),
                 gap=one.gap,
-                gap_unseen_channels=one.gap_unseen if np.isfinite(one.gap_unseen) else None,
+                gap_unseen_channels=one.unseen.gap if np.isfinite(one.unseen.gap) else None,
                 remark=remark,
             )
         )
@@ -64,7 +64,7 @@ def unidentifiable(prospects: Sequence[Prospect], smallest: float) -> list[Unide
     ]
 
 
-def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
+def _remark(one: Tried, named: Tried, found: Found) -> str:
     """Why an explanation was kept or rejected."""
     assert one.fit is not None  # the caller takes free gains out
     if not one.fit.hypotheses:
@@ -98,11 +98,10 @@ def _remark(one: Tried, nothing: Tried, named: Tried, found: Found) -> str:
             else f"likelier than no effect ({ahead:+.0f} log-odds), and rejected all the same: it "
             "may be what no kind explains that speaks for it"
         )
-    better = criteria.explanations.predicts_better * named.gap_unseen
-    if not all(held) and one.gap_unseen < better:
+    better = criteria.explanations.predicts_better * named.unseen.gap
+    if not all(held) and one.unseen.gap < better and one.unseen.log_odds > named.unseen.log_odds:
         remarks.append("yet it predicts channels that were left out better than what is named")
-    unhelpful = criteria.explanations.unhelpful * nothing.gap_unseen
-    if np.isfinite(one.gap_unseen) and one.gap_unseen > unhelpful:
+    if np.isfinite(one.unseen.gap) and round(one.unseen.log_odds, DECIMALS) <= 0:
         remarks.append("does not help channels that it was not fitted to")
     remarks += [
         f"{hypothesis.kind.title} would need an unlikely value"

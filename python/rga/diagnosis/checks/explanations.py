@@ -7,6 +7,7 @@ also hold for channels that were not fitted: whole groups of them are left out i
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,19 @@ PARTNERS = 4
 POOR = -15.0
 
 
+class OnUnseen(NamedTuple):
+    """How an explanation predicts channels that it was not fitted to.
+
+    Attributes:
+        gap: mean squared residual over the variance of the prediction; nan where none is left out.
+        log_odds: by which these channels speak for it and against no effect at all, given the
+            others: a prediction that says little is not wrong, and earns little.
+    """
+
+    gap: float
+    log_odds: float
+
+
 @dataclass(frozen=True)
 class Tried:
     """An explanation as it came out.
@@ -34,12 +48,12 @@ class Tried:
     Attributes:
         fit: its hypotheses with their parameters; None for a free gain on every channel.
         gap: mean squared residual over variance on the fitted rows.
-        gap_unseen: the same on groups of channels that were left out in turn.
+        unseen: the same on groups of channels that were left out in turn.
     """
 
     fit: Fit | None
     gap: float
-    gap_unseen: float
+    unseen: OnUnseen
 
 
 def sensor_groups(model: Model, sensors: Sequence[str]) -> dict[str, list[str]]:
@@ -102,13 +116,13 @@ def compare(
             one = max((fit(problem, base, together, z) for z in trials), key=evidence)
         fits.append(one)
         progress((number + 1) / (len(chosen) + 1))
-    unseen = unseen_gaps(problem, base, fits)
+    unseen = on_unseen(problem, base, fits)
     progress(1.0)
     tried = [
-        Tried(one, _gap(problem, one.simulated), gap) for one, gap in zip(fits, unseen, strict=True)
+        Tried(one, _gap(problem, one.simulated), own) for one, own in zip(fits, unseen, strict=True)
     ]
     gained = _free_gains(problem, tried[0])
-    return [*tried, Tried(None, _gap(problem, gained), tried[0].gap_unseen)]
+    return [*tried, Tried(None, _gap(problem, gained), tried[0].unseen)]
 
 
 def _in_the_place_of_a_cause(found: Found, together: Sequence[Hypothesis]) -> Fit | None:
@@ -198,16 +212,13 @@ def _gap(problem: Problem, simulated: FloatArray) -> float:
     return float(square[problem.data.observed].mean())
 
 
-def unseen_gaps(
+def on_unseen(
     problem: Problem,
     base: Simulator,
     fits: Sequence[Fit],
     groups: Iterable[Sequence[str]] | None = None,
-) -> list[float]:
-    """Gaps on groups of channels, each left out of the fit in turn; nan where none can be.
-
-    Over the variance of the prediction: what the other channels do not know of a cause counts as
-    not known.
+) -> list[OnUnseen]:
+    """How explanations predict groups of channels, each left out of the fit in turn.
 
     Args:
         problem: with all channels.
@@ -218,14 +229,34 @@ def unseen_gaps(
     if groups is None:
         groups = groups_left_out(base.model, problem.data.sensors)
     squares: list[list[FloatArray]] = [[] for _ in fits]
-    spread = variance(problem)
+    odds = np.zeros(len(fits))
     for names in groups:
+        part = hiding(problem, names)
         columns = [problem.data.sensors.index(name) for name in names]
         seen, readings = problem.data.observed[:, columns], problem.data.readings[:, columns]
-        for own, part in zip(squares, refit(hiding(problem, names), base, fits), strict=True):
-            square = (readings - problem.with_contexts(part.simulated)[:, columns]) ** 2
-            own.append((square / (spread[:, columns] + left_open(part, columns)))[seen])
-    return [float(np.concatenate(own).mean()) if own else np.nan for own in squares]
+        spread = unseen_variance(problem, part, columns)
+        for number, one in enumerate(refit(part, base, fits)):
+            square = (readings - problem.with_contexts(one.simulated, part)[:, columns]) ** 2
+            squares[number].append((square / (spread + left_open(one, columns)))[seen])
+            odds[number] += fits[number].log_evidence - one.log_evidence
+    return [
+        OnUnseen(float(np.concatenate(own).mean()) if own else np.nan, float(each))
+        for own, each in zip(squares, odds, strict=True)
+    ]
+
+
+def unseen_variance(problem: Problem, part: Problem, columns: Sequence[int]) -> FloatArray:
+    """Variance of channels about a faultless simulation, by what others leave open of contexts.
+
+    Args:
+        problem: with all channels.
+        part: the same with these channels unseen.
+        columns: of the channels.
+
+    Returns:
+        float[rows, columns].
+    """
+    return (variance(problem) + problem.unsure_contexts(part))[:, columns]
 
 
 def _free_gains(problem: Problem, nothing: Tried) -> FloatArray:

@@ -8,7 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.checks.explanations import hiding, left_open, sensor_groups, variance
+from rga.diagnosis.checks.explanations import (
+    hiding,
+    left_open,
+    sensor_groups,
+    unseen_variance,
+)
 from rga.diagnosis.search.laplace import Fit, fit, refit
 from rga.diagnosis.search.stepwise import Found, without_cause
 from rga.model.parameter import listed
@@ -110,22 +115,23 @@ def unseen_groups(found: Found) -> list[Unseen]:
     if len(groups) < 2 or not causes.hypotheses:
         return []
     nothing = fit(problem, base, [], [])
-    spread = variance(problem)
     words = []
     for word, names in groups.items():
-        (blind,) = refit(hiding(problem, names), base, [causes])
+        part = hiding(problem, names)
+        (blind,) = refit(part, base, [causes])
         columns = [problem.data.sensors.index(name) for name in names]
         seen = problem.data.observed[:, columns]
         if not seen.any():
             continue
-
         readings = problem.data.readings[:, columns]
-        predicted = [problem.with_contexts(one.simulated)[:, columns] for one in (nothing, blind)]
+        spread = unseen_variance(problem, part, columns)
+        predicted = [
+            problem.with_contexts(one.simulated, part)[:, columns] for one in (nothing, blind)
+        ]
         gaps = [
-            (readings - shown) ** 2 / (spread[:, columns] + left_open(one, columns))
+            (readings - shown) ** 2 / (spread + left_open(one, columns))
             for one, shown in zip((nothing, blind), predicted, strict=True)
         ]
-
         words.append(
             Unseen(
                 group=word,

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.diagnosis.checks.explanations import groups_left_out, hiding, unseen_gaps
+from rga.diagnosis.checks.explanations import groups_left_out, hiding, on_unseen
 from rga.diagnosis.search.laplace import Alternative, Fit, fit, refit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.stepwise import Found, without_cause
@@ -35,10 +35,10 @@ def without_unhelpful(problem: Problem, base: Simulator, current: Fit) -> Fit:
             for number, one in enumerate(current.hypotheses)
             if not one.kind.at_sensors()
         ]
-        whole, *gaps = unseen_gaps(problem, base, [current, *fewer])
-        if not gaps or min(gaps) >= whole:
+        whole, *odds = (one.log_odds for one in on_unseen(problem, base, [current, *fewer]))
+        if not odds or max(odds) <= whole:
             break
-        current = fewer[int(np.argmin(gaps))]
+        current = fewer[int(np.argmax(odds))]
     return current
 
 
@@ -96,11 +96,11 @@ def with_better_prediction(found: Found) -> Found:
     ]
     if not rivals or not groups_left_out(base.model, problem.data.sensors):
         return found
-    whole, *gaps = unseen_gaps(problem, base, [found.fit, *(one.fit for _, one in rivals)])
+    whole, *others = on_unseen(problem, base, [found.fit, *(one.fit for _, one in rivals)])
     better = [
-        (gap, number, one)
-        for (number, one), gap in zip(rivals, gaps, strict=True)
-        if gap < criteria.predicts_better * whole
+        (own.gap, number, one)
+        for (number, one), own in zip(rivals, others, strict=True)
+        if own.gap < criteria.predicts_better * whole.gap and own.log_odds > whole.log_odds
     ]
     if not better:
         return found

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rga.diagnosis.checks.explanations import groups_left_out, hiding, unseen_gaps
+from rga.diagnosis.checks.explanations import groups_left_out, hiding, on_unseen
 from rga.diagnosis.checks.whole_record import WholeRecord, about
 from rga.diagnosis.search.hypothesis import Hypothesis
 from rga.diagnosis.search.laplace import Fit, evidence_without, refit
@@ -101,22 +101,20 @@ def gaps_left_out(found: Found) -> tuple[float, float] | None:
     against = [names for names, odds in _against(found, without) if odds > least]
     if not against:
         return None
-    before, after = unseen_gaps(found.problem, found.base, [without, found.fit], against)
-    return before, after
+    before, after = on_unseen(found.problem, found.base, [without, found.fit], against)
+    return before.gap, after.gap
 
 
 def worsens(found: Found, without: Fit) -> bool:
-    """Whether channels that were left out get worse by a cause.
+    """Whether channels that were left out speak against a cause, one group of them strongly.
 
     Args:
         found: with the cause.
         without: fitted without it.
     """
-    criteria = found.problem.criteria.naming
-    bare, gap = unseen_gaps(found.problem, found.base, [without, found.fit])
-    if not gap > criteria.worse_gap * bare:
-        return False
-    return max(odds for _, odds in _against(found, without)) > criteria.group_against
+    against = [odds for _, odds in _against(found, without)]
+    least = found.problem.criteria.naming.group_against
+    return sum(against) > 0 and max(against) > least
 
 
 def _against(found: Found, without: Fit) -> Iterator[tuple[list[str], float]]:

@@ -77,18 +77,31 @@ class RowCovariance:
         jacobian = np.where(observed[:, :, None], self.context_jacobian, 0.0)
         return RowCovariance(self.noise, self.time, observed, jacobian)
 
-    def _context_factor(self) -> FloatArray:
-        """Cholesky factor of the contexts' precision, its lower band."""
+    def context_variance(self) -> FloatArray:
+        """Covariance of the contexts of each row, those of others known.
+
+        Returns:
+            float[rows, contexts, contexts].
+        """
+        own, _ = self._context_precision()
+        return np.asarray(np.linalg.inv(own.transpose(2, 0, 1)))
+
+    def _context_precision(self) -> tuple[FloatArray, FloatArray]:
+        """Precision of a row's contexts, and with the next; float[contexts, contexts, rows]."""
         jacobian = self._by_context
-        contexts, _, rows = jacobian.shape
-        if contexts == 0:
-            return np.zeros((1, 0))
         now = self.weight * jacobian
         later = self._passing[:, 1:] * jacobian[..., :-1]
         own = _over_sensors(now, now)
         own[..., :-1] += _over_sensors(later, later)
         own += np.diag(self.noise.context_sigma**-2.0)[..., None]
-        cross = -_over_sensors(later, now[..., 1:])
+        return own, -_over_sensors(later, now[..., 1:])
+
+    def _context_factor(self) -> FloatArray:
+        """Cholesky factor of the contexts' precision, its lower band."""
+        contexts, _, rows = self._by_context.shape
+        if contexts == 0:
+            return np.zeros((1, 0))
+        own, cross = self._context_precision()
         lower = np.zeros((2 * contexts, rows * contexts))
         for i in range(contexts):
             for j in range(contexts):

@@ -184,16 +184,18 @@ def _loops(problem: Problem) -> list[_Shape]:
 
 
 def _wandering(tried: Sequence[_Shape]) -> FloatArray:
-    """Chance courses, `CONTROLS` as slow as each shape tried, float[rows, shapes * CONTROLS]."""
+    """Chance courses, `CONTROLS` with the spectrum of each shape tried, at random phases.
+
+    They are as slow as the shape at every scale: surrogate data of Theiler et al. (1992, Physica D
+    58, 77).
+
+    Returns:
+        float[rows, shapes * CONTROLS].
+    """
     shapes = np.column_stack([one.shape.mean(axis=1) for one in tried])
-    shapes = shapes - shapes.mean(axis=0)
-    power = np.maximum((shapes**2).sum(axis=0), 1e-300)
-    slow = np.clip((shapes[1:] * shapes[:-1]).sum(axis=0) / power, 0.0, 1.0).repeat(CONTROLS)
-    steps = np.random.default_rng(SEED).standard_normal((len(shapes), len(slow)))
-    courses: FloatArray = steps.copy()
-    for row in range(1, len(steps)):
-        courses[row] = slow * courses[row - 1] + np.sqrt(1 - slow**2) * steps[row]
-    return courses
+    size = np.abs(np.fft.rfft(shapes - shapes.mean(axis=0), axis=0)).repeat(CONTROLS, axis=1)
+    turned = np.random.default_rng(SEED).uniform(0.0, 2 * np.pi, size.shape)
+    return np.asarray(np.fft.irfft(size * np.exp(1j * turned), len(shapes), axis=0))
 
 
 def _by_chance(along: FloatArray, wandering: FloatArray, reading: FloatArray) -> FloatArray:
@@ -217,20 +219,20 @@ def _by_chance(along: FloatArray, wandering: FloatArray, reading: FloatArray) ->
 
 
 def _excess(squared: FloatArray) -> FloatArray:
-    """How much more the readings go with courses that stand for nothing than chance says [-].
+    """How much more readings go with courses that stand for nothing than chance says [-].
 
     Args:
         squared: with those of each shape, over the variance, float[sensors, shapes]; NaN where
             too little is read.
 
     Returns:
-        Less the deviation that so few squares have by chance, float[shapes].
+        Half what a channel itself shows and half what all of them do, less the deviation that so
+        few squares have by chance, float[sensors, shapes].
     """
-    read = squared[np.isfinite(squared).all(axis=1)]
-    if not len(read):
-        return np.ones(squared.shape[1])
-    by_chance = np.sqrt(2 / (len(read) * CONTROLS))
-    return np.asarray(np.maximum(1.0, read.mean(axis=0) - by_chance))
+    read = np.isfinite(squared)
+    own = np.where(read, squared, 1.0)
+    both = own + own.sum(axis=0, where=read) / np.maximum(read.sum(axis=0), 1)
+    return np.asarray(np.maximum(1.0, (both - np.sqrt(2 / CONTROLS)) / 2))
 
 
 def _in_all(course: FloatArray, sensors: int) -> FloatArray:

@@ -92,25 +92,42 @@ class Problem:
         """The same with the tails."""
         return np.where(self.data.observed, self.data.readings - simulated - self.shift, 0.0)
 
-    def with_contexts(self, simulated: FloatArray) -> FloatArray:
+    def with_contexts(self, simulated: FloatArray, by: "Problem | None" = None) -> FloatArray:
         """A simulation with latent contexts where the readings put them beside it.
 
         Args:
             simulated: about the belief, float[rows, sensors].
+            by: the same with some channels unseen, whose readings put them there; None: this one.
 
         Returns:
             float[rows, sensors].
         """
-        belief, rows = self.data.belief, self.covariance.rows
-        shifted = simulated + self.shift
+        seen = by or self
+        belief, covariance = self.data.belief, seen.covariance
         latent = [number for number, name in enumerate(belief.spread) if name in belief.latent]
-        if not latent:
-            return shifted
-        residual = self.residual(simulated)
-        scatter = self.covariance.scatter.at(self.covariance.scatter_estimate(residual))
-        error = rows.context_error(residual - scatter)[:, latent]
-        moved = np.einsum("tsi,ti->ts", rows.context_jacobian[:, :, latent], error)
-        return np.asarray(shifted + moved)
+        residual = seen.residual(simulated)
+        estimate = covariance.scatter_estimate(residual)
+        error = covariance.rows.context_error(residual - covariance.scatter.at(estimate))
+        jacobian = self.covariance.rows.context_jacobian[:, :, latent]
+        moved = np.einsum("tsi,ti->ts", jacobian, error[:, latent])
+        of_lines = np.arange(len(estimate)) >= len(estimate) - len(lines(self.data))
+        moved += self.covariance.scatter.at(np.where(of_lines, estimate, 0.0))
+        return np.asarray(simulated + self.shift + moved)
+
+    def unsure_contexts(self, by: "Problem") -> FloatArray:
+        """Variance of a simulation by what other channels leave open of latent contexts.
+
+        Args:
+            by: the same with some channels unseen.
+
+        Returns:
+            float[rows, sensors].
+        """
+        belief = self.data.belief
+        latent = [number for number, name in enumerate(belief.spread) if name in belief.latent]
+        left = by.covariance.rows.context_variance()[:, latent][:, :, latent]
+        jacobian = self.covariance.rows.context_jacobian[:, :, latent]
+        return np.asarray(((jacobian @ left) * jacobian).sum(axis=2))
 
     def explained_by_scatter(self, residual: FloatArray) -> FloatArray:
         """The part of a residual that scatter and contexts take up, float[rows, sensors]."""

@@ -50,12 +50,6 @@ class NamingCriteria(CriteriaGroup):
         "a cause must be likelier than none without so many readings, those that speak most for it",
         "a spike lasts two rows at most (channels.longest_spike)",
     )
-    worse_gap: Multiple = criterion(
-        1.01,
-        "-",
-        "gap on channels left out over that without the cause, from which on it is larger",
-        "what the numbers of channels and rows leave to chance lies within a hundredth",
-    )
 
 
 class RivalCriteria(CriteriaGroup):
@@ -103,12 +97,6 @@ class ExplanationCriteria(CriteriaGroup):
         "share of the named causes' gap on channels left out below which it is said that another "
         "predicts them better",
         "judgement: a remark, which decides no verdict",
-    )
-    unhelpful: Share = criterion(
-        0.98,
-        "-",
-        "share of the gap without any effect above which one does not help channels left out",
-        "beyond what chance leaves of the numbers of channels and rows (a hundredth)",
     )
     unlikely: Positive = criterion(
         3.0,

@@ -1,16 +1,22 @@
 """Explanations: groups of channels, what is hidden of a record, and gaps on what was not fitted."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from known_problem import candidate, candidates, change_of, found_with, with_white_noise
-from rga.diagnosis.checks.explanations import compare, hiding, sensor_groups, unseen_gaps, variance
+from rga.diagnosis.checks.explanations import compare, hiding, on_unseen, sensor_groups, variance
+from rga.diagnosis.preparation.prepare import prepare
 from rga.diagnosis.search.laplace import fit
 from rga.diagnosis.search.linearised import Problem
 from rga.diagnosis.search.screening import Screening
-from rga.model import Model
+from rga.diagnosis.search.stepwise import settled
+from rga.model import Model, read_model
+from rga.records import Record
+from rga.simulation import Simulator
 
 
 def test_like_channels_are_grouped(model: Model) -> None:
@@ -47,7 +53,7 @@ def test_the_gap_on_what_was_not_fitted(noisy: Problem) -> None:
     base = noisy.simulator
     nothing = fit(noisy, base, [], [])
     residual = noisy.residual(noisy.simulated) / noisy.noise.sigma
-    assert unseen_gaps(noisy, base, [nothing])[0] == pytest.approx((residual**2).mean())
+    assert on_unseen(noisy, base, [nothing])[0].gap == pytest.approx((residual**2).mean())
     sunk = candidate(noisy, "support_settlement", support="east", dof="uz")
     off = noisy.residual(noisy.simulated)
     change = change_of(noisy, sunk, 0.2)
@@ -64,17 +70,52 @@ def test_the_gap_on_what_was_not_fitted(noisy: Problem) -> None:
     grouped = type(base)(base.model.model_copy(update={"sensors": sensors}))
     for problem, most in ((true, 1.2), (false, np.inf)):
         found = fit(problem, grouped, [sunk], [0.1])
-        gap = unseen_gaps(problem, grouped, [found])[0]
-        bare = unseen_gaps(problem, grouped, [fit(problem, grouped, [], [])])[0]
+        (gap, odds), (bare, none) = on_unseen(
+            problem, grouped, [found, fit(problem, grouped, [], [])]
+        )
         assert gap < most
         assert (gap < bare) == (problem is true)
+        assert none == pytest.approx(0.0, abs=1e-9)
+        assert (odds > 5.0) == (problem is true)
+
+
+@pytest.fixture(scope="module")
+def latent(
+    small_bridge: dict[str, Any], model: Model, measured_record: Callable[..., Record]
+) -> Problem:
+    """A record with nothing wrong in which nothing but readings tells the loads."""
+    record = measured_record(model)
+    record = replace(record, contexts={"temperature": record.contexts["temperature"]})
+    free = read_model(small_bridge, "small bridge")
+    return settled(Simulator(free), prepare(free, record, lambda done: None).data)
+
+
+def test_what_is_left_out_says_nothing_of_itself(latent: Problem) -> None:
+    """Neither by the contexts that its own readings would show."""
+    names = sensor_groups(latent.simulator.model, latent.data.sensors)["displacement"]
+    columns = [latent.data.sensors.index(name) for name in names]
+    readings = latent.data.readings.copy()
+    readings[:, columns] += 10.0 * latent.noise.sigma[columns]
+    moved = replace(latent, data=replace(latent.data, readings=readings))
+    before, after = (
+        one.with_contexts(one.simulated, hiding(one, names))[:, columns] for one in (latent, moved)
+    )
+    np.testing.assert_allclose(after, before, atol=1e-9)
+    own = moved.with_contexts(moved.simulated) - latent.with_contexts(latent.simulated)
+    assert np.abs(own[:, columns] / latent.noise.sigma[columns]).max() > 1.0
+
+
+def test_a_faultless_model_predicts_channels_left_out_to_their_variance(latent: Problem) -> None:
+    nothing = fit(latent, latent.simulator, [], [])
+    (sound,) = on_unseen(latent, latent.simulator, [nothing])
+    assert sound.gap == pytest.approx(1.0, abs=0.1)
 
 
 def test_one_group_has_no_gap_on_others(noisy: Problem) -> None:
     model = noisy.simulator.model
     sensors = {k: one.model_copy(update={"groups": ["all"]}) for k, one in model.sensors.items()}
     base = type(noisy.simulator)(model.model_copy(update={"sensors": sensors}))
-    assert np.isnan(unseen_gaps(noisy, base, [fit(noisy, base, [], [])])[0])
+    assert np.isnan(on_unseen(noisy, base, [fit(noisy, base, [], [])])[0].gap)
 
 
 def test_what_was_tried_begins_with_nothing_and_ends_with_free_gains(noisy: Problem) -> None:

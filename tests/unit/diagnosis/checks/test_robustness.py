@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from known_problem import candidate, change_of, found_with, with_white_noise
+from rga.diagnosis.checks.explanations import OnUnseen
 from rga.diagnosis.checks.robustness import (
     with_better_prediction,
     with_hanging_leads,
@@ -57,15 +58,15 @@ def test_a_lead_that_many_channels_bear_stays(
 
 
 def predicting(
-    monkeypatch: pytest.MonkeyPatch, gaps: dict[frozenset[str], float]
-) -> dict[frozenset[str], float]:
-    """Gaps on unseen channels by the supports whose settlements are in a fit."""
+    monkeypatch: pytest.MonkeyPatch, told: dict[frozenset[str], OnUnseen]
+) -> dict[frozenset[str], OnUnseen]:
+    """What unseen channels say, by the supports whose settlements are in a fit."""
 
-    def of_fits(problem: Problem, base: Simulator, fits: list[Fit]) -> list[float]:
-        return [gaps[frozenset(str(h.place["support"]) for h in one.hypotheses)] for one in fits]
+    def of_fits(problem: Problem, base: Simulator, fits: list[Fit]) -> list[OnUnseen]:
+        return [told[frozenset(str(h.place["support"]) for h in one.hypotheses)] for one in fits]
 
-    monkeypatch.setattr("rga.diagnosis.checks.robustness.unseen_gaps", of_fits)
-    return gaps
+    monkeypatch.setattr("rga.diagnosis.checks.robustness.on_unseen", of_fits)
+    return told
 
 
 def test_the_cause_without_which_unseen_channels_are_best_predicted_goes(
@@ -73,10 +74,11 @@ def test_the_cause_without_which_unseen_channels_are_best_predicted_goes(
 ) -> None:
     found = found_with(noisy, [east, west])
     both, one, other = (frozenset(names) for names in (("east", "west"), ("east",), ("west",)))
-    gaps = predicting(monkeypatch, {both: 2.0, one: 1.5, other: 1.8})
+    odds = {both: 10.0, one: 12.0, other: 11.0}
+    told = predicting(monkeypatch, {names: OnUnseen(1.0, each) for names, each in odds.items()})
     (kept,) = without_unhelpful(noisy, found.base, found.fit).hypotheses
     assert kept.place["support"] == "east"
-    gaps[both] = 1.0
+    told[both] = OnUnseen(1.0, 12.5)
     assert without_unhelpful(noisy, found.base, found.fit) is found.fit
 
 
@@ -86,21 +88,25 @@ def test_a_close_rival_that_predicts_unseen_channels_takes_the_place(
     found = found_with(noisy, [east], [west])
     rival = found.alternatives[0][0]
     assert abs(rival.behind) < 3
-    gaps = predicting(monkeypatch, {frozenset({"east"}): 2.0, frozenset({"west"}): 0.5})
+    east_alone, west_alone = frozenset({"east"}), frozenset({"west"})
+    told = predicting(monkeypatch, {east_alone: OnUnseen(2.0, 5.0), west_alone: OnUnseen(0.5, 6.0)})
     other = with_better_prediction(found)
     assert other.fit is rival.fit
     (former,) = other.alternatives[0]
     assert former.hypothesis is east
     assert former.behind == pytest.approx(-rival.behind, abs=1e-6)
     assert other.log_odds[0] == pytest.approx(found.log_odds[0] - rival.behind, abs=1e-6)
-    gaps[frozenset({"west"})] = 1.8
-    assert with_better_prediction(found) is found
+    # Half the gap by saying little is no better prediction.
+    for said in (OnUnseen(1.8, 6.0), OnUnseen(0.5, 4.0)):
+        told[west_alone] = said
+        assert with_better_prediction(found) is found
 
 
 def test_a_rival_far_behind_stays_one_whatever_it_predicts(
     noisy: Problem, east: Hypothesis, west: Hypothesis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem = of_channels(noisy, change_of(noisy, east, 0.3), "D1", "D2", "D3")
-    predicting(monkeypatch, {frozenset({"east"}): 2.0, frozenset({"west"}): 0.1})
+    told = {frozenset({"east"}): OnUnseen(2.0, 5.0), frozenset({"west"}): OnUnseen(0.1, 50.0)}
+    predicting(monkeypatch, told)
     found = found_with(problem, [east], [west])
     assert with_better_prediction(found) is found

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from known_problem import candidate, change_of, found_with, with_white_noise
-from rga.diagnosis.checks.explanations import groups_left_out, unseen_gaps
+from rga.diagnosis.checks.explanations import groups_left_out, on_unseen
 from rga.diagnosis.checks.support import gaps_left_out, supported, worsens
 from rga.diagnosis.checks.whole_record import WholeRecord
 from rga.diagnosis.data.held_out import held_out_rows
@@ -78,19 +78,20 @@ def test_channels_that_get_worse_by_a_cause(noisy: Problem, sunk: Hypothesis) ->
     assert not worsens(found, found.fit)
 
 
-@pytest.mark.parametrize(("gap", "against"), [(1.5, True), (1.0, False)])
-def test_channels_get_worse_where_their_gap_and_their_likelihood_say_so(
-    noisy: Problem, sunk: Hypothesis, monkeypatch: pytest.MonkeyPatch, gap: float, against: bool
+@pytest.mark.parametrize(
+    ("odds", "worse"), [((5.0, -4.0), True), ((5.0, -6.0), False), ((4.0, 1.0), False)]
+)
+def test_channels_get_worse_where_one_group_speaks_up_and_no_others_outweigh_it(
+    noisy: Problem,
+    sunk: Hypothesis,
+    monkeypatch: pytest.MonkeyPatch,
+    odds: tuple[float, ...],
+    worse: bool,
 ) -> None:
-    """What a cause leads by on channels outside a group, and not on all, a group speaks against."""
     found = found_with(noisy, [sunk])
-    without = fit(noisy, noisy.simulator, [], [])
-    sure = replace(found.fit, log_evidence=-20.0)
-    monkeypatch.setattr(
-        "rga.diagnosis.checks.support.unseen_gaps",
-        lambda problem, base, fits: [gap if one.hypotheses else 1.0 for one in fits],
-    )
-    assert worsens(replace(found, fit=sure), without) == against
+    told = [([name], one) for name, one in zip(noisy.data.sensors, odds, strict=False)]
+    monkeypatch.setattr("rga.diagnosis.checks.support._against", lambda *_: iter(told))
+    assert worsens(found, fit(noisy, noisy.simulator, [], [])) == worse
 
 
 def test_what_others_do_not_know_of_a_cause_is_not_known(noisy: Problem, sunk: Hypothesis) -> None:
@@ -103,8 +104,8 @@ def test_what_others_do_not_know_of_a_cause_is_not_known(noisy: Problem, sunk: H
     signatures[0, gauge] = 0.1 * sigma[gauge]
     found = replace(found, fit=replace(found.fit, signatures=signatures))
     without = fit(found.problem, noisy.simulator, [], [])
-    before, after = unseen_gaps(found.problem, noisy.simulator, [without, found.fit])
-    assert after < before
+    before, after = on_unseen(found.problem, noisy.simulator, [without, found.fit])
+    assert after.gap < before.gap
     assert gaps_left_out(found) is None
 
 
@@ -119,7 +120,7 @@ def test_groups_that_speak_against_a_cause(
     monkeypatch.setattr("rga.diagnosis.checks.support._against", lambda *_: iter(told))
     without = fit(noisy, noisy.simulator, [], [])
     assert gaps_left_out(found) == tuple(
-        unseen_gaps(noisy, noisy.simulator, [without, found.fit], [first])
+        one.gap for one in on_unseen(noisy, noisy.simulator, [without, found.fit], [first])
     )
     told[0] = (first, 4.0)
     assert gaps_left_out(found) is None
