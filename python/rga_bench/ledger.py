@@ -87,7 +87,9 @@ class Ledger(Generic[Outcome]):
 
     def add(self, outcome: Outcome) -> None:
         """Write an outcome down."""
-        line = {"versions": self._versions, **asdict(outcome)}
+        line = asdict(outcome)
+        assert "versions" not in line  # it is that of the ledger
+        line = {"versions": self._versions, **line}
         with self._path.open("a", encoding="utf-8") as file:
             file.write(json.dumps(line, allow_nan=False) + "\n")
             file.flush()

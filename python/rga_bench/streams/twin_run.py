@@ -40,7 +40,8 @@ class StreamOutcome:
         false_versions: versions with a cause that is none.
         verdict: of the closing diagnosis.
         false_causes: that the closing diagnosis names.
-        alarms, recalibrations, diagnoses, versions, novel: number of each, and of novel contexts.
+        alarms, recalibrations, diagnoses, new_versions, novel: number of each, and of novel
+            contexts.
         gap: median over the rows after the calibration of the gap over the noise, at the time [-].
         seconds: that the run took.
     """
@@ -59,7 +60,7 @@ class StreamOutcome:
     alarms: int
     recalibrations: int
     diagnoses: int
-    versions: int
+    new_versions: int
     novel: int
     gap: float
     seconds: float = field(compare=False)
@@ -105,7 +106,7 @@ def run_twin(task: StreamTask) -> StreamOutcome:
         false_versions=len(wrong),
         verdict=outcome.findings.verdict,
         false_causes=sum(is_false(one.effect, case) for one in outcome.findings.causes),
-        versions=len(versions) - 1,
+        new_versions=len(versions) - 1,
         seconds=seconds,
         gap=float(np.median(np.nanmean(gaps, axis=1))),
         error=error,

@@ -1,10 +1,12 @@
 """The benchmark of the shipped twin: what is drawn, how it is judged, and the tables."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from rga_bench.experiment import Execution
 from rga_bench.streams.experiment import StreamsExperiment
 from rga_bench.streams.setting import StreamSetting, StreamTask
 from rga_bench.streams.table import page
@@ -20,7 +22,7 @@ def result(sort: str, seed: int, **more: Any) -> StreamOutcome:
         "sort": sort, "seed": seed, "inference": "auto", "chosen": "joint", "error": 0.01,
         "covered": 0.9, "delay": None, "named": None, "false_versions": 0,
         "verdict": "nothing_wrong", "false_causes": 0, "alarms": 0, "recalibrations": 0,
-        "diagnoses": 1, "versions": 0, "novel": 0, "gap": 1.0, "seconds": 60.0,
+        "diagnoses": 1, "new_versions": 0, "novel": 0, "gap": 1.0, "seconds": 60.0,
     }  # fmt: skip
     return StreamOutcome(**(known | more))
 
@@ -68,8 +70,8 @@ def test_a_cause_of_the_broken_gauge_is_right_of_whatever_kind(kind: str) -> Non
 
 def test_the_tables_count_what_was_found_and_what_was_not() -> None:
     played = [
-        result("structure", 1, delay=4, named=45, versions=1, verdict="named"),
-        result("structure", 2, delay=9, named=80, versions=1, verdict="partial"),
+        result("structure", 1, delay=4, named=45, new_versions=1, verdict="named"),
+        result("structure", 2, delay=9, named=80, new_versions=1, verdict="partial"),
         result("structure", 3, delay=30, false_versions=1, false_causes=1, verdict="partial"),
         *(result("null", seed) for seed in range(4)),
     ]
@@ -85,6 +87,25 @@ def test_the_tables_count_what_was_found_and_what_was_not() -> None:
     assert cells[6].startswith("1 of 3")
     assert cells[8] == "named 1, partial 2"
     assert "0 of 4 (0%" in text
+
+
+def played(task: StreamTask) -> StreamOutcome:
+    return result(task.sort, task.seed)
+
+
+def never(task: StreamTask) -> StreamOutcome:
+    raise AssertionError(f"{task.id} is in the ledger")
+
+
+def test_what_was_played_is_not_played_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    experiment = StreamsExperiment.of(5, quick=True)
+    monkeypatch.setattr("rga_bench.streams.experiment.run_twin", played)
+    first = experiment.measure(Execution(folder=tmp_path))
+    monkeypatch.setattr("rga_bench.streams.experiment.run_twin", never)
+    assert experiment.measure(Execution(folder=tmp_path)) == first
+    assert len(first) == 4
 
 
 def test_all_streams_are_asked_for_the_default_first() -> None:
