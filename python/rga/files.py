@@ -1,7 +1,10 @@
 """Files that are written whole or not at all."""
 
 from collections.abc import Mapping
+from errno import EISDIR
 from pathlib import Path
+
+from rga.errors import InputError
 
 
 def write_whole(files: Mapping[Path, bytes]) -> None:
@@ -10,6 +13,9 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
     Args:
         files: contents by path; directories exist.
 
+    Raises:
+        InputError: one cannot be written; the others then are as they were.
+
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_whole({Path(folder) / "a.txt": b"1", Path(folder) / "b.txt": b"2"})
@@ -17,7 +23,17 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
     ['a.txt', 'b.txt']
     """
     drafts = {path: path.with_name(path.name + ".partial") for path in files}
-    for path, draft in drafts.items():
-        draft.write_bytes(files[path])
-    for path, draft in drafts.items():
-        draft.replace(path)
+    path = next(iter(files), Path())
+    try:
+        for path, draft in drafts.items():
+            if path.is_dir():
+                raise IsADirectoryError(EISDIR, "it is a directory")
+            draft.write_bytes(files[path])
+        for path, draft in drafts.items():
+            draft.replace(path)
+    except OSError as error:
+        for draft in drafts.values():
+            draft.unlink(missing_ok=True)
+        reason = (error.strerror or "refused").lower()
+        what = f"the output cannot be written, {reason}"
+        raise InputError(what, str(path), "give another place") from None

@@ -76,10 +76,14 @@ def run(
             progress=progress,
             watch=None if quiet else _News(progress),
         )
+    findings = outcome.findings
+    for warning in findings.warnings:
+        if warning not in measured.warnings:
+            typer.echo(f"warning: {warning}", err=True)
     if json is not None:
-        write_json(outcome.findings.model_dump(mode="json"), json)
+        write_json(findings.model_dump(mode="json"), json)
     if not quiet:
-        typer.echo(outcome.findings.sentence())
+        typer.echo(f"Verdict: {findings.verdict}. {findings.sentence()}")
         typer.echo(f"The report is {output / 'report.html'}.")
 
 

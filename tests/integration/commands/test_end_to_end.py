@@ -42,7 +42,9 @@ def test_files_in_findings_out(case: Path, rga: Callable[..., Any]) -> None:
     findings = Findings.model_validate_json(text)
     assert findings.seed == 3
     assert findings.gap.held_out.gain_ci90[0] > 0
-    assert findings.sentence() in done.out
+    assert f"Verdict: {findings.verdict}. {findings.sentence()}" in done.out
+    told = [line for line in done.err.splitlines() if line.startswith("warning: ")]
+    assert told == [f"warning: {one}" for one in findings.warnings]
     assert "http" not in (out / "report.html").read_text(encoding="utf-8").replace(
         "http://www.w3.org/", ""
     )

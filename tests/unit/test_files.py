@@ -1,0 +1,21 @@
+"""Files come whole or not at all."""
+
+from pathlib import Path
+
+import pytest
+
+from rga.errors import InputError
+from rga.files import write_whole
+
+
+def test_where_one_cannot_be_written_all_stay_as_they_were(tmp_path: Path) -> None:
+    kept, taken = tmp_path / "kept.txt", tmp_path / "taken.txt"
+    kept.write_bytes(b"before")
+    taken.mkdir()
+    with pytest.raises(InputError, match="it is a directory") as told:
+        write_whole({kept: b"after", taken: b"after"})
+    assert str(taken) in str(told.value)
+    assert kept.read_bytes() == b"before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["kept.txt", "taken.txt"]
+    with pytest.raises(InputError, match="cannot be written"):
+        write_whole({tmp_path / "nowhere" / "a.txt": b"after"})
