@@ -14,7 +14,7 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         files: contents by path; directories exist.
 
     Raises:
-        InputError: one cannot be written; the others then are as they were.
+        InputError: one cannot be written; no draft of another stays.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -55,10 +55,10 @@ def diagnose_change(
     calibrated = record.rows(record.origin + record.time <= since)
     calm = replace(calibrated, readings=calibrated.readings - _offsets(calibrated, found))
 
-    def diagnosed(as_read: set[str]) -> Findings:
+    def diagnosed(readings: Record) -> Findings:
         return diagnose(
             corrected,
-            _without_sensor_errors(record, found, correction, as_read),
+            readings,
             parts=model,
             calm=calm,
             criteria=criteria,
@@ -66,9 +66,12 @@ def diagnose_change(
             progress=progress,
         )
 
-    findings = diagnosed(set())
-    if wrongly := _off_from_the_beginning(findings, since):
-        findings = diagnosed(wrongly)
+    sound = _without_sensor_errors(record, found, correction, set())
+    findings = diagnosed(sound)
+    wrongly = _off_from_the_beginning(findings, since)
+    again = _without_sensor_errors(record, found, correction, wrongly)
+    if not np.allclose(again.readings, sound.readings, rtol=1e-9, atol=0.0, equal_nan=True):
+        findings = diagnosed(again)
     account = findings.account
     effects = {name: account.extended.effects[name] for name in beyond(corrected, account.extended)}
     if not any(_later(one.onset, since) for one in effects.values()):

@@ -100,5 +100,6 @@ def test_a_sensor_that_was_corrected_wrongly_is_taken_as_it_reads(
     assert not np.array_equal(sound.readings[:, 1], record.readings[:, 1])
     np.testing.assert_array_equal(again.readings[:, 1], record.readings[:, 1])
     np.testing.assert_array_equal(as_before.readings, calm.readings)
+    # One that was not corrected is diagnosed once.
     _, given = asked(model, always | {"sensor": other}, monkeypatch)
-    np.testing.assert_array_equal(given[1][0].readings[:, 1], sound.readings[:, 1])
+    assert len(given) == 1

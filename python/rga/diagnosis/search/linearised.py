@@ -102,17 +102,19 @@ class Problem:
         Returns:
             float[rows, sensors].
         """
+        shifted, latent, moves = simulated + self.shift, self._latent, len(lines(self.data))
+        if not latent and not moves:
+            return shifted
         seen = by or self
-        belief, covariance = self.data.belief, seen.covariance
-        latent = [number for number, name in enumerate(belief.spread) if name in belief.latent]
+        covariance = seen.covariance
         residual = seen.residual(simulated)
         estimate = covariance.scatter_estimate(residual)
         error = covariance.rows.context_error(residual - covariance.scatter.at(estimate))
         jacobian = self.covariance.rows.context_jacobian[:, :, latent]
         moved = np.einsum("tsi,ti->ts", jacobian, error[:, latent])
-        of_lines = np.arange(len(estimate)) >= len(estimate) - len(lines(self.data))
+        of_lines = np.arange(len(estimate)) >= len(estimate) - moves
         moved += self.covariance.scatter.at(np.where(of_lines, estimate, 0.0))
-        return np.asarray(simulated + self.shift + moved)
+        return np.asarray(shifted + moved)
 
     def unsure_contexts(self, by: "Problem") -> FloatArray:
         """Variance of a simulation by what other channels leave open of latent contexts.
@@ -123,11 +125,18 @@ class Problem:
         Returns:
             float[rows, sensors].
         """
-        belief = self.data.belief
-        latent = [number for number, name in enumerate(belief.spread) if name in belief.latent]
+        latent = self._latent
+        if not latent:
+            return np.zeros(self.simulated.shape)
         left = by.covariance.rows.context_variance()[:, latent][:, :, latent]
         jacobian = self.covariance.rows.context_jacobian[:, :, latent]
         return np.asarray(((jacobian @ left) * jacobian).sum(axis=2))
+
+    @property
+    def _latent(self) -> list[int]:
+        """Numbers of the uncertain contexts that nothing measures."""
+        belief = self.data.belief
+        return [number for number, name in enumerate(belief.spread) if name in belief.latent]
 
     def explained_by_scatter(self, residual: FloatArray) -> FloatArray:
         """The part of a residual that scatter and contexts take up, float[rows, sensors]."""
