@@ -104,12 +104,15 @@ def _show(result: "Plan") -> None:
         typer.echo(f"\nTest {number}: {test.words}")
         _show_readings(test.tells, letters)
     if result.separations:
-        table = Table("apart", "d_perp", "expected", "simulated", "d_perp with everything")
+        table = Table(
+            "apart", "by the record", "d_perp", "expected", "simulated", "d_perp with everything"
+        )
         for one in result.separations:
             share = f"{100 * one.simulated.clearly:.0f} % of {one.simulated.draws}"
             both = f"{letters[one.one]} and {letters[one.other]}"
             expected = f"{100 * one.expected:.0f} %"
-            cells = (f"{one.d_perp:.3g}", expected, share, f"{one.d_perp_at_best:.3g}")
+            record = "" if one.log_odds is None else f"{one.log_odds:.0f} log-odds"
+            cells = (record, f"{one.d_perp:.3g}", expected, share, f"{one.d_perp_at_best:.3g}")
             table.add_row(both, *cells)
         Console().print(table)
     typer.echo(result.sentence)

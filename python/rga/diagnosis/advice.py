@@ -27,6 +27,9 @@ from rga.model.schema import Model
 #: rows of the record that stand for operation, and places at which a truck may stand
 ROWS, STANDS = 12, 9
 
+#: what is said where rivals predict the same of all that could be measured
+NOTHING = "nothing that is measured from now on: both predict the same of it"
+
 
 class Advice:
     """Looks for the measurement that separates a cause from its rival.
@@ -84,7 +87,7 @@ class Advice:
             best = min(enough, key=lambda k: (options[k][1], -separation[k]))
             return f"{options[best][0]} tells them apart ({self._figures(separation[best])})"
         if separation[best] < least.alike:
-            return "nothing that could be measured: they predict the same everywhere"
+            return NOTHING
         return (
             "no single added sensor or load test; the best is "
             f"{options[best][0]} ({self._figures(separation[best])})"

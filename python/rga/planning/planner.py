@@ -24,7 +24,7 @@ from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test
 from rga.planning.result import Advised, Plan, PlannedTruck, Separation, SimulatedTrials
-from rga.planning.rivals import rival_pairs, working_sensors
+from rga.planning.rivals import rival_pairs, told_apart, working_sensors
 from rga.planning.selection import Choice, Chooser
 from rga.provenance import versions
 from rga.simulation import Simulator
@@ -168,6 +168,7 @@ def _planned(
             Separation(
                 one=pair.cause.words,
                 other=pair.rival.words,
+                log_odds=told_apart(findings, pair.cause.words, pair.rival.words),
                 d_perp=distance,
                 expected=scope.success(distance),
                 d_perp_at_best=best,
@@ -314,10 +315,19 @@ def _sentence(separations: Sequence[Separation], scope: Scope, choice: Choice) -
         limit = f"everything that was thought of gives d_perp {one.d_perp_at_best:.2g}"
         both = f"{one.one} from {one.other}"
         hopeless = scope.success(one.d_perp_at_best) < criteria.advice.success
-        if not one.separated and hopeless:
+        if one.separated:
+            continue
+        share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"
+        if one.log_odds is not None and one.log_odds >= criteria.rivals.log_odds:
+            again = (
+                "nothing that is measured from now on does so again"
+                if hopeless
+                else (f"this budget does not do so again ({share})")
+            )
+            sentences.append(f"The record tells {both} by {one.log_odds:.0f} log-odds; {again}.")
+        elif hopeless:
             sentences.append(f"Nothing affordable tells {both}: {limit}.")
-        elif not one.separated:
-            share = f"d_perp {one.d_perp:.2g}, won in {100 * one.simulated.clearly:.0f} %"
+        else:
             sentences.append(f"This budget does not tell {both} ({share}): {limit}.")
     return " ".join(sentences)
 

@@ -106,6 +106,8 @@ class Separation(PlanPart):
 
     Attributes:
         one, other: in words.
+        log_odds: by which the record itself tells the first from the other; None where it was not
+            put beside it.
         d_perp: difference that is left once either has imitated the other, in units of all errors.
         expected: chance that the true one wins by `rivals.log_odds` of the criteria.
         d_perp_at_best: with every sensor and every test that were thought of.
@@ -115,6 +117,7 @@ class Separation(PlanPart):
 
     one: str
     other: str
+    log_odds: float | None = None
     d_perp: float
     expected: float
     d_perp_at_best: float

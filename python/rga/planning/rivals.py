@@ -46,6 +46,20 @@ def rival_pairs(model: Model, findings: Findings) -> list[tuple[CandidateModel, 
     return [(together, _explained(model, effects)) for effects in _nearest(findings, causes)]
 
 
+def told_apart(findings: Findings, one: str, other: str) -> float | None:
+    """Log-odds by which the record of findings tells one explanation from another.
+
+    Args:
+        findings: that have tried both.
+        one, other: in words.
+
+    Returns:
+        They, for the first; None where either was not tried as it stands.
+    """
+    odds = {tried.words: tried.log_odds for tried in findings.explanations}
+    return odds[one] - odds[other] if one in odds and other in odds else None
+
+
 def working_sensors(model: Model, findings: Findings) -> list[str]:
     """Sensors of the model that no finding calls faulty."""
     faulty = {cause.effect.get("sensor") for cause in findings.causes if is_fault(cause.effect)}

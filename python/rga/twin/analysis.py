@@ -15,7 +15,7 @@ from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.history import Event, Kind
-from rga.twin.judgement import judged
+from rga.twin.judgement import judged, unsettled
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q1, R1
 from rga.twin.messages.query_bus import QueryResponse
@@ -104,19 +104,27 @@ class RealityGapAnalysis:
         """Q4: learn from simulated and measured rows, and measure the gap that is left."""
         standing, calibration = self.standing, self._calibration
         standing.calibrated = standing.row
-        calibration.estimate_noise()
+        stuck = calibration.rows.judge_channels(self._settings.criteria.channels)
+        standing.stuck = tuple(one.sensor for one in stuck)
         chosen = calibration.calibrate(standing.row)
         calibration.follow(0, standing.row)
         self._begin_again(0)
         standing.interval = self._policy.interval
-        standing.share = calibration.scatter_share(0, standing.row)
-        known = calibration.known(standing.row)
-        words = [f"calibrated on {standing.row} rows", chosen, *known, *self.synchrony.warnings]
+        standing.share = calibration.rows.scatter_share(0, standing.row)
+        left = calibration.rows.gap(0, standing.row, standing.share)
+        words = [
+            f"calibrated on {standing.row} rows",
+            *(f"{one.sensor} is left out: {one.why}" for one in stuck),
+            chosen,
+            *calibration.known(standing.row),
+            *unsettled(left),
+            *self.synchrony.warnings,
+        ]
         self._event(
             "calibration",
             standing.row - 1,
             "; ".join(words),
-            after=calibration.gap(0, standing.row),
+            after=calibration.rows.gap(0, standing.row),
         )
         self._keep_state(0, standing.row)
         standing.stage = "watch"
@@ -155,14 +163,23 @@ class RealityGapAnalysis:
         recent = (first, standing.row)
         open_alarm = self._policy.waits(standing, last)
         usual = calibration.usual_gap(standing.calibrated, recent[1] - recent[0], standing.share)
-        before, expected = calibration.gap(*recent), calibration.gap(*recent, standing.share)
+        before, expected = (
+            calibration.rows.gap(*recent),
+            calibration.rows.gap(*recent, standing.share),
+        )
         known = calibration.learned
         self._refine(recent)
-        after, left = calibration.gap(*recent), calibration.gap(*recent, standing.share)
+        after, left = calibration.rows.gap(*recent), calibration.rows.gap(*recent, standing.share)
         changes, novel = calibration.changes(known), calibration.novel(*recent)
         rows = f"rows {recent[0]} to {recent[1] - 1}"
         doubted, words = judged(
-            rows, expected, left, usual, changes if calibration.corrects else None, novel
+            rows,
+            expected,
+            left,
+            usual,
+            changes if calibration.corrects else None,
+            novel,
+            inferred=bool(calibration.latent),
         )
         interval = self._policy.next_interval(
             standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
@@ -227,7 +244,7 @@ class RealityGapAnalysis:
         if standing.since is None or not self._policy.alarms:
             return False
         rows = standing.since, standing.row
-        before = calibration.gap(*rows)
+        before = calibration.rows.gap(*rows)
         state = calibration.recall(*rows, standing.calibrated, standing.share)
         if state is None:
             return False
@@ -235,7 +252,7 @@ class RealityGapAnalysis:
         if calibration.changes(state.estimator):
             calibration.restore(state.estimator, calibration.sound)
             calibration.follow(*rows)
-        after, words = calibration.gap(*rows), state.taken_up(*rows)
+        after, words = calibration.rows.gap(*rows), state.taken_up(*rows)
         self._event("recall", standing.row - 1, words, before=before, after=after)
         self._begin_again(None)
         if state.doubted and self._may_ask():
@@ -285,10 +302,10 @@ class RealityGapAnalysis:
             around = np.stack([stored.min(axis=0), stored.max(axis=0)], axis=1)
             wanted = self._settings.design_rows // 8
             calibration.supply(around, wanted, requested=True)
-        kept, before = calibration.learned, calibration.gap(*recent)
+        kept, before = calibration.learned, calibration.rows.gap(*recent)
         calibration.recalibrate(self.standing.calibrated, recent)
         calibration.follow(*recent)
-        if not calibration.gap(*recent) < before:
+        if not calibration.rows.gap(*recent) < before:
             calibration.restore(kept, calibration.sound)
             calibration.follow(*recent)
 
@@ -296,7 +313,7 @@ class RealityGapAnalysis:
         """Q1 with an update or a rollback; a gap that rises by a quarter takes an update back."""
         standing, calibration = self.standing, self._calibration
         recent = (self._under_the_same(change.get("effects", {})), standing.row)
-        before, old = calibration.gap(*recent), self._exchange.twin.state.version
+        before, old = calibration.rows.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.sound
         answer = self._ask_twin(**change)
         if not answer.adequate:
@@ -307,7 +324,7 @@ class RealityGapAnalysis:
         calibration.learn_version(recent)
         calibration.follow(*recent)
         standing.changed = standing.row
-        after = calibration.gap(*recent)
+        after = calibration.rows.gap(*recent)
         causes = ", ".join(effect_words(one) for one in answer.effects.values())
         words = f"version {answer.version} of the model is in force: {causes or 'as it was given'}"
         self._event("version", standing.row - 1, words, before=before, after=after)

@@ -138,6 +138,7 @@ def history_of(view: RunView) -> History:
         len(model.context),
         at_the_time=True,
     )
+    ledger.leave_out(station.channels, standing.stuck)
     state = replay(view, station.channels)
     latent = [list(model.context).index(name) for name in state.latent]
     stated = [model.sensors[name].noise for name in station.channels]
@@ -151,7 +152,7 @@ def history_of(view: RunView) -> History:
         spread=ledger.spread[:, latent],
         simulated=ledger.simulated,
         gaps=ledger.gaps,
-        noise=noise_of(stated, ledger.readings[: standing.calibrated or len(ledger)]),
+        noise=noise_of(stated, ledger, standing.calibrated or len(ledger)),
         events=view.events(),
         versions=_versions(view, record, state),
         growth=_growth(view),

@@ -1,5 +1,6 @@
 """The rows of a run in memory: measured, inferred and simulated."""
 
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ class RowBuffer:
         measured: measured contexts, float[rows, measured].
         contexts, spread: all contexts and their standard deviations, float[rows, contexts].
         simulated: float[rows, channels].
+        stuck: channels that stand still: they have no residuals, bool[channels].
     """
 
     time: FloatArray
@@ -27,15 +29,36 @@ class RowBuffer:
     contexts: FloatArray
     spread: FloatArray
     simulated: FloatArray
+    stuck: NDArray[np.bool_]
 
     @classmethod
     def empty(cls, channels: int, measured: int, contexts: int) -> "RowBuffer":
         """A ledger without rows."""
-        widths = (channels, measured, contexts, contexts, channels)
-        return cls(np.zeros(0), *(np.zeros((0, width)) for width in widths))
+
+        def none(width: int) -> FloatArray:
+            return np.zeros((0, width))
+
+        return cls(
+            np.zeros(0),
+            none(channels),
+            none(measured),
+            none(contexts),
+            none(contexts),
+            none(channels),
+            np.zeros(channels, dtype=np.bool_),
+        )
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def leave_out(self, channels: Sequence[str], stuck: Container[str]) -> None:
+        """Look no more at channels that stand still.
+
+        Args:
+            channels: names of all.
+            stuck: names of these.
+        """
+        self.stuck = np.array([name in stuck for name in channels], dtype=np.bool_)
 
     def append(self, packet: Packet) -> None:
         """Add the rows of a packet."""
@@ -49,8 +72,8 @@ class RowBuffer:
 
     @property
     def residuals(self) -> FloatArray:
-        """Measured minus simulated, float[rows, channels]."""
-        return np.asarray(self.readings - self.simulated)
+        """Measured minus simulated, float[rows, channels]; NaN for channels that are stuck."""
+        return np.where(self.stuck, np.nan, self.readings - self.simulated)
 
     @property
     def gaps(self) -> FloatArray:

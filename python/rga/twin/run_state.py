@@ -19,6 +19,7 @@ class Standing(BaseModel):
         stage: what is to be done next.
         row: the next row of the record.
         calibrated: rows of the first calibration.
+        stuck: channels that stood still on these.
         alarm: row of an alarm that has not been dealt with.
         since: first row that the alarm is about.
         synchronised: rows when the twin was last calibrated, recalibrated or given a version.
@@ -41,6 +42,7 @@ class Standing(BaseModel):
     stage: Stage = "initialise"
     row: int = 0
     calibrated: int = 0
+    stuck: tuple[str, ...] = ()
     alarm: int | None = None
     since: int | None = None
     synchronised: int = 0

@@ -151,7 +151,7 @@ class Running:
     @property
     def gap(self) -> float:
         """Standardised gap of the last packet; NaN where none was followed yet [-]."""
-        return self.calibration.gap(max(0, self.row - self._pace.packet), self.row)
+        return self.calibration.rows.gap(max(0, self.row - self._pace.packet), self.row)
 
     def step(self) -> None:
         """Do what is next, and have it acknowledged by the repository."""

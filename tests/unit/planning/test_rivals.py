@@ -9,7 +9,7 @@ from planned_bridge import EAST, GAIN, SOFT, WEST
 from rga.errors import InputError
 from rga.findings.phrases import effect_words
 from rga.model import Model
-from rga.planning.rivals import NEAREST, rival_pairs, working_sensors
+from rga.planning.rivals import NEAREST, rival_pairs, told_apart, working_sensors
 
 
 def estimated(content: dict[str, Any], name: str, value: float) -> dict[str, Any]:
@@ -88,3 +88,11 @@ def test_effects_that_do_not_fit_the_model_are_refused(
 ) -> None:
     with pytest.raises(InputError, match=words):
         rival_pairs(model, findings(cause(effect, OTHER)))
+
+
+def test_what_the_record_tells_apart_is_known(model: Model) -> None:
+    odds = {"a settlement": 90.0, "the model as it is": 1.5}
+    several = [{**tried(), "words": k, "log_odds": v} for k, v in odds.items()]
+    found = findings(cause(SUNK), explanations=tuple(several))
+    assert told_apart(found, "a settlement", "the model as it is") == 88.5
+    assert told_apart(found, "a settlement", "another") is None

@@ -12,7 +12,7 @@ from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.expectation import against_expected, scatter_share
 from rga.twin.digital_twin import DigitalTwin, TwinState, follow
-from rga.twin.messages.hardware import HardwareInterface, Station
+from rga.twin.messages.hardware import HardwareInterface, Packet, Station
 from rga.twin.messages.queries import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
 from rga.twin.novelty import novel, spacing
 from rga.twin.row_buffer import RowBuffer
@@ -242,7 +242,11 @@ def test_noise_is_estimated_where_it_is_not_stated() -> None:
     slow = np.sin(np.arange(4000) / 300)[:, None] * [10.0, 10.0]
     readings = slow + draw.normal(0, [0.2, 0.2], (4000, 2))
     readings[7, 1] = np.nan
-    np.testing.assert_allclose(noise_of([0.5, None], readings), [0.5, 0.2], rtol=0.05)
+    ledger = RowBuffer.empty(2, 0, 0)
+    ledger.append(Packet(0, np.arange(4000.0), readings, np.zeros((4000, 0))))
+    np.testing.assert_allclose(noise_of([0.5, None], ledger, 4000), [0.5, 0.2], rtol=0.05)
+    ledger.leave_out(("sound", "stuck"), ("stuck",))
+    np.testing.assert_array_equal(noise_of([0.5, 0.1], ledger, 4000), [0.5, np.nan])
 
 
 def test_missing_contexts_are_carried_on_and_reported() -> None:

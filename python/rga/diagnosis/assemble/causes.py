@@ -100,12 +100,14 @@ def _with_advice(causes: Sequence[Cause], found: Found, record: Record) -> list[
     for number, cause in enumerate(causes):
         words = ""
         if found.alternatives[number]:
-            nearest = found.alternatives[number][0].fit
+            nearest = found.alternatives[number][0]
             advice = advice or Advice(model, problem, together)
-            other = explanation("its rival", model, estimated_effects(nearest, record))
-            against = effect_words(last_effect(nearest, record))
+            other = explanation("its rival", model, estimated_effects(nearest.fit, record))
+            against = effect_words(last_effect(nearest.fit, record))
             if measured := advice.against(other):
                 words = f"against {against}: {measured}"
+            if words and nearest.behind >= problem.criteria.rivals.log_odds:
+                words += f"; this record tells them apart by {nearest.behind:.0f} log-odds"
         advised.append(cause.model_copy(update={"separated_by": words}))
     return advised
 

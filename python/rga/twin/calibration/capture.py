@@ -10,15 +10,12 @@ from rga.errors import InputError
 from rga.model import Model
 from rga.model.parameter import NORMAL_90
 from rga.twin.archive import Archive
-from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.choice import choose
 from rga.twin.calibration.estimator import ContextEstimator, Learn
 from rga.twin.calibration.expectation import (
-    against_expected,
     channels_against_expected,
     of_rows,
     rows_against_expected,
-    scatter_share,
     usual_bound,
 )
 from rga.twin.calibration.followed_rows import FollowedRows
@@ -55,7 +52,6 @@ class ContextCapture:
         draws: seeds drawn so far.
         states: that are kept for when their conditions recur.
         ranges: smallest and largest of each context, float[contexts, 2].
-        noise: standard deviation of each channel's noise, float[channels].
 
     Args:
         exchange: takes queries to the twin and to the repository.
@@ -93,8 +89,6 @@ class ContextCapture:
         self._names = list(model.context)
         self._laws = list(model.context.values())
         self.ranges = np.array([v.range for v in self._laws]).reshape(-1, 2)
-        self._stated = [model.sensors[name].noise for name in station.channels]
-        self.noise = np.ones(len(station.channels))
 
     def receive(self, packet: Packet) -> None:
         """Take measured rows from the middleware."""
@@ -110,12 +104,11 @@ class ContextCapture:
         states: list[State],
     ) -> None:
         """Go on where a run stood."""
-        self.rows.ledger, self.draws = ledger, standing.draws
+        self.rows.take_up(ledger, standing.calibrated, standing.stuck)
+        self.draws = standing.draws
         self.inference, self.optimism = standing.inference, standing.optimism
         self.learned, self.sound, self.given = learned, sound, given
         self.states = states
-        if standing.calibrated:
-            self.noise = noise_of(self._stated, ledger.readings[: standing.calibrated])
 
     @property
     def state(self) -> int | None:
@@ -137,21 +130,6 @@ class ContextCapture:
         """Infer the contexts of rows, and let the twin simulate them (Q5)."""
         self.rows.follow(self.learned, first, end)
 
-    def estimate_noise(self) -> None:
-        """Noise of the channels, from the model or from the rows so far."""
-        self.noise = noise_of(self._stated, self.ledger.readings)
-
-    def gap(self, first: int, end: int, share: float = 0.0) -> float:
-        """Gap of rows over the gap to expect of a model that is off by a share [-]."""
-        rows = slice(first, end)
-        return against_expected(
-            self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise, share
-        )
-
-    def known_rows(self, first: int, end: int) -> int:
-        """How many of some rows have a gap."""
-        return int(np.isfinite(self.ledger.gaps[first:end]).any(axis=1).sum())
-
     def usual_gap(self, calibrated: int, rows: int, share: float) -> float:
         """What the gap of so many rows stays below, were they as those of the calibration [-].
 
@@ -162,7 +140,7 @@ class ContextCapture:
         """
         ledger, first = self.ledger, slice(0, calibrated)
         by_row = rows_against_expected(
-            ledger.gaps[first], ledger.simulated[first], self.noise, share
+            ledger.gaps[first], ledger.simulated[first], self.rows.noise, share
         )
         return self.optimism * usual_bound(by_row, rows, self._settings.usual, self._seed)
 
@@ -201,11 +179,6 @@ class ContextCapture:
         if self.learned is None or before is None:
             return ()
         return changes(before.found, self.learned.found)
-
-    def scatter_share(self, first: int, end: int) -> float:
-        """Share by which the model is off on calibrated rows [-]."""
-        rows = slice(first, end)
-        return scatter_share(self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise)
 
     def supply(self, ends: FloatArray, wanted: int, requested: bool = False) -> None:
         """Q2 and Q3: let simulations be run where the repository lacks them.
@@ -313,11 +286,11 @@ class ContextCapture:
             doubted: the model is in doubt under their conditions.
         """
         rows, ledger = slice(first, end), self.ledger
-        if self.learned is None or self.state is not None or not self.known_rows(first, end):
+        if self.learned is None or self.state is not None or not self.rows.known(first, end):
             return
         version = self._exchange.twin.state.version
         gaps = channels_against_expected(
-            ledger.gaps[rows], ledger.simulated[rows], self.noise, share
+            ledger.gaps[rows], ledger.simulated[rows], self.rows.noise, share
         )
         contexts = ledger.contexts[rows].copy()
         self.states.append(State(self.learned, version, (first, end), contexts, gaps, doubted))
@@ -343,18 +316,18 @@ class ContextCapture:
             calibrated: rows of the first calibration.
             share: by which the model was off on these [-].
         """
-        known = self.known_rows(first, end)
+        known = self.rows.known(first, end)
         if known < RECALL:
             return None
         usual = self.usual_gap(calibrated, known, share)
         version, allowed = self._exchange.twin.state.version, self._settings.usual
-        best, least = None, self.gap(first, end, share)
+        best, least = None, self.rows.gap(first, end, share)
         for state in self.states:
             if state.version != version:
                 continue
             contexts, simulated = self.rows.under(state.estimator, first, end)
             squared = (self.ledger.readings[first:end] - simulated) ** 2
-            gaps = channels_against_expected(squared, simulated, self.noise, share)
+            gaps = channels_against_expected(squared, simulated, self.rows.noise, share)
             explained = state.explains(contexts, gaps, self.optimism, allowed, self._seed)
             if explained and state.estimator is self.learned:
                 return None
@@ -373,7 +346,7 @@ class ContextCapture:
         return Lesson(
             data=data,
             latent=state.latent,
-            noise=self.noise,
+            noise=self.rows.noise,
             clock=float(self.rows.clock(slice(-1, None))[0]),
             seed=self._draw(),
             training=self._settings.training,

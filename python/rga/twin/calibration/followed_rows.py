@@ -4,9 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.diagnosis.preparation.sensor_faults.own_readings import BrokenChannel, stuck_channels
+from rga.errors import InputError
+from rga.findings.criteria.channels import ChannelCriteria
 from rga.model import Model
 from rga.twin.archive import Archive
+from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.calibration.expectation import against_expected, scatter_share
 from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q5, sha256
 from rga.twin.messages.query_bus import QueryResponse
@@ -19,6 +24,8 @@ class FollowedRows:
 
     Attributes:
         ledger: they.
+        noise: standard deviation of each channel's noise, float[channels]; NaN for one that is
+            not to be looked at.
 
     Args:
         exchange: takes queries to the twin.
@@ -36,6 +43,57 @@ class FollowedRows:
         self._exchange, self._archive, self._station = exchange, archive, station
         self._names, self._laws = list(model.context), list(model.context.values())
         self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
+        self._stated = [model.sensors[name].noise for name in station.channels]
+        self.noise = np.ones(len(station.channels))
+
+    def take_up(self, ledger: RowBuffer, calibrated: int, stuck: tuple[str, ...]) -> None:
+        """Go on with the rows of a run.
+
+        Args:
+            ledger: they.
+            calibrated: rows of the first calibration; 0: there was none yet.
+            stuck: channels that stood still on these.
+        """
+        self.ledger = ledger
+        ledger.leave_out(self._station.channels, stuck)
+        if calibrated:
+            self.noise = noise_of(self._stated, ledger, calibrated)
+
+    def judge_channels(self, criteria: ChannelCriteria) -> list[BrokenChannel]:
+        """Channels that stand still in the rows so far, left out from now on; noise of the others.
+
+        Args:
+            criteria: when a channel is stuck.
+
+        Raises:
+            InputError: all of them stand still.
+        """
+        channels, readings = self._station.channels, self.ledger.readings
+        stuck = stuck_channels(channels, readings, np.isfinite(readings), criteria)
+        if len(stuck) == len(channels):
+            raise InputError(
+                "none of the channels works",
+                f"record; of {stuck[0].sensor!r}, {stuck[0].why}",
+                "check the record and the mapping",
+            )
+        self.take_up(self.ledger, len(self.ledger), tuple(one.sensor for one in stuck))
+        return stuck
+
+    def gap(self, first: int, end: int, share: float = 0.0) -> float:
+        """Gap of rows over the gap to expect of a model that is off by a share [-]."""
+        rows = slice(first, end)
+        return against_expected(
+            self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise, share
+        )
+
+    def scatter_share(self, first: int, end: int) -> float:
+        """Share by which the model is off on calibrated rows [-]."""
+        rows = slice(first, end)
+        return scatter_share(self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise)
+
+    def known(self, first: int, end: int) -> int:
+        """How many of some rows have a gap."""
+        return int(np.isfinite(self.ledger.gaps[first:end]).any(axis=1).sum())
 
     @property
     def latent(self) -> list[int]:

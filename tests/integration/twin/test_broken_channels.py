@@ -1,0 +1,86 @@
+"""Channels that are broken from the first row, on the sample of the footbridge."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rga
+from documentation import ROOT
+from rga.errors import InputError
+from rga.records import Record
+from rga.twin import Outcome
+
+SAMPLE = ROOT / "examples" / "footbridge"
+#: rows of the sample before its abutment settles
+BEFORE = 80
+
+
+@pytest.fixture(scope="module")
+def sample() -> tuple[rga.Model, Record]:
+    model = rga.load_model(SAMPLE / "model.json")
+    return model, rga.load_record(SAMPLE / "record.csv", model)
+
+
+def spoilt(record: Record, sensor: str, *, times: float = 1.0, plus: float = 0.0) -> Record:
+    readings = record.readings.copy()
+    readings[:, record.sensors.index(sensor)] *= times
+    readings[:, record.sensors.index(sensor)] += plus
+    return replace(record, readings=readings)
+
+
+def words(outcome: Outcome, kind: str) -> list[str]:
+    return [event.words for event in outcome.history.events if event.kind == kind]
+
+
+def test_a_channel_that_stands_still_hides_nothing(
+    sample: tuple[rga.Model, Record], tmp_path: Path
+) -> None:
+    model, record = sample
+    broken = spoilt(record, "w3", times=0.0, plus=15.0)
+    outcome = rga.run(model, broken, tmp_path)
+    history = outcome.history
+    (calibration,) = words(outcome, "calibration")
+    assert "w3 is left out: 100% of its readings repeat the one before" in calibration
+    (recalibration,) = words(outcome, "recalibration")
+    assert recalibration.startswith("measured contexts do not explain rows")
+    named = next(event for event in history.events if event.kind == "version")
+    assert "settlement of abutment" in named.words
+    assert named.row < 0.65 * len(record)
+    still = record.sensors.index("w3")
+    assert np.isnan(history.gaps[:, still]).all()
+    assert np.isnan(history.noise[still])
+    assert np.isfinite(np.delete(history.noise, still)).all()
+
+
+def test_a_channel_that_stands_still_is_no_change(
+    sample: tuple[rga.Model, Record], tmp_path: Path
+) -> None:
+    model, record = sample
+    broken = spoilt(record.rows(slice(0, BEFORE)), "w3", times=0.0, plus=15.0)
+    outcome = rga.run(model, broken, tmp_path)
+    assert {event.kind for event in outcome.history.events} == {"calibration", "diagnosis"}
+    causes = [cause.effect for cause in outcome.findings.causes]
+    assert causes == [{"kind": "sensor_fault", "sensor": "w3", "mode": "stuck"}]
+
+
+def test_a_gap_that_hides_changes_is_never_calm(
+    sample: tuple[rga.Model, Record], tmp_path: Path
+) -> None:
+    model, record = sample
+    outcome = rga.run(model, spoilt(record, "w3", times=1000.0), tmp_path)
+    (calibration,) = words(outcome, "calibration")
+    assert "wrong from the beginning" in calibration
+    (recalibration,) = words(outcome, "recalibration")
+    assert "a change hides in it; the model is in doubt" in recalibration
+    assert any("settlement of abutment" in one for one in words(outcome, "version"))
+
+
+def test_nothing_is_calibrated_where_all_channels_stand_still(
+    sample: tuple[rga.Model, Record], tmp_path: Path
+) -> None:
+    model, record = sample
+    still = replace(record, readings=np.full_like(record.readings, 3.0))
+    with pytest.raises(InputError, match="none of the channels works"):
+        rga.run(model, still, tmp_path)
