@@ -18,14 +18,15 @@ IDLE = 0.01
 
 @dataclass(frozen=True)
 class Forces:
-    """Axial forces of every member under the contexts of the record.
+    """Axial forces of every member under the contexts of the rows in which causes act.
 
-    An amplitude is the root mean square over the rows. A ratio is over what the model as it was
+    An amplitude is the root mean square over these rows. A ratio is over what the model as it was
     given calculates; where that is next to nothing it is infinite, or NaN if it stays so.
 
     Attributes:
         members: names, in the order of the model.
-        row: the heaviest row: where the model as it was given stores most energy in its members.
+        row: the heaviest of these rows: where the model as it was given stores most energy in its
+            members.
         given, extended: in that row [N], float[members].
         amplitude, changed: of the model as it was given and with all causes [N], float[members].
         ratio: `changed` over `amplitude`, float[members].
@@ -64,8 +65,11 @@ def member_forces(account: DiagnosisArrays) -> Forces | None:
     if not causes or not account.contexts:
         return None
 
+    acting = slice(account.since, None)
+
     def forces(chosen: Mapping[str, Effect]) -> FloatArray:
-        return _forces(given.extended(dict(chosen)), account.contexts)
+        # Some effects remember the rows before.
+        return _forces(given.extended(dict(chosen)), account.contexts)[acting]
 
     held = {name for name, effect in causes.items() if effect.may_let_go}
     try:
@@ -93,7 +97,7 @@ def member_forces(account: DiagnosisArrays) -> Forces | None:
     ratio = over(whole)
     return Forces(
         members=tuple(given.members),
-        row=row,
+        row=account.since + row,
         given=base[row],
         extended=whole[row],
         amplitude=amplitude,
@@ -139,7 +143,8 @@ def _measured_over_simulated(account: DiagnosisArrays) -> FloatArray:
         sensor = account.model.sensors.get(name)
         if sensor is None or sensor.member is None or account.rejected[column]:
             continue
-        measured, simulated = account.record.readings[:, column], account.after[:, column]
+        measured = account.record.readings[account.since :, column]
+        simulated = account.after[account.since :, column]
         seen = np.isfinite(measured) & np.isfinite(simulated)
         if not seen.any():
             continue

@@ -17,7 +17,9 @@ from rga.records import Record
 from rga.report.figures.gap_map import MOST_CELLS, stretches
 from rga.report.figures.run_gap import MOST_PHASES, phases, smoothed, standardised
 from rga.report.figures.time_axis import spaced, thinned, time_axis
+from rga.report.pages.run_page import lived
 from rga.report.pages.write import write_report, write_run_report
+from rga.report.text.quantities import number
 from rga.twin.history import Event, History, Version
 from rga_bench.synthetic import draw_case
 
@@ -83,6 +85,17 @@ def made_history(
         ),
         ((0, 2000, 0), (rows // 4, 2400, 400)),
     )  # fmt: skip
+
+
+def test_gaps_in_words_are_those_of_the_events(model: Model) -> None:
+    history = made_history(model)
+    calibrated = float(np.median(standardised(history)[: history.calibration_rows].mean(axis=1)))
+    said = lived(history)
+    assert f"The gap was {number(calibrated)} on the rows of the calibration" in said
+    assert "at the end" not in said
+    late = replace(history.events[-1], row=len(history.record) - 1)
+    said = lived(replace(history, events=(*history.events[:-1], late)))
+    assert "on the last rows as they came in, 1.13 after the version at the end;" in said
 
 
 def closing(history: History, **changes: Any) -> Findings:

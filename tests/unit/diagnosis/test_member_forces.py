@@ -14,14 +14,17 @@ from rga.simulation import Simulator
 ROWS = 6
 
 
-def forces(model: Model, gauge: float = 1.0, **causes: dict[str, Any]) -> Forces | None:
+def forces(
+    model: Model, gauge: float = 1.0, *, falling: bool = False, **causes: dict[str, Any]
+) -> Forces | None:
     """Of the small bridge under a growing load on its western half, gauges reading so much."""
     effects = {name: read_effect(one, "test") for name, one in causes.items()}
     extended = model.extended(effects)
+    load = 10.0 * np.arange(1, ROWS + 1)
     contexts = {
         "time": 600.0 * np.arange(ROWS),
         "temperature": np.full(ROWS, 10.0),
-        "west load": 10.0 * np.arange(1, ROWS + 1),
+        "west load": load[::-1] if falling else load,
         "east load": np.zeros(ROWS),
     }
     before, after = (Simulator(one).predict(contexts) for one in (model, extended))
@@ -51,6 +54,17 @@ def test_twice_the_load_is_twice_the_force(model: Model) -> None:
     assert found.given[diagonal] == pytest.approx(-reaction * np.sqrt(2))
     assert found.credited is None
     assert found.without == {}
+
+
+def test_only_rows_in_which_a_cause_acts_count(model: Model) -> None:
+    """The load falls, so that the heaviest row of all lies before the cause begins."""
+    late = {**TWICE, "onset": 1800.0}
+    found = forces(model, falling=True, heavier=late)
+    assert found is not None
+    assert found.row == 3
+    np.testing.assert_allclose(found.extended, 2 * found.given, atol=1e-6)
+    carrying = found.amplitude > 0.01 * found.amplitude.max()
+    np.testing.assert_allclose(found.ratio[carrying], 2.0)
 
 
 def test_gauges_give_the_force_of_their_member(model: Model) -> None:

@@ -11,7 +11,14 @@ from rga.report.figures.contexts_over_time import draw_contexts, drawn_contexts,
 from rga.report.figures.gap_map import draw_gap_map
 from rga.report.figures.growth import draw_growth
 from rga.report.figures.phases import draw_phases
-from rga.report.figures.run_gap import mean, phases, smoothed, standardised, usual
+from rga.report.figures.run_gap import (
+    CHANGES,
+    mean,
+    phases,
+    smoothed,
+    standardised,
+    usual,
+)
 from rga.report.figures.time_axis import when
 from rga.report.figures.timeline import draw_timeline
 from rga.report.pages.diagnosis_page import page
@@ -90,16 +97,27 @@ def lived(history: History) -> str:
 
 
 def _gap_words(history: History, by_row: FloatArray) -> str:
-    looked_at = phases(history)
-    ends = [number(usual(by_row[p.first : p.last])) for p in (looked_at[0], looked_at[-1])]
-    if len(looked_at) == 1:
-        return f"The gap was {ends[0]}."
-    line = smoothed(history, by_row)
+    calibration = usual(by_row[: history.calibration_rows])
+    if len(phases(history)) == 1:
+        return f"The gap was {number(usual(by_row))}."
+    line, last = smoothed(history, by_row), phases(history)[-1]
     most = int(np.nanargmax(line))
     return (
-        f"The gap was {ends[0]} after the calibration, at most {number(float(line[most]))} "
-        f"(smoothed, at {_when(history, most)}), and {ends[1]} at the end; noise alone gives 1."
+        f"The gap was {number(calibration)} on the rows of the calibration, at most "
+        f"{number(float(line[most]))} (smoothed, at {_when(history, most)}), and "
+        f"{number(usual(by_row[last.first : last.last]))} on the last rows{_mended(history)}; "
+        "noise alone gives 1."
     )
+
+
+def _mended(history: History) -> str:
+    """What the last change of the twin made of the gap, where nothing was measured after it."""
+    changes = [one for one in history.events if one.kind in CHANGES and one.gap_after is not None]
+    if not changes or changes[-1].row < len(history.record) - 1:
+        return ""
+    last = changes[-1]
+    assert last.gap_after is not None
+    return f" as they came in, {number(last.gap_after)} after the {last.kind} at the end"
 
 
 def _when(history: History, row: int) -> str:
