@@ -11,6 +11,8 @@ from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory,
 
 if TYPE_CHECKING:
     from rga.cli.progress import Shown
+    from rga.model import Model
+    from rga.records import Record
     from rga.twin import Event
     from rga.twin.runner import Running
 
@@ -59,7 +61,7 @@ def run(
     structure = load_model(model)
     measured = load_record(record, structure, mapping)
     chosen = read_settings(settings, level)
-    for warning in measured.warnings:
+    for warning in [*measured.warnings, *_replaced(output, structure, measured, seed)]:
         typer.echo(f"warning: {warning}", err=True)
     # Not needed before the input is known to be good, and slow to import.
     from rga.jobs.run import run as run_twin
@@ -87,6 +89,27 @@ def run(
         typer.echo(f"The report is {output / 'report.html'}.")
 
 
+def _replaced(output: Path, model: "Model", record: "Record", seed: int) -> list[str]:
+    """In words, that a directory holds the results of another run."""
+    from rga.errors import InputError
+    from rga.findings.load import load_findings
+
+    try:
+        kept = load_findings(output / "findings.json")
+    except InputError:
+        return []
+    of_both = {
+        "model": (kept.model_sha256, model.sha256),
+        "record": (kept.record_sha256, record.sha256),
+        "seed": (kept.seed, seed),
+    }
+    others = [name for name, (old, new) in of_both.items() if old != new]
+    if not others:
+        return []
+    which = " and ".join(others)
+    return [f"{output} holds the results of a run with another {which}: this run replaces them"]
+
+
 @contextmanager
 def _interruption_told() -> Iterator[None]:
     try:
@@ -101,13 +124,17 @@ class _News:
 
     def __init__(self, progress: "Shown") -> None:
         self._progress = progress
-        self._told = 0
-        self._begun = False
+        #: events that were shown; None before the first step
+        self._told: int | None = None
 
     def __call__(self, running: "Running") -> None:
-        if not self._begun and running.resumed_at is not None:
-            typer.echo(f"The run goes on at row {running.resumed_at}.")
-        self._begun = True
+        if self._told is None:
+            self._told = 0
+            if running.resumed_at is not None:
+                # What happened before may not have been shown when the run was killed.
+                for event in running.history().events[: -len(running.events) or None]:
+                    typer.echo(_line(event))
+                typer.echo(f"The run goes on at row {running.resumed_at}.")
         for event in running.events[self._told :]:
             typer.echo(_line(event))
         self._told = len(running.events)
@@ -120,10 +147,11 @@ class _News:
 
 def _line(event: "Event") -> str:
     change = ""
+    head = f"{event.time}  row {event.row}  {event.kind}"
     if event.kind == "recalibration":  # its words have the figures that decide
-        return f"{event.time}  {event.kind}: {event.words}"
+        return f"{head}: {event.words}"
     if event.gap_before is not None and event.gap_after is not None:
         change = f" (gap {event.gap_before:.3g} -> {event.gap_after:.3g})"
     elif event.gap_after is not None:
         change = f" (gap {event.gap_after:.3g})"
-    return f"{event.time}  {event.kind}: {event.words}{change}"
+    return f"{head}: {event.words}{change}"

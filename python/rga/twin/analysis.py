@@ -285,10 +285,9 @@ class RealityGapAnalysis:
             self._archive.keep_novel(
                 state.version, end - 1, ledger.contexts[rows], ledger.simulated[rows]
             )
-            values = zip(state.latent, ledger.contexts[rows[0], latent], strict=True)
-            words = ", ".join(f"{name} {value:.3g}" for name, value in values)
-            more = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
-            self._event("novel context", int(rows[0]), f"stored: {words}{more}")
+            more = f", and those of {len(rows) - 1} rows more" if len(rows) > 1 else ""
+            words = f"stored: {self._calibration.told(int(rows[0]))}{more}"
+            self._event("novel context", int(rows[0]), words)
 
     def _refine(self, recent: tuple[int, int]) -> None:
         """Learn from the latest rows; where that makes the gap larger, return to what was."""

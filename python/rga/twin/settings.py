@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from rga.errors import InputError
 from rga.findings.criteria import Criteria
 from rga.inference.networks.settings import TrainingSettings
 
@@ -84,11 +85,21 @@ class Settings(BaseModel):
     def pace(self, rows: int) -> "Pace":
         """What depends on the length of a record, in rows.
 
+        Raises:
+            InputError: the calibration wants more rows than there are.
+
         >>> Settings().pace(480)
         Pace(calibration_rows=160, packet=20, settle=40, interval=80)
         """
+        wanted = self.calibration_rows or max(1, min(200, rows // 3))
+        if wanted > rows:
+            raise InputError(
+                f"the calibration wants {wanted} rows, and the record has {rows}",
+                "setting calibration_rows",
+                "give fewer, or a longer record",
+            )
         return Pace(
-            min(self.calibration_rows or max(1, min(200, rows // 3)), rows),
+            wanted,
             self.packet or max(1, rows // 24),
             self.settle or max(1, rows // 12),
             self.interval or max(1, rows // 6),

@@ -10,6 +10,8 @@ import pytest
 
 from rga import Simulator, diagnose, load_model, load_record
 from rga.findings import Findings
+from rga.twin import Settings
+from rga.twin.runner import taken_up
 from rga_bench.synthetic import draw_case
 
 SEED = 1028
@@ -55,6 +57,49 @@ def test_files_in_findings_out(case: Path, rga: Callable[..., Any]) -> None:
     again = diagnose(extended, load_record(case / "record.csv", extended))
     assert again.gap.before == pytest.approx(findings.gap.after, rel=0.2)
     assert again.causes == []
+
+
+def test_results_of_another_run_are_not_replaced_without_a_word(
+    case: Path, rga: Callable[..., Any]
+) -> None:
+    out = case / "out"
+    record = case / "record.csv"
+    assert rga("diagnose", case / "model.json", record, "-o", out, "--seed", "4").code == 0
+    lines = record.read_text(encoding="utf-8").splitlines(keepends=True)
+    (case / "short.csv").write_text("".join(lines[:60]), encoding="utf-8")
+    done = rga("run", case / "model.json", case / "short.csv", "-o", out, "--level", "A")
+    assert "holds the results of a run with another record and seed" in done.err
+    assert "row 18  calibration: calibrated on 19 rows" in done.out
+    done = rga("run", case / "model.json", case / "short.csv", "-o", out, "--level", "A")
+    assert "holds the results" not in done.err
+
+
+def test_a_run_that_goes_on_tells_what_happened_before(case: Path, rga: Callable[..., Any]) -> None:
+    out = case / "out"
+    out.mkdir()
+    model = load_model(case / "model.json")
+    record = load_record(case / "record.csv", model)
+    with taken_up(model, record, out / "twin.sqlite", Settings(level="A"), 0) as running:
+        while running.stage != "watch":
+            running.step()
+        (before,) = running.events
+    files = case / "model.json", case / "record.csv"
+    done = rga("run", *files, "-o", out, "--level", "A")
+    told = done.out.splitlines()
+    assert before.words in told[0]
+    assert told[1] == "The run goes on at row 53."
+    assert sum(before.words in line for line in told) == 1
+
+
+def test_a_calibration_longer_than_the_record_is_refused(
+    case: Path, rga: Callable[..., Any]
+) -> None:
+    settings = case / "settings.json"
+    settings.write_text('{"calibration_rows": 161}', encoding="utf-8")
+    files = case / "model.json", case / "record.csv"
+    done = rga("run", *files, "-o", case / "out", "--settings", settings)
+    assert done.code == 2
+    assert "the calibration wants 161 rows, and the record has 160" in done.err
 
 
 def test_same_seed_same_bytes(case: Path) -> None:

@@ -124,7 +124,7 @@ def onset(cause: Cause) -> str:
         end = cause.effect.get("end")
         grows = ", growing to " + ("the last row" if end is None else moment(end))
     said = f"from {moment(cause.onset)}{grows}"
-    if cause.onset_ci90 is not None:
+    if cause.onset_ci90 is not None and cause.onset_ci90[0] != cause.onset_ci90[1]:
         first, last = cause.onset_ci90
         said += f" (90\u00a0% interval {moment(first)} to {moment(last)})"
     return said

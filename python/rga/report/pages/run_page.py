@@ -151,6 +151,7 @@ def _event(event: Event) -> dict[str, str]:
     return {
         "kind": event.kind,
         "time": when(event.time),
+        "row": fixed(event.row, 0),
         "until": "",
         "words": event.words,
         "sensors": _names(dict.fromkeys(event.sensors)),

@@ -159,6 +159,14 @@ class ContextCapture:
         ]
         return [f"known within (90 %): {', '.join(words)}"]
 
+    def told(self, row: int) -> str:
+        """The latent contexts of a row, in words."""
+        return ", ".join(
+            f"{self._names[column]} {self.ledger.contexts[row, column]:.3g} "
+            f"{self._laws[column].unit}".removesuffix(" -")
+            for column in self.latent
+        )
+
     @property
     def corrects(self) -> bool:
         """Whether learning changes the structure, and not what infers contexts alone."""

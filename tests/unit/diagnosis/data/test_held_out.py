@@ -23,6 +23,13 @@ def noise(rng: np.random.Generator, memory: float) -> np.ndarray:
     return lfilter([1.0], [1.0, -memory], white, axis=0)[50:]
 
 
+def test_every_record_that_is_long_enough_has_rows_held_out() -> None:
+    for rows in range(10, 120):
+        chosen = held_out_rows(rows)
+        assert np.count_nonzero(np.diff(chosen, prepend=False, append=False)) >= 4
+        assert 0.1 < chosen.mean() < 0.3
+
+
 @pytest.mark.parametrize("memory", [0.0, 0.6])
 def test_nine_intervals_in_ten_hold_the_gain_over_the_whole_record(memory: float) -> None:
     covered = []
