@@ -285,7 +285,8 @@ class RealityGapAnalysis:
             self._archive.keep_novel(
                 state.version, end - 1, ledger.contexts[rows], ledger.simulated[rows]
             )
-            more = f", and those of {len(rows) - 1} rows more" if len(rows) > 1 else ""
+            others = len(rows) - 1
+            more = f", and those of {others} row{'s' * (others > 1)} more" if others else ""
             words = f"stored: {self._calibration.told(int(rows[0]))}{more}"
             self._event("novel context", int(rows[0]), words)
 
