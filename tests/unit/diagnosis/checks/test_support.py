@@ -124,3 +124,17 @@ def test_groups_that_speak_against_a_cause(
     )
     told[0] = (first, 4.0)
     assert gaps_left_out(found) is None
+
+
+def test_a_group_whose_readings_deny_a_cause_speaks_against_it(noisy: Problem) -> None:
+    """All but the upper chord strain as a heavier load would have it, that chord the other way."""
+    heavier = candidate(noisy, "load_scale", effect="west")
+    change = change_of(noisy, heavier, 0.1)
+    chord = [name in ("S U1-U2", "S U2-U3") for name in noisy.data.sensors]
+    for denied, worse in ((np.where(chord, -change, change), True), (change, False)):
+        problem = with_white_noise(noisy, noisy.residual(noisy.simulated) + denied)
+        found = found_with(problem, [heavier])
+        without = fit(problem, noisy.simulator, [], [])
+        assert found.fit.log_evidence > without.log_evidence + 4.6
+        assert worsens(found, without) == worse
+        assert (gaps_left_out(found) is not None) == worse
