@@ -276,3 +276,22 @@ def test_an_earlier_result_is_taken_in_one_way(model: Model) -> None:
     first = infer_jointly(unknowns, measured(model, drawn(model, 20, 25), 26), *given[1:])
     with pytest.raises(InputError, match="both the start and the prior"):
         infer_jointly(unknowns, *given, start=first, prior=first)
+
+
+@pytest.mark.parametrize("fault", ["three times as much", "other sign", "off later on", "noise"])
+def test_a_broken_sensor_spoils_nothing(model: Model, other: Model, fault: str) -> None:
+    contexts, noise, source = drawn(model, 60, 96), noise_of(model), drawn(model, 300, 97)
+    rows = measured(other, contexts, 98)
+    sensor = int(np.argsort(rows.std(axis=0))[-2])
+    broken = {
+        "three times as much": 3.0 * rows[:, sensor],
+        "other sign": -rows[:, sensor],
+        "off later on": rows[:, sensor] + np.repeat([0.0, 100.0 * noise[sensor]], 30),
+        "noise": rows[:, sensor] + 2.0 * np.random.default_rng(99).standard_normal(60),
+    }[fault]
+    spoilt = rows.copy()
+    spoilt[:, sensor] = broken
+    with_it, sound = (
+        infer_jointly(Unknowns(model), one, noise, source).rows.contexts for one in (spoilt, rows)
+    )
+    assert error(model, with_it, contexts) < 1.5 * error(model, sound, contexts)

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
 from rga.inference.joint.derivatives import Derivatives, derivatives
+from rga.inference.joint.joint_prior import GAIN, JointPrior, parameter_units
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.population import Population
 from rga.inference.joint.sensor_errors import CorrectedTwin
@@ -21,54 +22,15 @@ from rga.inference.map.standard_units import EDGE, standard
 from rga.inference.rows import Rows
 from rga.simulation import Simulator
 
-#: prior spread of the gain of a sensor [-], and of its offset [standard deviations of its noise]
-GAIN, OFFSET = 0.01, 0.3
 #: degrees of freedom of what sensors lie by: few of them do, and by far more than the others
 TAILS = 3.0
 #: shares of a step that are tried; gain in misfit below which a step is not worth another
 SHARES, WORTH = (1.0, 0.5, 0.2, 0.05), 0.5
 #: readings that a sensor's own noise is held against that of all by, and the first guess [spreads]
 HELD_BY, GUESS = 30.0, 5.0
-
-
-class JointPrior(NamedTuple):
-    """What is known of the parameters before the rows, in units of their standard deviations.
-
-    They are normal around something that may have changed.
-
-    Attributes:
-        mean: unknowns, then gains, then offsets, float[parameters], in their own units.
-        covariance: were the rows that it comes from independent, float[parameters, parameters].
-        pulled: what the model's error at each sensor has pulled them by, float[sensors or more,
-            parameters].
-        change: scale of what each differs by beside that, by Student's distribution,
-            float[parameters].
-        earlier: whether it is an earlier result, since which few of them may have changed.
-    """
-
-    mean: FloatArray
-    covariance: FloatArray
-    pulled: FloatArray
-    change: FloatArray
-    earlier: bool
-
-    @classmethod
-    def fresh(cls, unknowns: Unknowns, sensors: int) -> "JointPrior":
-        """Unknowns as their priors say; sensors are sound, but for some."""
-        own = np.repeat([1.0, 0.0], [len(unknowns.centre), 2 * sensors])
-        mean = np.concatenate([unknowns.centre, np.ones(sensors), np.zeros(sensors)])
-        none = np.zeros((sensors, len(mean)))
-        return cls(mean, np.diag(own), none, 1.0 - own, earlier=False)
-
-    @classmethod
-    def later(cls, mean: FloatArray, covariance: FloatArray, pulled: FloatArray) -> "JointPrior":
-        """What was found earlier."""
-        return cls(mean, covariance, pulled, np.zeros(len(mean)), earlier=True)
-
-
-def parameter_units(unknowns: Unknowns, noise: FloatArray) -> FloatArray:
-    """Prior spreads of unknowns, gains and offsets, float[unknowns + 2 sensors]."""
-    return np.concatenate([unknowns.spread, np.full(len(noise), GAIN), OFFSET * noise])
+#: times the middle sensor's that a sensor counts at most in that of all: one that is broken says
+#: nothing of the others
+BROKEN = 10.0
 
 
 class LinearisedRows(NamedTuple):
@@ -348,8 +310,7 @@ class Search:
             off = np.where(self.seen, off - off.sum(axis=0) / np.maximum(counts, 1), 0.0)
         left = max(1.0 - freedom / max(counts.sum(), 1), 0.2)
         own = (off**2).sum(axis=0) / self.noise**2 / left
-        all_ = own.sum() / max(counts.sum(), 1)
-        ratio = (own + HELD_BY * all_) / (counts + HELD_BY)
+        ratio = (own + HELD_BY * _usual(own, counts)) / (counts + HELD_BY)
         self.variance = self.noise**2 * np.maximum(ratio, 1.0)
 
     def _look_for_changes(self, change: FloatArray) -> None:
@@ -389,3 +350,12 @@ class Search:
         wide = np.full(2 * len(self.noise), np.inf)
         low = np.concatenate([self.unknowns.low, -wide])
         return low, np.concatenate([self.unknowns.high, wide])
+
+
+def _usual(squares: FloatArray, counts: IntArray) -> float:
+    """Mean square of a reading of all sensors, of their sums of squares, float[sensors]."""
+    known = counts > 0
+    if not known.any():
+        return 0.0
+    most = BROKEN * np.median(squares[known] / counts[known])
+    return float(np.minimum(squares, most * counts).sum() / counts.sum())

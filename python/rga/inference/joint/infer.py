@@ -20,7 +20,8 @@ from rga.inference.joint.checked_input import (
     joint_rows,
     table_of,
 )
-from rga.inference.joint.gauss_newton import JointPrior, Search, parameter_units
+from rga.inference.joint.gauss_newton import Search
+from rga.inference.joint.joint_prior import JointPrior, parameter_units
 from rga.inference.joint.measured_contexts import MeasuredContexts
 from rga.inference.joint.row_spread import row_spread
 from rga.inference.joint.sensor_errors import CorrectedTwin
