@@ -10,7 +10,12 @@ SORTS = {
     "drift": "contexts come that no day had, and go again",
     "structure": "the same, and later something in the structure changes",
     "gauge": "ordinary days, and one gauge breaks",
+    "mast": "a lattice mast in wind, nothing changes and no context is measured",
+    "roof": "a roof under snow, nothing changes and no context is measured",
+    "portal": "a portal frame under snow and wind, nothing changes and no context is measured",
 }
+#: sorts that are streams of another structure than that of the case study
+ELSEWHERE = ("mast", "roof", "portal")
 #: rows of a stream, as of that of the case study
 USUAL = 480
 
@@ -46,6 +51,7 @@ class StreamSetting:
         nulls: null streams, by the default inference.
         rows: of a null stream.
         streams: of each other sort and inference.
+        elsewhere: of each other structure.
         compared: ways to infer that stand beside the default.
     """
 
@@ -53,6 +59,7 @@ class StreamSetting:
     nulls: int = 40
     rows: int = 500
     streams: int = 8
+    elsewhere: int = 4
     compared: tuple[Inference, ...] = ("networks", "amortised")
 
     def tasks(self) -> list[StreamTask]:
@@ -68,6 +75,11 @@ class StreamSetting:
                 for sort in ("gauge", "drift")
             ),
             *(
+                StreamTask(sort, seed, USUAL, "auto")
+                for seed in range(self.seed, self.seed + self.elsewhere)
+                for sort in ELSEWHERE
+            ),
+            *(
                 StreamTask("structure", seed, USUAL, inference)
                 for seed in seeds
                 for inference in self.compared
@@ -77,4 +89,4 @@ class StreamSetting:
 
 def shorter(seed: int) -> StreamSetting:
     """What takes some minutes: one stream of each sort."""
-    return StreamSetting(seed=seed, nulls=1, streams=1, compared=())
+    return StreamSetting(seed=seed, nulls=1, streams=1, elsewhere=1, compared=())

@@ -17,7 +17,8 @@ from rga.twin import Twin
 from rga.twin.history import Event, History
 from rga.twin.settings import Settings
 from rga_bench.diagnosis.permitted_causes import STIFF_JOINTS
-from rga_bench.streams.setting import StreamTask
+from rga_bench.field.case import draw_field
+from rga_bench.streams.setting import ELSEWHERE, StreamTask
 from rga_bench.synthetic import Case, draw_stream
 from rga_bench.synthetic.noise import stream
 
@@ -117,6 +118,8 @@ def run_twin(task: StreamTask) -> StreamOutcome:
 
 def drawn(task: StreamTask) -> tuple[Case, int | None]:
     """The stream of a task, and the row at which something changes for good."""
+    if task.sort in ELSEWHERE:
+        return _elsewhere(task), None
     hidden = "drawn" if task.sort == "structure" else None
     drift = task.sort in ("drift", "structure")
     case = draw_stream(task.seed, hidden=hidden, drift=drift, rows=task.rows)
@@ -132,6 +135,16 @@ def drawn(task: StreamTask) -> tuple[Case, int | None]:
     case.channels[name] = case.channels[name] + off * noise * (np.arange(task.rows) >= begun)
     case.truth["broken"] = name
     return case, begun
+
+
+def _elsewhere(task: StreamTask) -> Case:
+    """A stream of another structure, none of its contexts measured."""
+    case = draw_field(task.seed, structure=task.sort, rows=task.rows)
+    assert case.beyond is not None
+    for name, course in case.beyond.contexts.items():
+        del case.channels[name]
+        case.truth.setdefault("contexts", {})[name] = course[: task.rows].tolist()
+    return case
 
 
 def _after(rows: Iterable[int], change: int | None) -> int | None:

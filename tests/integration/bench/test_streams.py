@@ -8,7 +8,7 @@ import pytest
 
 from rga_bench.experiment import Execution
 from rga_bench.streams.experiment import StreamsExperiment
-from rga_bench.streams.setting import StreamSetting, StreamTask
+from rga_bench.streams.setting import ELSEWHERE, StreamSetting, StreamTask
 from rga_bench.streams.table import page
 from rga_bench.streams.twin_run import StreamOutcome, drawn, is_false, is_hidden
 
@@ -105,12 +105,23 @@ def test_what_was_played_is_not_played_again(
     first = experiment.measure(Execution(folder=tmp_path))
     monkeypatch.setattr("rga_bench.streams.experiment.run_twin", never)
     assert experiment.measure(Execution(folder=tmp_path)) == first
-    assert len(first) == 4
+    assert len(first) == 4 + len(ELSEWHERE)
 
 
 def test_all_streams_are_asked_for_the_default_first() -> None:
-    tasks = StreamSetting(seed=5, nulls=3, streams=2).tasks()
-    assert len({one.id for one in tasks}) == len(tasks) == 2 + 3 + 4 + 4
-    assert [one.inference for one in tasks[:9]] == ["auto"] * 9
+    tasks = StreamSetting(seed=5, nulls=3, streams=2, elsewhere=1).tasks()
+    assert len({one.id for one in tasks}) == len(tasks) == 2 + 3 + 4 + 3 + 4
+    assert [one.inference for one in tasks[:12]] == ["auto"] * 12
     assert sum(one.sort == "null" for one in tasks) == 3
-    assert len(StreamsExperiment.of(5, quick=True).setting.tasks()) == 4
+    assert len(StreamsExperiment.of(5, quick=True).setting.tasks()) == 4 + len(ELSEWHERE)
+
+
+@pytest.mark.parametrize("sort", ELSEWHERE)
+def test_other_structures_stand_under_contexts_that_nobody_measures(sort: str) -> None:
+    case, change = drawn(task(sort, rows=60))
+    assert change is None
+    assert set(case.channels) == set(case.model["sensors"])
+    assert set(case.truth["contexts"]) == set(case.model["context"])
+    assert all(len(course) == 60 for course in case.truth["contexts"].values())
+    anything = {"kind": "support_settlement", "support": next(iter(case.model["supports"]))}
+    assert is_false(anything, case)
