@@ -6,6 +6,7 @@ import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
 from rga.findings.criteria.records import RecordCriteria
+from rga.model.schema import Model
 from rga.records import Record
 
 #: share of neighbours that read the same, below which an instrument shows every change
@@ -59,6 +60,36 @@ def without_limits(record: Record, criteria: RecordCriteria) -> tuple[Record, li
                 "instrument at its limit does: these rows were left aside"
             )
     return (replace(record, contexts=contexts), warnings) if warnings else (record, [])
+
+
+def without_impossible(
+    model: Model, record: Record, criteria: RecordCriteria
+) -> tuple[Record, dict[str, float]]:
+    """The record without contexts that lie far outside their ranges in a part of the rows.
+
+    Args:
+        model: states the ranges.
+        record: as it was measured.
+        criteria: how far is far.
+
+    Returns:
+        The record, and what there is of this in words, with the share of rows.
+    """
+    contexts, faults = dict(record.contexts), {}
+    for name, values in record.contexts.items():
+        if name not in model.context:
+            continue
+        low, high = model.context[name].range
+        reach = criteria.far_outside * (high - low)
+        far = (values < low - reach) | (values > high + reach)
+        if high > low and far.any() and not far[np.isfinite(values)].all():
+            contexts[name] = np.where(far, np.nan, values)
+            words = (
+                f"{name} lies far outside its range {low:g}..{high:g} in {far.sum()} of "
+                f"{len(far)} rows: these were left aside; check its unit and its zero"
+            )
+            faults[words] = float(far.mean())
+    return (replace(record, contexts=contexts), faults) if faults else (record, faults)
 
 
 def denied_rows(spikes: BoolArray, observed: BoolArray, criteria: RecordCriteria) -> BoolArray:

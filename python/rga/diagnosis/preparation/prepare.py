@@ -8,8 +8,13 @@ import numpy as np
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.data.observations import Data, first_belief
 from rga.diagnosis.data.tare import Tare
-from rga.diagnosis.preparation.bad_contexts import denied_rows, without_limits
+from rga.diagnosis.preparation.bad_contexts import (
+    denied_rows,
+    without_impossible,
+    without_limits,
+)
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
+from rga.diagnosis.preparation.logger_faults import ended_channels, without_repeated
 from rga.diagnosis.preparation.missing_codes import missing_codes
 from rga.diagnosis.preparation.sensor_faults.beside_other_channels import (
     broken_channels,
@@ -90,6 +95,11 @@ def prepare(
     criteria = criteria or Criteria()
     check_length(record, criteria.record)
     record, limits = without_limits(record, criteria.record)
+    record, impossible = without_impossible(model, record, criteria.record)
+    ended = ended_channels(record, criteria.record)
+    record, repeated = without_repeated(record, criteria.record)
+    faults_of_rows = {**impossible, **ended, **repeated}
+    serious = [w for w, share in faults_of_rows.items() if share >= criteria.record.faulty_share]
     as_measured = record
     simulator = Simulator(model.without_zeros())
     given = _data(model, record, criteria)
@@ -109,7 +119,7 @@ def prepare(
     data = guess_rows(simulator, data.rows(chosen))
     simulated = data.predict(simulator)
     suspicious = [
-        *suspicious_units(data, simulated),
+        *suspicious_units(model, data, simulated),
         *suspicious_contexts(model, data, record),
         *missing_codes(as_measured.channels(data.sensors), simulated),
     ]
@@ -128,7 +138,8 @@ def prepare(
         )
     basis = load_basis(simulator, data)
     spikes = lone_spikes(data.readings, data.observed, basis, criteria.channels)
-    warnings = [*record.warnings, *limits, *zeros.warnings, *suspicious]
+    slight = [words for words in faults_of_rows if words not in serious]
+    warnings = [*record.warnings, *limits, *slight, *zeros.warnings, *suspicious]
     if chosen.sum() < criteria.record.few_rows:
         warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
     if passing := data.belief.passing:
@@ -152,7 +163,12 @@ def prepare(
         warnings.append(_spike_words(int(spikes.sum()), of))
         data = replace(data, observed=data.observed & ~spikes)
     return PreparedRecord(
-        data, record.rows(chosen), chosen, list(found.values()), warnings, zeros.doubts
+        data,
+        record.rows(chosen),
+        chosen,
+        list(found.values()),
+        warnings,
+        [*serious, *zeros.doubts],
     )
 
 

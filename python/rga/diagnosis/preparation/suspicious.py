@@ -9,26 +9,32 @@ from rga.findings.phrases import few_digits
 from rga.model.schema import Model
 from rga.records import Record
 
+#: channels of a unit that show a slip of it
+FEWEST_OF_A_UNIT = 2
 
-def suspicious_units(data: Data, simulated: FloatArray) -> list[str]:
-    """A warning where most channels go with the simulation, many times as large or as small.
+
+def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[str]:
+    """Warnings where most channels of a unit go with the simulation, many times larger or smaller.
 
     Args:
+        model: has the sensors.
         data: of the rows that are analysed.
         simulated: float[rows, sensors].
     """
+    units = np.array([model.sensors[name].unit for name in data.sensors])
     factors = _unit_factors(data, simulated)
-    known = factors[np.isfinite(factors)]
-    if len(known) <= len(factors) / 2:
-        return []
-    factor = float(np.median(known))
-    if not _of_a_unit(factor, data.criteria.record):
-        return []
-    words = (
-        f"the readings go with the simulation and are about {few_digits(factor)} times as large: "
-        "check the units of record and model before any cause"
-    )
-    return [words]
+    typical: dict[str, float] = {}
+    for unit in dict.fromkeys(units.tolist()):
+        own = factors[units == unit]
+        known = own[np.isfinite(own)]
+        factor = float(np.median(known)) if len(known) > len(own) / 2 else np.nan
+        if len(known) >= FEWEST_OF_A_UNIT and _of_a_unit(factor, data.criteria.record):
+            typical[unit] = factor
+    return [
+        f"the readings in {unit} go with the simulation and are about {few_digits(factor)} times "
+        "as large: check the units of record and model before any cause"
+        for unit, factor in typical.items()
+    ]
 
 
 def doubted_units(data: Data, simulated: FloatArray) -> BoolArray:

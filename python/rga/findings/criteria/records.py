@@ -78,6 +78,27 @@ class RecordCriteria(CriteriaGroup):
         "judgement: faults of loggers and cables are seen in fewer",
     )
 
+    far_outside: Positive = criterion(
+        1.0,
+        "width of the range",
+        "how far outside its range a measured context is no measurement, in a part of the rows",
+        "a range is stated for what may act; what lies beyond it twice is another unit",
+    )
+    repeated_rows: Count = criterion(
+        8,
+        "rows",
+        "rows on end that all channels repeat from earlier ones, or lack at the end, to be a fault "
+        "of the logger",
+        "judgement: noise that is resolved repeats no row, and outages of a few rows are usual",
+    )
+    faulty_share: Share = criterion(
+        0.1,
+        "-",
+        "share of rows without a true context or reading for such a reason, and of channels that "
+        "end early, from which on a record is not called explained",
+        "judgement: what happened in a tenth of it could hide",
+    )
+
     @model_validator(mode="after")
     def _least_below_most(self) -> "RecordCriteria":
         if self.least_rows > self.most_rows:

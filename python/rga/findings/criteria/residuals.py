@@ -80,10 +80,11 @@ class FitCriteria(CriteriaGroup):
         "judgement: noise of an amplifier does not wander; sound channels reach 1.6",
     )
     broken_share: Share = criterion(
-        0.5,
+        0.33,
         "-",
         "share of channels that do not work from which on a record is not called explained",
-        "judgement: what the rest says of the structure is a minority's word",
+        "judgement: a third of the channels are those of a logger, which fails as a whole, and "
+        "the rest may not see what they saw",
     )
 
     @property

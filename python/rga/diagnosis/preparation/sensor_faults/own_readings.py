@@ -56,7 +56,9 @@ def stuck_channels(
     faults = []
     for number, sensor in enumerate(sensors):
         column = readings[observed[:, number], number]
-        repeats = float((np.diff(column) == 0).mean()) if len(column) > 3 else 0.0
+        if len(column) <= 3:
+            continue
+        repeats = float((np.diff(column) == 0).mean())
         if repeats > criteria.repeats + _by_chance(len(column)) and not _coarse(column, criteria):
             why = f"{repeats:.0%} of its readings repeat the one before exactly"
             faults.append(BrokenChannel(sensor, "stuck", why, int(repeats * len(column))))
