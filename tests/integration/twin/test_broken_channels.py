@@ -84,3 +84,14 @@ def test_nothing_is_calibrated_where_all_channels_stand_still(
     still = replace(record, readings=np.full_like(record.readings, 3.0))
     with pytest.raises(InputError, match="none of the channels works"):
         rga.run(model, still, tmp_path)
+
+
+def test_a_channel_that_comes_later_stops_nothing(
+    sample: tuple[rga.Model, Record], tmp_path: Path
+) -> None:
+    model, record = sample
+    readings = record.rows(slice(0, BEFORE)).readings.copy()
+    readings[:40, record.sensors.index("w3")] = np.nan
+    outcome = rga.run(model, replace(record.rows(slice(0, BEFORE)), readings=readings), tmp_path)
+    assert not outcome.findings.causes
+    assert len(outcome.history.versions) == 1
