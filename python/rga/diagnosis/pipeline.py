@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from rga.arrays import FloatArray
 from rga.diagnosis.assemble.causes import causes, fault_cause
-from rga.diagnosis.assemble.contexts import contexts
+from rga.diagnosis.assemble.contexts import contexts, doubted_instruments
 from rga.diagnosis.assemble.effects import cause_name, effects_of, fault_effect
 from rga.diagnosis.assemble.explanations import explanations, unidentifiable
 from rga.diagnosis.assemble.gaps import gap, groups
@@ -198,7 +198,12 @@ def _diagnose(
         explanations=explanations(tried, found, prepared.record),
         groups=groups(account, grouped),
         contexts=contexts(found.problem, model),
-        warnings=[*prepared.warnings, *(one.words for one in off if one.alone), *failed],
+        warnings=[
+            *prepared.warnings,
+            *doubted_instruments(found.problem, model),
+            *(one.words for one in off if one.alone),
+            *failed,
+        ],
         misfits=list(
             dict.fromkeys([*prepared.apart, *(name for one in off for name in one.channels)])
         ),

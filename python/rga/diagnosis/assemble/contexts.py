@@ -7,6 +7,26 @@ import numpy as np
 from rga.diagnosis.search.linearised import Problem
 from rga.model.schema import Model
 
+#: share of a context's variation that its instrument may be off by, and times what is stated
+UNSURE, BEYOND_STATED = 1 / 3, 1.5
+
+
+def doubted_instruments(problem: Problem, model: Model) -> list[str]:
+    """Warnings of instruments of contexts that are off by much from what the sensors say."""
+    belief, warnings = problem.data.belief, []
+    for number, name in enumerate(belief.spread):
+        if name in belief.latent:
+            continue
+        off, variable = float(problem.noise.context_sigma[number]), model.context[name]
+        usual = UNSURE * float(np.std(belief.table[name]))
+        if off > max(usual, BEYOND_STATED * (variable.noise or 0.0)):
+            warnings.append(
+                f"{name} as measured differs from what the sensors say by {off:.2g} "
+                f"{variable.unit} from row to row: check where its instrument is, its unit and "
+                "its clock"
+            )
+    return warnings
+
 
 def contexts(problem: Problem, model: Model) -> dict[str, dict[str, Any]]:
     """Latent contexts as they were inferred, and the noise of the measured ones."""

@@ -14,7 +14,7 @@ FEWEST_OF_A_UNIT = 2
 
 
 def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[str]:
-    """Warnings where most channels of a unit go with the simulation, many times larger or smaller.
+    """Warnings where most channels of a unit go with the simulation, but for a factor or the sign.
 
     Args:
         model: has the sensors.
@@ -22,19 +22,25 @@ def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[st
         simulated: float[rows, sensors].
     """
     units = np.array([model.sensors[name].unit for name in data.sensors])
-    factors = _unit_factors(data, simulated)
-    typical: dict[str, float] = {}
+    factors, warnings = _unit_factors(data, simulated), []
     for unit in dict.fromkeys(units.tolist()):
         own = factors[units == unit]
         known = own[np.isfinite(own)]
-        factor = float(np.median(known)) if len(known) > len(own) / 2 else np.nan
-        if len(known) >= FEWEST_OF_A_UNIT and _of_a_unit(factor, data.criteria.record):
-            typical[unit] = factor
-    return [
-        f"the readings in {unit} go with the simulation and are about {few_digits(factor)} times "
-        "as large: check the units of record and model before any cause"
-        for unit, factor in typical.items()
-    ]
+        if len(known) < FEWEST_OF_A_UNIT or len(known) <= len(own) / 2:
+            continue
+        factor = float(np.median(known))
+        if _of_a_unit(abs(factor), data.criteria.record):
+            warnings.append(
+                f"the readings in {unit} go with the simulation and are about "
+                f"{few_digits(abs(factor))} times as large: check the units of record and model "
+                "before any cause"
+            )
+        if factor < 0:
+            warnings.append(
+                f"the readings in {unit} go against the simulation: check the sign convention of "
+                "record and model before any cause"
+            )
+    return warnings
 
 
 def doubted_units(data: Data, simulated: FloatArray) -> BoolArray:
@@ -45,20 +51,20 @@ def doubted_units(data: Data, simulated: FloatArray) -> BoolArray:
         simulated: float[rows, sensors].
     """
     limits = data.criteria.record
-    return np.array([_of_a_unit(one, limits) for one in _unit_factors(data, simulated)], dtype=bool)
+    factors = np.abs(_unit_factors(data, simulated))
+    return np.array([_of_a_unit(one, limits) for one in factors], dtype=bool)
 
 
 def _unit_factors(data: Data, simulated: FloatArray) -> FloatArray:
-    """Readings over simulation of channels that go with it, float[sensors]; else NaN."""
+    """Readings over simulation of channels that go with it, or against it, float[sensors]; NaN."""
     limits = data.criteria.record
     readings = np.where(data.observed, data.readings, np.nan)
-    factors = [
-        float(np.nanstd(own) / shown.std())
-        if shown.std() > 0 and abs(_correlation(own, shown, limits)) > limits.unit_correlation
-        else np.nan
-        for own, shown in zip(readings.T, simulated.T, strict=True)
-    ]
-    return np.array(factors, dtype=float)
+    factors = np.full(len(data.sensors), np.nan)
+    for number, (own, shown) in enumerate(zip(readings.T, simulated.T, strict=True)):
+        together = _correlation(own, shown, limits)
+        if abs(together) > limits.unit_correlation:
+            factors[number] = np.sign(together) * np.nanstd(own) / shown.std()
+    return factors
 
 
 def _of_a_unit(factor: float, limits: RecordCriteria) -> bool:

@@ -58,7 +58,10 @@ def test_sizes_of_a_cause_are_those_of_its_change(noisy: Problem, prepared: Prep
     assert cause.log_odds == found.log_odds[0]
     assert cause.status == "named"
     assert cause.rivals == []
-    assert cause.separated_by.endswith(": measure it")
+    behind = found.alternatives[0][0].behind
+    assert cause.separated_by.endswith(
+        f": measure it; this record tells them apart by {behind:.0f} log-odds"
+    )
     assert "D3" in cause.why.split(",")[0]
     alone = reported(found_with(problem, [sunk]), prepared)
     assert alone.d_perp == alone.d_prime

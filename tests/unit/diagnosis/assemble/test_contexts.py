@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rga.diagnosis.assemble.contexts import contexts
+from rga.diagnosis.assemble.contexts import contexts, doubted_instruments
 from rga.diagnosis.search.linearised import Problem
 from rga.model import Model
 
@@ -35,4 +35,15 @@ def test_a_latent_one_has_its_time_history_and_a_line_its_rate(
     west = belief.table["west load"]
     assert list(reported["west load"].values()) == pytest.approx(
         [np.mean(west), np.min(west), np.max(west)]
+    )
+
+
+def test_an_instrument_that_sensors_deny_is_told(posed: Problem, model: Model) -> None:
+    assert doubted_instruments(posed, model) == []
+    off = posed.noise.context_sigma.copy()
+    off[0] = 0.5 * np.std(posed.data.belief.table["temperature"])
+    late = replace(posed, noise=replace(posed.noise, context_sigma=off))
+    (words,) = doubted_instruments(late, model)
+    assert words.startswith(
+        f"temperature as measured differs from what the sensors say by {off[0]:.2g} degC"
     )

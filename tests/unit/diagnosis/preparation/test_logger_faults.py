@@ -89,3 +89,12 @@ def test_readings_of_one_unit_that_are_off_are_said_by_themselves(
     readings = np.where(moved, 0.001 * record.readings, record.readings)
     said = " ".join(ready(model, replace(record, readings=readings)).warnings)
     assert "the readings in mm go with the simulation and are about 0.001 times as large" in said
+
+
+def test_readings_of_one_unit_that_are_turned_round_are_said(model: Model, record: Record) -> None:
+    strains = [model.sensors[name].unit == "microstrain" for name in record.sensors]
+    readings = np.where(strains, -record.readings, record.readings)
+    said = " ".join(ready(model, replace(record, readings=readings)).warnings)
+    assert "the readings in microstrain go against the simulation: check the sign" in said
+    assert "in mm go against" not in said
+    assert "times as large" not in said
