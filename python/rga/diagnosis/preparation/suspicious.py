@@ -11,6 +11,8 @@ from rga.records import Record
 
 #: channels of a unit that show a slip of it
 FEWEST_OF_A_UNIT = 2
+#: factors that differ by less are of one slip
+ALIKE = 3.0
 
 
 def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[str]:
@@ -22,24 +24,30 @@ def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[st
         simulated: float[rows, sensors].
     """
     units = np.array([model.sensors[name].unit for name in data.sensors])
-    factors, warnings = _unit_factors(data, simulated), []
+    factors, limits = _unit_factors(data, simulated), data.criteria.record
+    larger: dict[float, list[str]] = {}
+    turned: list[str] = []
     for unit in dict.fromkeys(units.tolist()):
         own = factors[units == unit]
         known = own[np.isfinite(own)]
         if len(known) < FEWEST_OF_A_UNIT or len(known) <= len(own) / 2:
             continue
         factor = float(np.median(known))
-        if _of_a_unit(abs(factor), data.criteria.record):
-            warnings.append(
-                f"the readings in {unit} go with the simulation and are about "
-                f"{few_digits(abs(factor))} times as large: check the units of record and model "
-                "before any cause"
-            )
+        if _of_a_unit(abs(factor), limits):
+            alike = (one for one in larger if ALIKE > abs(factor) / one > 1 / ALIKE)
+            larger.setdefault(next(alike, abs(factor)), []).append(unit)
         if factor < 0:
-            warnings.append(
-                f"the readings in {unit} go against the simulation: check the sign convention of "
-                "record and model before any cause"
-            )
+            turned.append(unit)
+    warnings = [
+        f"the readings in {' and '.join(of)} go with the simulation and are about "
+        f"{few_digits(factor)} times as large: check the units of record and model before any cause"
+        for factor, of in larger.items()
+    ]
+    if turned:
+        warnings.append(
+            f"the readings in {' and '.join(turned)} go against the simulation: check the sign "
+            "convention of record and model before any cause"
+        )
     return warnings
 
 

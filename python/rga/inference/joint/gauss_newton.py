@@ -202,16 +202,16 @@ class Search:
                 return self._trust() or here - there > WORTH
         return self.prior.earlier and self._trust()
 
-    def solve(self, *, hold: bool = True) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def solve(self, *, last: bool = False) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Change of the parameters, of the contexts and of their population, in their units.
 
         The normal equations of parameters and population are left by eliminating the contexts of
         each row.
 
         Args:
-            hold: contexts that would leave their ranges at the ends of these. Held there, they
-                count as known, though all that is known is that they lie no farther: how sure
-                parameters are is seen without.
+            last: it is asked how sure parameters are. A context that is held at the end of its
+                range counts as known there, and so tells how stiff a structure is, only where
+                contexts fill their range: else all that is known is that it lies no farther.
         """
         off, slopes, near = self._linear()
         z = (self.contexts - self.middle) / self.scale
@@ -220,7 +220,9 @@ class Search:
         pull = (turned @ off[:, :, None])[:, :, 0] - (z - middle) / width**2
         pull = np.where(self.free, pull, 0.0)
         # A context at an end of its range that would leave stays there.
-        held = (np.abs(z) > EDGE * self.reach * CLOSE) & (pull * z > 0) & hold
+        held = (np.abs(z) > EDGE * self.reach * CLOSE) & (pull * z > 0)
+        if last:
+            held &= self.population.fills(EDGE)
         near, pull = np.where(held[:, None], 0.0, near), np.where(held, 0.0, pull)
         turned = near.transpose(0, 2, 1)
         own = turned @ near + np.eye(z.shape[1]) / width[:, :, None] ** 2

@@ -345,7 +345,7 @@ def _labels(unknowns: Unknowns) -> list[tuple[str, str]]:
 
 def _told(search: Search, source: FloatArray) -> Joint:
     """What was found, with how sure it is."""
-    search.solve(hold=False)
+    search.solve(last=True)
     values, gains, offsets = search.split(search.value)
     sure = search.covariance + search.pulled.T @ search.pulled
     moved = search.slopes @ np.linalg.cholesky(sure)

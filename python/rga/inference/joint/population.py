@@ -16,6 +16,8 @@ from rga.arrays import FloatArray
 
 #: the deviation that is thought of at first, and smallest and largest, in that of the range
 USUAL, SMALLEST, LARGEST = 0.6, 0.01, 1.3
+#: deviations from their mean within which contexts may be expected
+EXPECTED = 2.0
 
 
 class PopulationEquations(NamedTuple):
@@ -59,6 +61,17 @@ class Population:
     def width(self) -> FloatArray:
         """Deviations, float[contexts]."""
         return np.asarray(np.exp(self.log_width))
+
+    def fills(self, edge: float) -> NDArray[np.bool_]:
+        """Whether contexts may be expected at the ends of their ranges, bool[contexts].
+
+        Args:
+            edge: an end, in standard units.
+
+        >>> Population(np.zeros(2), np.log([0.4, 1.0])).fills(1.7).tolist()
+        [False, True]
+        """
+        return np.asarray(np.abs(self.mean) + EXPECTED * self.width > edge)
 
     def moved(self, change: FloatArray) -> "Population":
         """The same with its means and logs of deviations changed, float[2 contexts]."""
