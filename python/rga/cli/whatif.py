@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from rga.model import Effect
     from rga.simulation.whatif import WhatIf
 
+#: share of a change below which its interval is that of an exact answer
+WIDTH = 1e-3
+
 Settings = Annotated[
     list[str] | None,
     typer.Option(
@@ -96,9 +99,16 @@ def _show(result: "WhatIf") -> None:
         change = after - before if not isclose(after, before, rel_tol=1e-9) else 0.0
         cells = [f"{before:.4g}", f"{after:.4g}", f"{change:+.4g}"]
         if unsure is not None:
-            cells.append(f"{unsure[row, 0]:+.3g} to {unsure[row, 1]:+.3g}")
+            low, high = unsure[row]
+            known = isclose(low, high, rel_tol=WIDTH)
+            cells.append("-" if known else f"{low:+.3g} to {high:+.3g}")
         table.add_row(name, result.units[row], *cells)
     Console().print(table)
+    if unsure is not None:
+        typer.echo(
+            "Intervals are of what is not sure of contexts and of estimated effects; without one "
+            "(-) all of these are taken as exact. What scatters as built is not in them."
+        )
 
 
 def _setting(text: str) -> tuple[str, float]:
