@@ -17,7 +17,7 @@ MOST_NAMED = 5
 
 
 def repeated_rows(readings: FloatArray, criteria: RecordCriteria) -> BoolArray:
-    """Rows in which all channels read exactly what they read so many rows before, again and again.
+    """Rows on end in which all channels read exactly what they had read in earlier ones.
 
     Args:
         readings: float[rows, channels], NaN where missing.
@@ -35,16 +35,14 @@ def repeated_rows(readings: FloatArray, criteria: RecordCriteria) -> BoolArray:
     values = [np.unique(column[np.isfinite(column)]) for column in readings.T]
     moves = np.array([len(one) > criteria.repeated_rows for one in values], dtype=bool)
     table = np.nan_to_num(readings[:, moves], nan=np.inf)
-    read = np.isfinite(table).any(axis=1)
     if moves.sum() < FEWEST or _coarse(table):
         return found
-    seen: dict[bytes, int] = {}
-    before = np.full(len(table), -1)
-    for row in np.flatnonzero(read).tolist():
-        key = table[row].tobytes()
-        before[row] = seen.get(key, -1)
-        seen[key] = row if before[row] < 0 else before[row]
-    again = before >= 0
+    seen: set[bytes] = set()
+    again = np.zeros(len(table), dtype=bool)
+    for row in np.flatnonzero(np.isfinite(table).sum(axis=1) >= FEWEST):
+        read = table[row].tobytes()
+        again[row] = read in seen
+        seen.add(read)
     edges = np.flatnonzero(np.diff(again.astype(int), prepend=0, append=0)).reshape(-1, 2)
     for first, end in edges:
         if end - first >= criteria.repeated_rows:
