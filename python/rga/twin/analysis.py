@@ -163,13 +163,11 @@ class RealityGapAnalysis:
         recent = (first, standing.row)
         open_alarm = self._policy.waits(standing, last)
         usual = calibration.usual_gap(standing.calibrated, recent[1] - recent[0], standing.share)
-        before, expected = (
-            calibration.rows.gap(*recent),
-            calibration.rows.gap(*recent, standing.share),
-        )
+        gap = calibration.rows.gap
+        before, expected = gap(*recent), gap(*recent, standing.share)
         known = calibration.learned
         self._refine(recent)
-        after, left = calibration.rows.gap(*recent), calibration.rows.gap(*recent, standing.share)
+        after, left = gap(*recent), gap(*recent, standing.share)
         changes, novel = calibration.changes(known), calibration.novel(*recent)
         rows = f"rows {recent[0]} to {recent[1] - 1}"
         doubted, words = judged(

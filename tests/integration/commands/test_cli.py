@@ -177,6 +177,19 @@ def test_whatif_compares_with_mid_range(tmp_path: Path, model_file: Path, rga: R
     assert "D1" in outcome.out
 
 
+@pytest.mark.parametrize("ci90", [[0.45, 0.55], None])
+def test_whatif_has_intervals_where_something_is_unsure(
+    tmp_path: Path, model_file: Path, rga: Rga, ci90: list[float] | None
+) -> None:
+    softer = {"kind": "elastic_modulus", "material": "steel"}
+    factor = 0.5 if ci90 is None else {"value": 0.5, "ci90": ci90}
+    (tmp_path / "softer.json").write_text(json.dumps({**softer, "factor": factor}))
+    shown = rga("whatif", model_file, "--add", tmp_path / "softer.json").out
+    (moved,) = (line for line in shown.splitlines() if " D1 " in line)
+    assert (" to " in moved) == (ci90 is not None)
+    assert ("Intervals are of what is not sure" in shown) == (ci90 is not None)
+
+
 def test_whatif_warns_outside_the_range(model_file: Path, rga: Rga) -> None:
     outcome = rga("whatif", model_file, "--set", "temperature=55")
     assert outcome.code == 0

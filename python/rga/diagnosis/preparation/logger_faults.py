@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import polars as pl
 
 from rga.arrays import BoolArray, FloatArray
 from rga.findings.criteria.records import RecordCriteria
@@ -37,12 +38,10 @@ def repeated_rows(readings: FloatArray, criteria: RecordCriteria) -> BoolArray:
     table = np.nan_to_num(readings[:, moves], nan=np.inf)
     if moves.sum() < FEWEST or _coarse(table):
         return found
-    seen: set[bytes] = set()
+    read = np.isfinite(table).sum(axis=1) >= FEWEST
+    first = pl.from_numpy(table[read]).select(pl.struct(pl.all()).is_first_distinct())
     again = np.zeros(len(table), dtype=bool)
-    for row in np.flatnonzero(np.isfinite(table).sum(axis=1) >= FEWEST):
-        read = table[row].tobytes()
-        again[row] = read in seen
-        seen.add(read)
+    again[read] = ~first.to_series().to_numpy()
     edges = np.flatnonzero(np.diff(again.astype(int), prepend=0, append=0)).reshape(-1, 2)
     for first, end in edges:
         if end - first >= criteria.repeated_rows:
