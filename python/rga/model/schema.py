@@ -34,17 +34,40 @@ class Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+class About(Part):
+    """Whom and what a model is for: the head of its reports.
+
+    Attributes:
+        client, structure, author, date, version: as they are to be printed.
+    """
+
+    client: str = ""
+    structure: str = ""
+    author: str = ""
+    date: str = ""
+    version: str = ""
+
+
 class Material(Part):
-    """E [Pa], nu [-], alpha [1/K], density [kg/m3]."""
+    """E [Pa], nu [-], alpha [1/K], density [kg/m3].
+
+    Attributes:
+        yield_strength: [Pa]; stresses are set against it where it is given.
+    """
 
     E: Positive
     nu: Annotated[float, Field(gt=-1, lt=0.5)] = 0.3
     alpha: Number = 0.0
     density: Annotated[float, Field(ge=0)] = 0.0
+    yield_strength: Positive | None = None
 
 
 class Section(Part):
-    """A [m2], second moments Iy and Iz [m4], torsion constant J [m4], shear areas [m2]."""
+    """A [m2], second moments Iy and Iz [m4], torsion constant J [m4], shear areas [m2].
+
+    Attributes:
+        fibres: local y and z [m] of the points whose stresses are of interest, by name.
+    """
 
     A: Positive
     Iy: Annotated[float, Field(ge=0)] = 0.0
@@ -52,6 +75,7 @@ class Section(Part):
     J: Annotated[float, Field(ge=0)] = 0.0
     Asy: Positive | None = None
     Asz: Positive | None = None
+    fibres: dict[str, tuple[Number, Number]] = {}
 
 
 class Releases(Part):
@@ -103,6 +127,18 @@ class Tie(Part):
 
     nodes: tuple[str, str]
     dofs: list[Dof]
+
+
+class Mass(Part):
+    """A mass on a node [kg]; statics has no use for it.
+
+    Attributes:
+        inertia: about the global axes [kg m2].
+    """
+
+    node: str
+    mass: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    inertia: tuple[Number, Number, Number] = (0.0, 0.0, 0.0)
 
 
 class ContextVariable(Part):
@@ -196,10 +232,15 @@ class Model(Part):
     """A model file. SI units, z up, tension and elongation positive; see the design of the format.
 
     Raises on validation: unknown keys, members between missing nodes, places that do not exist.
+
+    Attributes:
+        schema_file: the JSON Schema by which an editor completes the file (`"$schema"`).
     """
 
+    schema_file: Annotated[str | None, Field(alias="$schema")] = None
     rga_model: Literal[1]
     name: str
+    about: About = About()
     plane: Literal["xy", "xz", "yz"] | None = None
     materials: dict[str, Material]
     sections: dict[str, Section]
@@ -208,6 +249,7 @@ class Model(Part):
     supports: dict[str, Support]
     springs: list[Spring] = []
     ties: list[Tie] = []
+    masses: dict[str, Mass] = {}
     context: dict[str, ContextVariable] = {}
     effects: dict[str, SerializeAsAny[Effect]] = {}
     sensors: dict[str, Sensor] = {}
@@ -243,6 +285,8 @@ class Model(Part):
         for number, tie in enumerate(self.ties):
             for node in tie.nodes:
                 self._known("nodes", node, f"ties[{number}]")
+        for name, mass in self.masses.items():
+            self._known("nodes", mass.node, f"masses.{name}.node")
         if "time" in {**self.sensors, **self.context}:
             raise ValueError("'time' is the column of the time: choose another name")
         if both := sorted(self.sensors.keys() & self.context.keys()):
