@@ -47,7 +47,7 @@ OUTPUT_KIND = {
     "displacement": OutputKind.DISPLACEMENT,
     "rotation": OutputKind.ROTATION,
     "strain": OutputKind.STRAIN,
-    "force": OutputKind.AXIAL_FORCE,
+    "force": OutputKind.SECTION_FORCE,
     "reaction": OutputKind.REACTION_FORCE,
 }
 HELD_BY_PLANE = {"xz": (1, 3, 5), "xy": (2, 3, 4), "yz": (0, 4, 5)}
@@ -392,7 +392,9 @@ def _output(
 ) -> tuple[int, int, int, tuple[float, float, float], bool]:
     kind = OUTPUT_KIND[sensor.kind]
     if sensor.member is not None and sensor.kind in ("strain", "force"):
-        return kind, members[sensor.member], -1, (sensor.at, sensor.y, sensor.z), sensor.total
+        axial = 0 if sensor.kind == "force" else -1
+        place = sensor.at, sensor.y, sensor.z
+        return kind, members[sensor.member], axial, place, sensor.total
     assert sensor.node is not None  # by the schema
     assert sensor.direction is not None
     x, y, z = np.array(sensor.direction) / np.linalg.norm(sensor.direction)
