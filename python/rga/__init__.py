@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, load_record
-    from rga.simulation import Simulator
+    from rga.simulation import Results, Simulator, results
     from rga.twin import Twin
 
 __version__ = version("rga")
@@ -30,6 +30,7 @@ _HOMES = {
     "Model": "rga.model",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
+    "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
@@ -39,6 +40,7 @@ _HOMES = {
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
+    "results": "rga.simulation",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
 }
@@ -50,6 +52,7 @@ __all__ = [
     "Model",
     "Plan",
     "Record",
+    "Results",
     "Simulator",
     "Twin",
     "__version__",
@@ -60,6 +63,7 @@ __all__ = [
     "load_model",
     "load_record",
     "plan",
+    "results",
     "run",
     "write_findings",
 ]

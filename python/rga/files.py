@@ -11,7 +11,7 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
     """Write files under temporary names beside them, and rename them when all are written.
 
     Args:
-        files: contents by path; directories exist.
+        files: contents by path; directories are made where they are missing.
 
     Raises:
         InputError: one cannot be written; no draft of another stays.
@@ -28,6 +28,7 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         for path, draft in drafts.items():
             if path.is_dir():
                 raise IsADirectoryError(EISDIR, "it is a directory")
+            path.parent.mkdir(parents=True, exist_ok=True)
             draft.write_bytes(files[path])
         for path, draft in drafts.items():
             draft.replace(path)

@@ -14,6 +14,7 @@ from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
+from rga.cli.results import results
 from rga.cli.run import run
 from rga.cli.schema import schema
 from rga.cli.simulate import simulate
@@ -29,8 +30,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify, schema,
-    doctor,
+    run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, results, dataset,
+    verify, schema, doctor,
 ):  # fmt: skip
     app.command()(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

@@ -37,6 +37,7 @@ class MemberStiffness(Effect):
         "be lost at one place and hardly all along a group"
     )
     structural = True
+    takes_section = True
     member: Members = None
     group: Groups = None
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0
