@@ -1,25 +1,25 @@
 """Results of a structure: displacements, reactions, section forces and stresses."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike
 
 from rga._core import OutputKind
-from rga.arrays import FloatArray, OutputArrays
+from rga.arrays import FloatArray, OutputArrays, by_name
 from rga.errors import InputError
 from rga.files import write_whole
 from rga.model.effect import Values
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.simulation.paths.response import respond
-from rga.simulation.simulator import Simulator
+from rga.simulation.simulator import Response, Simulator
 from rga.simulation.stresses import Stresses, section_stresses
 
 #: components of a section force, and of a reaction
@@ -46,6 +46,7 @@ class Results:
         held: nodes that supports or springs to the ground hold.
         reactions: Fx, Fy, Fz [N], Mx, My, Mz [N m] of these, float[rows, held, 6].
         section_forces: N, Vy, Vz [N], T, My, Mz [N m], float[rows, members, stations, 6].
+        parameters: of all effects, by name, float[rows] each.
     """
 
     model: Model
@@ -55,12 +56,14 @@ class Results:
     held: tuple[str, ...]
     reactions: FloatArray
     section_forces: FloatArray
-    _parameters: dict[str, Values]
+    parameters: dict[str, Values]
 
     @cached_property
     def stresses(self) -> Stresses:
         """Stresses at the fibres of the sections, by member."""
-        return section_stresses(self.model, self.section_forces, self._parameters)
+        return section_stresses(
+            self.model, list(self.model.members), self.section_forces, self.parameters
+        )
 
     def members(self) -> pl.DataFrame:
         """The extremes of every member over all rows and stations, one row a member.
@@ -175,35 +178,21 @@ def results(
         InputError: as `Simulator.predict`; fewer than two stations, or more numbers than fit.
         UnstableStructureError: the structure can move; names node and direction.
     """
-    if stations < 2:
-        raise InputError(f"{stations} stations are too few", "results", "give two or more")
-    bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
-    silent = model.model_copy(update={"sensors": {}, "effects": bare})
-    structure = build_structure(silent)
-    places = np.linspace(0.0, 1.0, stations)
     held = held_nodes(model)
-    outputs = whole_response(structure, [structure.nodes[node] for node in held], places)
-    structure.outputs, structure.per_si = outputs, np.ones(len(outputs["kind"]))
-    rows = max((np.size(column) for column in (contexts or {}).values()), default=1)
-    if rows * len(outputs["kind"]) > MOST:
-        raise InputError(
-            f"{rows} rows of {len(outputs['kind'])} results are more than fit into memory",
-            "results",
-            f"give {MOST // len(outputs['kind'])} rows or fewer at a time, or fewer stations",
+    places = _places(stations)
+
+    def wanted(structure: Structure) -> OutputArrays:
+        at_held = [structure.nodes[node] for node in held]
+        return _joined(
+            node_outputs(
+                list(structure.nodes.values()), OutputKind.DISPLACEMENT, OutputKind.ROTATION
+            ),
+            node_outputs(at_held, OutputKind.REACTION_FORCE, OutputKind.REACTION_MOMENT),
+            section_outputs(list(structure.members.values()), places),
         )
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        response = Simulator(silent, structure).respond(contexts or {})
-    if not response.plan.patterns:
-        # Without a load nothing was solved: a structure that can move would look calm.
-        respond(structure, [Load(np.ones(1))], outputs)
+
+    response = _respond(model, contexts or {}, wanted)
     found = response.quantities
-    if not np.isfinite(found).all():
-        row = int(np.argwhere(~np.isfinite(found))[0, 0])
-        raise InputError(
-            "a result is no finite number",
-            f"contexts, row {row + 1}",
-            "check the sizes of contexts and effects",
-        )
     rows, nodes, members = len(found), len(model.nodes), len(model.members)
     motions, reactions, forces = np.split(found, np.cumsum([6 * nodes, 6 * len(held)]), axis=1)
     return Results(
@@ -214,8 +203,33 @@ def results(
         held=held,
         reactions=reactions.reshape(rows, len(held), 6),
         section_forces=forces.reshape(rows, members, stations, 6),
-        _parameters=response.values,
+        parameters=response.values,
     )
+
+
+def forces_of_members(
+    model: Model, contexts: Mapping[str, ArrayLike], members: Sequence[str], *, stations: int = 11
+) -> tuple[FloatArray, dict[str, Values]]:
+    """Section forces of some members alone, where those of all would be too many.
+
+    Args:
+        model: the structure with its effects.
+        contexts: as for `results`, with the same errors.
+        members: names.
+        stations: as for `results`.
+
+    Returns:
+        N, Vy, Vz [N], T, My, Mz [N m], float[rows, members, stations, 6], and the parameters of all
+        effects, by name.
+    """
+    places = _places(stations)
+
+    def wanted(structure: Structure) -> OutputArrays:
+        return section_outputs([structure.members[name] for name in members], places)
+
+    response = _respond(model, contexts, wanted)
+    shape = (len(response.quantities), len(members), stations, 6)
+    return response.quantities.reshape(shape), response.values
 
 
 def held_nodes(model: Model) -> tuple[str, ...]:
@@ -225,43 +239,73 @@ def held_nodes(model: Model) -> tuple[str, ...]:
     return tuple(node for node in model.nodes if node in supported)
 
 
-def whole_response(structure: Structure, held: list[int], places: FloatArray) -> OutputArrays:
-    """What the core is to read: motions of all nodes, reactions, section forces.
-
-    Args:
-        structure: of the model, without what effects add.
-        held: numbers of the nodes whose reactions are wanted.
-        places: along each member, 0..1, float[stations].
-    """
-    nodes, members = len(structure.nodes), len(structure.members)
-    axes = np.eye(3)
-
-    def of_nodes(numbers: ArrayLike, kinds: tuple[OutputKind, OutputKind]) -> list[FloatArray]:
-        """Columns kind, index, other, vector of three directions of each kind, node by node."""
-        numbers = np.asarray(numbers)
-        count = len(numbers)
-        kind = np.tile(np.repeat([int(one) for one in kinds], 3), count)
-        return [kind, np.repeat(numbers, 6), np.full(6 * count, -1), np.tile(axes, (2 * count, 1))]
-
-    count = members * len(places)
-    vector = np.zeros((6 * count, 3))
-    vector[:, 0] = np.tile(np.repeat(places, 6), members)
-    sections = [
-        np.full(6 * count, int(OutputKind.SECTION_FORCE)),
-        np.repeat(np.arange(members), 6 * len(places)),
-        np.tile(np.arange(6), count),
-        vector,
-    ]
-    parts = (
-        of_nodes(np.arange(nodes), (OutputKind.DISPLACEMENT, OutputKind.ROTATION)),
-        of_nodes(held, (OutputKind.REACTION_FORCE, OutputKind.REACTION_MOMENT)),
-        sections,
-    )
-    kind, index, other, vectors = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+def node_outputs(nodes: Sequence[int], first: OutputKind, then: OutputKind) -> OutputArrays:
+    """Two vectors of each node, by its number: x, y, z of the first kind, then of the other."""
+    count = 6 * len(nodes)
     return {
-        "kind": kind.astype(np.int64),
-        "index": index.astype(np.int64),
-        "other": other.astype(np.int64),
-        "vector": vectors.astype(float),
-        "total": np.zeros(len(kind), dtype=bool),
+        "kind": np.tile(np.repeat([int(first), int(then)], 3), len(nodes)).astype(np.int64),
+        "index": np.repeat(np.array(nodes, dtype=np.int64), 6),
+        "other": np.full(count, -1),
+        "vector": np.tile(np.eye(3), (count // 3, 1)),
+        "total": np.zeros(count, dtype=bool),
     }
+
+
+def section_outputs(members: Sequence[int], places: FloatArray) -> OutputArrays:
+    """Six forces at each place along each member, by its number."""
+    count = 6 * len(members) * len(places)
+    vector = np.zeros((count, 3))
+    vector[:, 0] = np.tile(np.repeat(places, 6), len(members))
+    return {
+        "kind": np.full(count, int(OutputKind.SECTION_FORCE)),
+        "index": np.repeat(np.array(members, dtype=np.int64), 6 * len(places)),
+        "other": np.tile(np.arange(6), len(members) * len(places)),
+        "vector": vector,
+        "total": np.zeros(count, dtype=bool),
+    }
+
+
+def _places(stations: int) -> FloatArray:
+    if stations < 2:
+        raise InputError(f"{stations} stations are too few", "results", "give two or more")
+    return np.linspace(0.0, 1.0, stations)
+
+
+def _joined(*parts: OutputArrays) -> OutputArrays:
+    return cast(
+        OutputArrays, {key: np.concatenate([by_name(p)[key] for p in parts]) for key in parts[0]}
+    )
+
+
+def _respond(
+    model: Model,
+    contexts: Mapping[str, ArrayLike],
+    wanted: Callable[[Structure], OutputArrays],
+) -> Response:
+    """The response of a model of which other things are read than what its sensors show."""
+    bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
+    silent = model.model_copy(update={"sensors": {}, "effects": bare})
+    structure = build_structure(silent)
+    outputs = wanted(structure)
+    count = len(outputs["kind"])
+    structure.outputs, structure.per_si = outputs, np.ones(count)
+    rows = max((np.size(column) for column in contexts.values()), default=1)
+    if rows * count > MOST:
+        raise InputError(
+            f"{rows} rows of {count} results are more than fit into memory",
+            "results",
+            f"give {MOST // count} rows or fewer at a time, or fewer stations",
+        )
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        response = Simulator(silent, structure).respond(contexts)
+    if not response.plan.patterns:
+        # Without a load nothing was solved: a structure that can move would look calm.
+        respond(structure, [Load(np.ones(1))], outputs)
+    if not np.isfinite(response.quantities).all():
+        row = int(np.argwhere(~np.isfinite(response.quantities))[0, 0])
+        raise InputError(
+            "a result is no finite number",
+            f"contexts, row {row + 1}",
+            "check the sizes of contexts and effects",
+        )
+    return response

@@ -7,6 +7,7 @@ import numpy as np
 
 from rga.diagnosis.checks.leave_one_out import unseen_groups
 from rga.diagnosis.member_forces import member_forces
+from rga.diagnosis.member_stresses import member_stresses
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, kind_words
@@ -17,6 +18,7 @@ from rga.report.figures.explanations import draw_explanations, kept, ranked
 from rga.report.figures.figure_style import FONTS
 from rga.report.figures.gain import draw_gain
 from rga.report.figures.member_forces import draw_forces, force_table, restraint_words
+from rga.report.figures.member_stresses import stress_table
 from rga.report.figures.series import draw_series
 from rga.report.figures.unexplained import unexplained
 from rga.report.figures.unseen import draw_unseen
@@ -186,8 +188,11 @@ def forces(findings: Findings) -> dict[str, Any] | None:
     if not table.lines:
         return None
     record = account.record
+    names = [line[0] for line in table.lines]
+    stresses = member_stresses(account, names, found.row)
     return {
         "table": table,
+        "stresses": None if stresses is None else stress_table(stresses),
         "row": moment(record.time_label(float(record.time[found.row]))),
         "restraint": restraint_words(found, [str(c.effect["kind"]) for c in findings.causes]),
         "figure": draw_forces(found, account.model),
