@@ -50,4 +50,6 @@ def stress_table(stresses: Mapping[str, tuple[MemberStress, MemberStress]]) -> S
                 for one in (given, extended)
             ]
         lines.append(line)
-    return StressTable(utilised, lines, any(extended.left < 1.0 for _, extended in stresses.values()))
+    return StressTable(
+        utilised, lines, any(extended.left < 1.0 for _, extended in stresses.values())
+    )
