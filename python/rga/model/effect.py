@@ -55,7 +55,7 @@ class Effect(BaseModel):
     title: ClassVar[str] = ""
     #: What a cause of this kind calls for.
     action: ClassVar[Action] = Action(
-        "{place}", "what the model says of {place}", "{vehicle}, near {place}"
+        "{place}", "what the model says of {place}", "{load}, near {place}"
     )
     #: What size is usual, in words: what `priors` say, and where it comes from.
     usual: ClassVar[str] = ""

@@ -11,6 +11,8 @@ from rga.diagnosis.member_stresses import member_stresses
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, kind_words
+from rga.findings.schema import Cause
+from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.report.figures.bridge import draw_bridge, draw_residuals
 from rga.report.figures.deviation import percent_off, runs
@@ -71,7 +73,7 @@ def page(findings: Findings) -> dict[str, Any]:
                     effect_words(cause.effect),
                     [effect_words(rival) for rival in cause.rivals],
                 ),
-                "actions": part("What to do about it", actions, cause.effect),
+                "actions": part("What to do about it", calls_for, findings, cause),
                 "evidence": part("The evidence", evidence, findings, cause),
             }
             for cause in effects
@@ -174,8 +176,16 @@ def rejected(findings: Findings) -> list[dict[str, str]]:
 
 def tasks(findings: Findings) -> list[tuple[str, str, str]]:
     """The first thing that every cause calls for: its kind, what sort of action, in words."""
-    effects = [cause.effect for cause in findings.causes]
-    return [(kind_words(str(effect.get("kind"))), *actions(effect)[0]) for effect in effects]
+    return [
+        (kind_words(str(cause.effect.get("kind"))), *calls_for(findings, cause)[0])
+        for cause in findings.causes
+    ]
+
+
+def calls_for(findings: Findings, cause: Cause) -> list[tuple[str, str]]:
+    """What a cause calls for on the structure at hand: what sort of action, in words."""
+    effects = findings.account.model.effects.values()
+    return actions(cause.effect, crossed=any(isinstance(one, AxleLoad) for one in effects))
 
 
 def forces(findings: Findings) -> dict[str, Any] | None:

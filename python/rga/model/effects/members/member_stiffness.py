@@ -24,11 +24,11 @@ class MemberStiffness(Effect):
             "connections; measure the remaining thickness"
         ),
         check=(
-            "the section of {place} in the drawings against the bridge, and the gauge on it if "
+            "the section of {place} in the drawings against the structure, and the gauge on it if "
             "there is one"
         ),
         test=(
-            "{vehicle}, near {place}, with a gauge on it: where area is lost its force hardly "
+            "{load}, near {place}, with a gauge on it: where area is lost its force hardly "
             "changes and its strain grows"
         ),
     )
