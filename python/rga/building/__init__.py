@@ -19,21 +19,35 @@ from rga.building.sections.hollow import circular_hollow, rectangular_hollow
 from rga.building.sections.profiles import angle, channel, i_section
 from rga.building.sections.rolled import rolled_section, rolled_sections
 from rga.building.sections.solid import rectangle, rod
+from rga.building.structures.bowstring import bowstring_truss
 from rga.building.structures.howe import howe_truss
+from rga.building.structures.k_truss import k_truss
+from rga.building.structures.lattice_mast import lattice_mast
+from rga.building.structures.portal import portal_frame
 from rga.building.structures.pratt import pratt_truss
+from rga.building.structures.space_roof import space_truss_roof
+from rga.building.structures.storey_frame import storey_frame
+from rga.building.structures.warren import warren_truss
 
 __all__ = [
     "ModelBuilder",
     "angle",
+    "bowstring_truss",
     "channel",
     "circular_hollow",
     "howe_truss",
     "i_section",
+    "k_truss",
+    "lattice_mast",
+    "portal_frame",
     "pratt_truss",
     "rectangle",
     "rectangular_hollow",
     "rod",
     "rolled_section",
     "rolled_sections",
+    "space_truss_roof",
     "steel",
+    "storey_frame",
+    "warren_truss",
 ]

@@ -2,15 +2,12 @@
 
 from rga.building.builder import ModelBuilder
 from rga.building.quantities import Amount
+from rga.building.structures.given import AnyMaterial, AnySection, Joints, check_word
 from rga.building.structures.truss_chords import (
-    AnyMaterial,
-    AnySection,
     Ends,
-    Joints,
     Shape,
     add_leaning,
     add_verticals,
-    check_word,
     chords_of,
     drawn_chords,
     gable,

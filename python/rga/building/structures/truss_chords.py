@@ -6,17 +6,18 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rga.building.builder import ModelBuilder
-from rga.building.materials import steel
 from rga.building.quantities import Amount
 from rga.building.sections.sizes import length
+from rga.building.structures.given import (
+    AnyMaterial,
+    AnySection,
+    Joints,
+    add_material,
+    check_count,
+    check_word,
+)
 from rga.errors import InputError
-from rga.model.schema import Material, Section
 
-#: a section, or the name of a rolled one
-AnySection = Section | str
-#: a material, or the name of a steel; None: steel
-AnyMaterial = Material | str | None
-Joints = Literal["pinned", "rigid"]
 Shape = Literal["parallel", "gable"]
 Ends = Literal["inclined", "vertical"]
 #: share of the height at a share of the span
@@ -103,21 +104,6 @@ def chords_of(
     return Chords(wide, high, panels, rise, ends == "vertical", how)
 
 
-def check_count(number: object, of: str, where: str, fewest: int, most: int) -> None:
-    """InputError where this is no number of parts."""
-    if isinstance(number, bool) or not isinstance(number, int) or not fewest <= number <= most:
-        what = f"{number!r} is no number of {of}"
-        raise InputError(what, where, f"give a whole number from {fewest} to {most}")
-
-
-def check_word(word: object, words: tuple[str, ...], of: str, where: str) -> None:
-    """InputError where a word is none of those that there are."""
-    if word not in words:
-        raise InputError(
-            f"{of}: {word!r} is unknown", where, "use " + " or ".join(map(repr, words))
-        )
-
-
 def drawn_chords(
     name: str,
     chords: Chords,
@@ -125,20 +111,30 @@ def drawn_chords(
     diagonal: AnySection,
     vertical: AnySection | None,
     material: AnyMaterial,
+    with_top: bool = True,
 ) -> ModelBuilder:
     """A truss of chords and supports, and its sections "chord", "diagonal" and "vertical"."""
     truss = ModelBuilder(name, plane="xz")
     add_material(truss, material)
     truss.add_section("chord", chord).add_section("diagonal", diagonal)
-    truss.add_section("vertical", diagonal if vertical is None else vertical)
+    if with_top:
+        truss.add_section("vertical", diagonal if vertical is None else vertical)
     panels, kind = chords.panels, chords.kind
     for i in range(panels + 1):
         truss.add_node(f"L{i}", chords.span * i / panels)
+    for i in range(panels):
+        truss.add_member(f"L{i}", f"L{i + 1}", "chord", kind=kind, groups="bottom chord")
+    if with_top:
+        _draw_top(truss, chords)
+    truss.support("L0", "pinned", name="left")
+    return truss.support(f"L{panels}", "roller along x", name="right")
+
+
+def _draw_top(truss: ModelBuilder, chords: Chords) -> None:
+    panels, kind = chords.panels, chords.kind
     for i in chords.top():
         up = chords.height * chords.rise(i / panels)
         truss.add_node(f"U{i}", chords.span * i / panels, z=up)
-    for i in range(panels):
-        truss.add_member(f"L{i}", f"L{i + 1}", "chord", kind=kind, groups="bottom chord")
     for i in chords.top()[:-1]:
         truss.add_member(f"U{i}", f"U{i + 1}", "chord", kind=kind, groups="top chord")
     if not chords.vertical_ends:
@@ -146,16 +142,6 @@ def drawn_chords(
         group = "end posts" if math.isclose(chords.rise(0.0), 1.0) else "top chord"
         for start, end in (("L0", "U1"), (f"U{panels - 1}", f"L{panels}")):
             truss.add_member(start, end, "chord", kind=kind, groups=group)
-    truss.support("L0", "pinned", name="left")
-    return truss.support(f"L{panels}", "roller along x", name="right")
-
-
-def add_material(builder: ModelBuilder, material: AnyMaterial) -> None:
-    """The one material of a structure."""
-    if isinstance(material, Material):
-        builder.add_material("material", material)
-    else:
-        builder.add_material("steel", steel(material))
 
 
 def add_verticals(truss: ModelBuilder, chords: Chords) -> ModelBuilder:
