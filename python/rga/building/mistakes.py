@@ -46,7 +46,10 @@ def _dangling(content: dict[str, Any]) -> Iterator[str]:
         if first == last or (first in nodes and nodes[first] == nodes.get(last)):
             yield f"{by}: it has no length"
         yield from missing("sections", member["section"], by)
-        yield from missing("materials", member["material"], by)
+        if member["material"]:
+            yield from missing("materials", member["material"], by)
+        else:
+            yield f"{by}: it names no material, of which there are {len(content['materials'])}"
     for name, support in content["supports"].items():
         yield from missing("nodes", support["node"], f"support {name!r}")
     for spring in content["springs"]:
@@ -82,11 +85,11 @@ def _unfitting_effects(content: dict[str, Any]) -> Iterator[str]:
             key = ".".join(str(part) for part in first["loc"])
             yield f"effect {name!r}: {key} {first['msg'].removeprefix('Value error, ')}"
         except ValueError as error:
-            yield f"effect {name!r}: {error}"
+            yield f"effect {name!r}: {str(error).removeprefix(f'effects.{name}.')}"
     # Effects may act on one another, so that each is held against the model with all of them.
     whole = bare.model_copy(update={"effects": effects})
     for name, effect in effects.items():
         try:
-            whole.check_effect(effect, f"effect {name!r}")
+            whole.check_effect(effect, name)
         except ValueError as error:
-            yield str(error)
+            yield f"effect {name!r}: {str(error).removeprefix(name).lstrip('.: ')}"

@@ -76,7 +76,7 @@ def difference(value: Amount, unit: str, where: str) -> float:
     elif isinstance(value, Real):
         return number
     else:
-        zero = value - value  # type: ignore[operator]
+        zero = type(value)(0, value.units)  # type: ignore[attr-defined, call-arg]
     return float(f"{number - amount(zero, unit, where):.12g}")
 
 
