@@ -19,6 +19,9 @@ class WithUnit(Protocol):
     def magnitude(self) -> Any: ...
 
     @property
+    def units(self) -> Any: ...
+
+    @property
     def to(self) -> Any: ...
 
 
@@ -55,7 +58,7 @@ def amount(value: Amount, unit: str, where: str) -> float:
         number = float(value)
     elif isinstance(value, str):
         number = _of_text(value, unit, where)
-    elif hasattr(value, "magnitude") and hasattr(value, "to"):
+    elif not isinstance(value, int | float) and hasattr(value, "magnitude"):
         number = _converted(value, unit, where, str(value))
     else:
         raise _refused(f"{value!r} is no quantity", unit, where)
@@ -71,12 +74,13 @@ def difference(value: Amount, unit: str, where: str) -> float:
     (0.3, 0.3)
     """
     number = amount(value, unit, where)
-    if isinstance(value, str):
-        zero: Amount = f"0 {_NUMBER.fullmatch(value.replace('−', '-'))[2]}"  # type: ignore[index]
-    elif isinstance(value, Real):
+    if isinstance(value, Real):
         return number
+    if isinstance(value, str):
+        stated = _NUMBER.fullmatch(value.replace("−", "-"))
+        zero: Amount = f"0 {stated[2] if stated else unit}"
     else:
-        zero = type(value)(0, value.units)  # type: ignore[attr-defined, call-arg]
+        zero = type(value)(0, value.units)  # type: ignore[call-arg, union-attr]
     return float(f"{number - amount(zero, unit, where):.12g}")
 
 
