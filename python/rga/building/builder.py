@@ -147,7 +147,7 @@ class ModelBuilder(StructureBuilder):
             carried_by: what carries an axle between two nodes.
         """
         where = f"axles {name!r}"
-        follows = isinstance(position, str) and not position[:1].isdigit()
+        follows = isinstance(position, str) and position[:1] not in "+-−.0123456789"
         keys: dict[str, Any] = {
             "kind": "axle_load",
             "path": list(path),

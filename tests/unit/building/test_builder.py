@@ -88,7 +88,9 @@ class TestBuilding:
         builder.load_case("plain", forces={"B": ("1 kN", 0, 0)}, factor=1.35)
         builder.axles("truck", ["A", "B", "C"], ["50 kN", 60000], "2.5 m", offsets=[0, "4 m"],
                       carried_by="members")  # fmt: skip
+        builder.axles("cart", ["A", "B"], [1], "-2 m").axles("van", ["A", "B"], [1], "crowd")
         effects = builder.build().effects
+        assert (effects.pop("cart").position, effects.pop("van").drivers()) == (-2.0, {"crowd"})
         assert list(effects) == ["all at nodes", "all on A-B", "plain", "truck"]
         nodal = effects["all at nodes"]
         assert isinstance(nodal, NodalLoad)
