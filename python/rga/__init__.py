@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rga.lazy import opening
 
 if TYPE_CHECKING:
+    from rga.building import ModelBuilder
     from rga.diagnosis import diagnose
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
@@ -28,6 +29,7 @@ _HOMES = {
     "Effect": "rga.model",
     "Findings": "rga.findings",
     "Model": "rga.model",
+    "ModelBuilder": "rga.building",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
     "Results": "rga.simulation",
@@ -50,6 +52,7 @@ __all__ = [
     "Effect",
     "Findings",
     "Model",
+    "ModelBuilder",
     "Plan",
     "Record",
     "Results",

@@ -12,6 +12,7 @@ from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
+from rga.cli.example import example
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
 from rga.cli.results import results
@@ -31,7 +32,7 @@ app = typer.Typer(
 )
 for command in (
     run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, results, dataset,
-    verify, schema, doctor,
+    verify, schema, example, doctor,
 ):  # fmt: skip
     app.command()(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.
