@@ -1,6 +1,7 @@
 """Files that are written whole or not at all."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from errno import EISDIR
 from pathlib import Path
 
@@ -34,7 +35,8 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
             draft.replace(path)
     except OSError as error:
         for draft in drafts.values():
-            draft.unlink(missing_ok=True)
+            with suppress(OSError):
+                draft.unlink()
         reason = (error.strerror or "refused").lower()
         what = f"the output cannot be written, {reason}"
         raise InputError(what, str(path), "give another place") from None
