@@ -55,6 +55,7 @@ def page(findings: Findings) -> dict[str, Any]:
     return {
         "fonts": FONTS,
         "model_name": model.name,
+        "about": [(what, said) for what, said in model.about.model_dump().items() if said],
         "verdict": VERDICTS[findings.verdict],
         "verdict_key": findings.verdict,
         "headline": headline,
