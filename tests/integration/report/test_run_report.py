@@ -146,7 +146,9 @@ class Reader(HTMLParser):
         for name, value in attrs:
             if tag == "svg" and name == "aria-label":
                 self.figures.append(str(value))
-            if name in ("src", "href", "xlink:href") and not str(value).startswith("#"):
+            if name in ("src", "href", "xlink:href") and not str(value).startswith(
+                ("#", "data:text/csv")
+            ):
                 self.fetched.append(str(value))
 
     def handle_data(self, data: str) -> None:

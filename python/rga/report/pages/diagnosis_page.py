@@ -15,6 +15,7 @@ from rga.findings.schema import Cause
 from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.report.figures.bridge import draw_bridge, draw_residuals
+from rga.report.figures.channels import all_channels
 from rga.report.figures.deviation import percent_off, runs
 from rga.report.figures.explanations import draw_explanations, kept, ranked
 from rga.report.figures.figure_style import FONTS
@@ -96,6 +97,7 @@ def page(findings: Findings) -> dict[str, Any]:
             for group in findings.groups
         ],
         "sensors": part("The table of the sensors", sensors, findings),
+        "channels": part("Every channel", all_channels, findings) if len(record) else None,
         "series": series[0] if series else series,
         "over_time": bool(series and series[1]),
         "explanations": part("The table of explanations", explanations, findings),
