@@ -10,9 +10,9 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.quantities import MINUS, duration, short
 from rga.records import Record
 from rga.report.pages.cards import moment
-from rga.report.text.quantities import MINUS, duration, short
 
 Rows = NDArray[np.intp]
 DAY = 86400.0

@@ -1,0 +1,1 @@
+"""Pictures of a model, and the look that all figures share."""
