@@ -7,6 +7,7 @@ from rga.lazy import opening
 
 if TYPE_CHECKING:
     from rga.diagnosis import diagnose
+    from rga.drawing import draw, plot_model
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
@@ -34,11 +35,13 @@ _HOMES = {
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
+    "draw": "rga.drawing",
     "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
+    "plot_model": "rga.drawing",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
 }
@@ -55,11 +58,13 @@ __all__ = [
     "__version__",
     "diagnose",
     "diagnose_many",
+    "draw",
     "load_criteria",
     "load_findings",
     "load_model",
     "load_record",
     "plan",
+    "plot_model",
     "run",
     "write_findings",
 ]

@@ -1,1 +1,6 @@
-"""Pictures of a model, and the look that all figures share."""
+"""Drawings of models, and the look that all figures share."""
+
+from rga.drawing.content import Shown
+from rga.drawing.draw import draw, plot_model
+
+__all__ = ["Shown", "draw", "plot_model"]

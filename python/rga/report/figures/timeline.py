@@ -23,8 +23,8 @@ from rga.drawing.figure_style import (
     label,
     style,
 )
+from rga.drawing.labels import LETTER
 from rga.quantities import number, short
-from rga.report.drawing.labels import LETTER
 from rga.report.figures.run_gap import mean, row_of, smoothed, standardised, version_number, window
 from rga.report.figures.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.twin.history import Event, History

@@ -1,0 +1,93 @@
+"""`rga draw`: a model as a drawing."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from rga.cli.options import ModelFile, setting
+
+
+class Part(StrEnum):
+    """Parts of a model that have names, one kind or all."""
+
+    nodes = "nodes"
+    members = "members"
+    sensors = "sensors"
+    supports = "supports"
+    all = "all"
+
+
+Drawing = Annotated[
+    Path,
+    typer.Option(
+        "-o", "--output", metavar="FILE",
+        help="File for the drawing: .svg, .png, or .html for a page that turns with the mouse.",
+    ),
+]  # fmt: skip
+Contexts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--contexts", metavar="NAME=VALUE,...",
+        help="Contexts of loads, displacements and forces; the others stand at mid-range.",
+    ),
+]  # fmt: skip
+Names = Annotated[list[Part] | None, typer.Option("--names", help="Parts to be named; repeatable.")]
+Loads = Annotated[
+    list[str] | None,
+    typer.Option("--load", metavar="EFFECT", help="A load to draw instead of all; repeatable."),
+]
+Deformed = Annotated[bool, typer.Option("--deformed", help="The deformed shape.")]
+Scale = Annotated[
+    float | None,
+    typer.Option("--scale", metavar="TIMES", help="By which displacements are enlarged."),
+]
+Forces = Annotated[
+    Literal["N"] | None, typer.Option("--forces", help="The diagram of a section force.")
+]
+LocalAxes = Annotated[bool, typer.Option("--axes", help="Local axes of the members.")]
+Sensors = Annotated[
+    bool | None,
+    typer.Option("--sensors/--no-sensors", help="Sensors; left out with displacements or forces."),
+]
+Dark = Annotated[bool, typer.Option("--dark", help="For a dark background.")]
+Width = Annotated[
+    float, typer.Option("--width", metavar="INCHES", help="Of a sheet; 3.75 suits a phone.")
+]
+
+
+def draw(
+    model: ModelFile,
+    output: Drawing = Path("drawing.svg"),
+    contexts: Contexts = None,
+    names: Names = None,
+    load: Loads = None,
+    deformed: Deformed = False,
+    scale: Scale = None,
+    forces: Forces = None,
+    axes: LocalAxes = False,
+    sensors: Sensors = None,
+    dark: Dark = False,
+    width: Width = 10.0,
+) -> None:
+    """Draw a model: members, supports, loads and sensors, its deformed shape and forces."""
+    from rga.drawing import Shown
+    from rga.drawing import draw as write
+    from rga.drawing.content import NAMED
+    from rga.model import load_model
+
+    pairs = [pair for text in contexts or [] for pair in text.split(",") if pair.strip()]
+    chosen = {part.value for part in names or []}
+    shown = Shown(
+        names=frozenset(NAMED) if "all" in chosen else frozenset(chosen),
+        sensors=sensors,
+        loads=None if load is None else tuple(load),
+        local_axes=axes,
+        deformed=deformed,
+        scale=scale,
+        forces=forces,
+        contexts=dict(setting(pair, "--contexts") for pair in pairs),
+        dark=dark,
+    )
+    typer.echo(f"The drawing is {write(load_model(model), output, shown, width)}.")

@@ -1,0 +1,134 @@
+"""Drawing a model: into a file, or into axes of matplotlib."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from matplotlib.axes import Axes
+
+from rga.drawing.content import Content, Shown, gather
+from rga.drawing.figure_style import style
+from rga.drawing.sheet import legend
+from rga.drawing.sheet.sheet import WIDTH, sheet_bytes
+from rga.drawing.sheet.view import draw_view, palette_of
+from rga.drawing.sight import sights
+from rga.drawing.states.diagrams import Quantity
+from rga.errors import InputError
+from rga.files import write_whole
+from rga.model.schema import Model
+
+SUFFIXES = (".svg", ".png", ".html")
+#: widths of a sheet [inch]
+NARROWEST, WIDEST = 3.0, 40.0
+
+
+def draw(model: Model, path: str | Path, shown: Shown | None = None, width: float = WIDTH) -> Path:
+    """Write a drawing of a model.
+
+    Args:
+        model: the model.
+        path: of a .svg, .png or .html file; the page turns with the mouse.
+        shown: what is to be seen beside members and supports.
+        width: of a sheet [inch]; 3.75 suits a phone.
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: another suffix, nothing to draw, an unknown load or context, or a place that
+            cannot be written.
+        UnstableStructureError: a deformed shape or forces of a structure that can move.
+    """
+    path, shown = Path(path), shown or Shown()
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        formats = "name a " + ", ".join(SUFFIXES[:-1]) + f" or {SUFFIXES[-1]} file"
+        raise InputError(f"{suffix!r} is no format of a drawing", str(path), formats)
+    if not NARROWEST <= width <= WIDEST:
+        raise InputError(
+            f"a sheet cannot be {width:g} inches wide",
+            "width",
+            f"give {NARROWEST:g} to {WIDEST:g}",
+        )
+    write_whole({path: drawing_bytes(gather(model, shown), suffix[1:], width)})
+    return path
+
+
+def drawing_bytes(content: Content, kind: str, width: float = WIDTH) -> bytes:
+    """A drawing as the content of a file: "svg", "png" or "html"."""
+    if kind == "html":
+        from rga.drawing.page.page import page
+
+        return str(page(content)).encode("utf-8", "replace")
+    return sheet_bytes(content, kind, width)
+
+
+def plot_model(
+    model: Model,
+    ax: Axes | None = None,
+    *,
+    view: str | None = None,
+    names: str | Iterable[str] = (),
+    sensors: bool | None = None,
+    loads: Iterable[str] | None = None,
+    local_axes: bool = False,
+    deformed: bool = False,
+    scale: float | None = None,
+    forces: Quantity | None = None,
+    contexts: Mapping[str, float] | None = None,
+    dark: bool = False,
+) -> Axes:
+    """One view of a model in axes of matplotlib.
+
+    Args:
+        model: the model.
+        ax: axes; None: those of a new figure.
+        view: title of one of its views, such as "plan"; None: the first.
+        names: "nodes", "members", "sensors" or "supports", or several of them.
+        sensors, loads, local_axes, deformed, scale, forces, contexts, dark: as for `Shown`.
+
+    Returns:
+        The axes, in the metres of the view.
+
+    Raises:
+        InputError: as for `draw`; a view that the model does not have.
+        UnstableStructureError: as for `draw`.
+    """
+    shown = Shown(
+        names=frozenset([names] if isinstance(names, str) else names),
+        sensors=sensors,
+        loads=None if loads is None else tuple(loads),
+        local_axes=local_axes,
+        deformed=deformed,
+        scale=scale,
+        forces=forces,
+        contexts=contexts or {},
+        dark=dark,
+    )
+    content = gather(model, shown)
+    found = sights(content.scene)
+    chosen = next((one for one in found if view in (None, one.title)), None)
+    if chosen is None:
+        raise InputError(
+            f"there is no view {view!r}",
+            f"model {model.name!r}",
+            "it has " + ", ".join(repr(one.title) for one in found),
+        )
+    palette = palette_of(content)
+    with style():
+        if ax is None:
+            # A notebook shows figures of pyplot.
+            from matplotlib import pyplot
+
+            _, ax = pyplot.subplots(figsize=(9.0, 6.0), layout=None, facecolor=palette.paper)
+            ax.set_position((0.02, 0.16, 0.96, 0.76))
+        draw_view(ax, content, chosen)
+        title = [model.name, legend.state_words(content)]
+        ax.set_title("\n".join(line for line in title if line), color=palette.ink, loc="left")
+        entries = legend.entries(content, palette)
+        if entries:
+            wide = ax.get_window_extent().width / ax.figure.dpi
+            ax.legend(
+                handles=entries, loc="upper left", bbox_to_anchor=(0.0, -0.01),
+                ncols=legend.columns(entries, wide), labelcolor=palette.ink, fontsize=7.2,
+            )  # fmt: skip
+    return ax
