@@ -100,13 +100,15 @@ def gather(model: Model, shown: Shown) -> Content:
         diagram = _diagram(scene, shown.forces, contexts, words)
     with_sensors = not state if shown.sensors is None else shown.sensors
     chosen = () if shown.loads is None and shown.forces is not None else shown.loads
+    # Beside a response stand the loads that bring it about, and no others.
+    at = contexts if state else shown.contexts
     return Content(
         scene=scene,
         shown=shown,
         supports=support_marks(scene),
         springs=spring_marks(scene),
         sensors=sensor_marks(scene) if with_sensors else [],
-        loads=load_marks(scene, chosen, shown.contexts),
+        loads=load_marks(scene, chosen, at),
         deformed=shape,
         diagram=diagram,
     )

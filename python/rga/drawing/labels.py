@@ -44,9 +44,10 @@ class Room:
     def place(
         self,
         text: str,
-        at: Sequence[float] | FloatArray,
+        at: Point,
         width: float = 0.0,
         letter: float = LETTER,
+        over: bool = False,
     ) -> Placed | None:
         """The best free place beside a point, which is taken from then on; None where none is.
 
@@ -55,13 +56,14 @@ class Room:
             at: the point [inch].
             width: of the mark that stands at the point [inch].
             letter: width of a letter [inch].
+            over: the label may stand on its place and on lines.
 
         >>> room = Room()
         >>> [room.place("S1", (0.0, 0.0)).box[0] > 0, room.place("S2", (0.0, 0.0)).box[0] > 0]
         [True, False]
         """
         wide, high = letter * len(text), LINE
-        found = []
+        found = [(-1, self._around(at, wide, high))] if over else []
         for step, distance in enumerate(DISTANCES):
             for side, (right, up) in enumerate(SIDES):
                 away = width / 2 + distance * (0.75 if right and up else 1.0)
@@ -72,13 +74,17 @@ class Room:
         free = self._free(boxes)
         if not free.any():
             return None
-        covered = self._covered(boxes)
+        covered = np.zeros(len(boxes)) if over else self._covered(boxes)
         costs = np.where(free, 4.0 * covered + np.array([rank for rank, _ in found]), np.inf)
         best = int(np.argmin(costs))
         if covered[best] > MOST_COVERED:
             return None
         self.boxes.append(found[best][1])
         return Placed(text, found[best][1])
+
+    @staticmethod
+    def _around(at: Point, wide: float, high: float) -> Box:
+        return at[0] - wide / 2, at[1] - high / 2, at[0] + wide / 2, at[1] + high / 2
 
     def _free(self, boxes: FloatArray) -> FloatArray:
         free = np.ones(len(boxes), dtype=bool)

@@ -9,8 +9,8 @@ from rga.drawing.labels import LETTER
 from rga.drawing.palette import Palette, group_look
 from rga.drawing.scene.loads import LoadMark
 from rga.drawing.sheet.sensors import MARKERS
-from rga.drawing.states.diagrams import WORDS
-from rga.quantities import quantity
+from rga.drawing.states.diagrams import SIGNS, UNITS, WORDS
+from rga.quantities import quantity, scale
 
 #: groups and loads that are named
 MOST_GROUPS, MOST_LOADS = 15, 8
@@ -37,7 +37,8 @@ def entries(content: Content, palette: Palette) -> list[Line2D | Patch]:
     if content.deformed is not None:
         found.append(Line2D([], [], color=palette.deformed, lw=2.2, label="deformed"))
     if content.diagram is not None:
-        for colour, word in ((palette.positive, "positive"), (palette.negative, "negative")):
+        signs = SIGNS.get(content.diagram.quantity, ("positive", "negative"))
+        for colour, word in zip((palette.positive, palette.negative), signs, strict=True):
             found.append(Patch(fc=colour, ec=colour, alpha=0.45, label=word))
     kinds = {mark.kind for mark in content.sensors}
     found += [
@@ -78,11 +79,13 @@ def state_words(content: Content) -> str:
     if (shape := content.deformed) is not None:
         times = f"displacements {shape.scale:g} times as large"
         most = f"largest {quantity(shape.largest, 'm')} at {label(shape.at)}"
-        said.append(f"{times}, {most}")
+        said.append(f"{times}, {most}" if shape.largest > 0 else "nothing moves")
         at = shape.contexts
     if (diagram := content.diagram) is not None:
-        unit = "N m" if diagram.quantity == "M" else "N"
-        said.append(f"{WORDS[diagram.quantity]}, at most {quantity(diagram.largest, unit)}")
+        unit = UNITS[diagram.quantity]
+        _, written = scale(unit, diagram.largest)
+        most = quantity(diagram.largest, unit)
+        said.append(f"{WORDS[diagram.quantity]}, written in {written}, at most {most}")
         at = diagram.contexts
     if not said:
         return ""

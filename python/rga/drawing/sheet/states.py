@@ -11,8 +11,8 @@ from rga.drawing.states.deformed import Deformed
 from rga.drawing.states.diagrams import UNITS, Diagram
 from rga.quantities import scale, short
 
-#: the largest value of a diagram [inch]
-REACH = 0.42
+#: the largest value of a diagram, and half of an axial force's, which stands on both sides [inch]
+REACH, HALF = 0.42, 0.13
 #: values that are written, those of the members with the largest
 WRITTEN = 24
 #: share of the largest value below which one counts as none
@@ -40,33 +40,40 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> None:
     if diagram.largest == 0:
         return
     factor, _ = scale(UNITS[diagram.quantity], diagram.largest)
+    both = diagram.quantity == "N"
+    reach = (HALF if both else REACH) / diagram.largest
     bases = canvas.inches(scene.points)[scene.ends]
     written = []
     areas: dict[str, list[FloatArray]] = {canvas.palette.positive: [], canvas.palette.negative: []}
     for member in canvas.sight.members:
-        values = diagram.values[member]
-        side = canvas.direction(diagram.sides[member])
+        values, stations = diagram.values[member], diagram.positions[member]
+        first, last = bases[member]
+        side = _across(last - first) if both else canvas.direction(diagram.sides[member])
         if np.linalg.norm(side) < 0.1 or np.abs(values).max() <= NOTHING * diagram.largest:
             continue
-        first, last = bases[member]
-        for positions, part in _same_signs(diagram.positions[member], values):
+        for positions, part in _same_signs(stations, values):
             feet = first + positions[:, None] * (last - first)
-            tops = feet + (REACH / diagram.largest * part)[:, None] * side
+            tops = feet + (reach * part)[:, None] * side
             colour = canvas.palette.positive if part.sum() > 0 else canvas.palette.negative
-            areas[colour].append(np.vstack([feet[:1], tops, feet[-1:]]))
-        k = int(np.argmax(np.abs(values)))
-        if np.ptp(values) <= 1e-6 * diagram.largest:
-            k = len(values) // 2
-        foot = first + diagram.positions[member, k] * (last - first)
-        top = foot + REACH / diagram.largest * values[k] * side
+            base = (2 * feet - tops)[::-1] if both else feet[[-1, 0]]
+            areas[colour].append(np.vstack([tops, base]))
+        even = np.ptp(values) <= 1e-6 * diagram.largest
+        k = len(values) // 2 if even else int(np.argmax(np.abs(values)))
+        foot = first + stations[k] * (last - first)
+        top = foot if both else foot + reach * values[k] * side
         written.append((abs(float(values[k])), top, short(float(values[k]) * factor)))
     for colour, polygons in areas.items():
         canvas.areas(polygons, colour, colour, 0.6, zorder=4, alpha=0.45)
-        canvas.avoid(np.array([[one[1], one[-2]] for one in polygons]).reshape(-1, 2, 2))
     for _, top, text in sorted(written, key=lambda one: -one[0])[:WRITTEN]:
-        placed = canvas.room.place(text, top)
+        placed = canvas.room.place(text, top, over=both)
         if placed is not None:
-            canvas.text(text, placed.box[:2], canvas.palette.ink, va="bottom")
+            paper = {"facecolor": canvas.palette.paper, "alpha": 0.75, "lw": 0, "pad": 0.4}
+            canvas.text(text, placed.box[:2], canvas.palette.ink, va="bottom", bbox=paper)
+
+
+def _across(along: FloatArray) -> FloatArray:
+    size = float(np.linalg.norm(along))
+    return np.array([-along[1], along[0]]) / size if size > 0 else np.zeros(2)
 
 
 def _same_signs(positions: FloatArray, values: FloatArray) -> list[tuple[FloatArray, FloatArray]]:

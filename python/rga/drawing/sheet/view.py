@@ -16,8 +16,8 @@ from rga.drawing.sheet.supports import draw_springs, draw_supports
 from rga.drawing.sight import Sight
 from rga.quantities import short
 
-#: around the members: arrows, sensors and supports; names beside them [inch]
-MARGIN, NAME_MARGIN = 0.5, 0.65
+#: around the members: supports; more for arrows and sensors, and for names [inch]
+MARGIN, FOR_ARROWS, FOR_NAMES = 0.32, 0.2, 0.12
 
 
 def palette_of(content: Content) -> Palette:
@@ -27,7 +27,8 @@ def palette_of(content: Content) -> Palette:
 
 def margin_of(content: Content) -> float:
     """Room for symbols around the members of a view [inch]."""
-    return NAME_MARGIN if content.shown.names else MARGIN
+    arrows = bool(content.loads or content.sensors or content.diagram)
+    return MARGIN + FOR_ARROWS * arrows + FOR_NAMES * bool(content.shown.names)
 
 
 def seen(content: Content, sight: Sight) -> FloatArray:

@@ -10,6 +10,7 @@ from rga.drawing.scene.scene import Scene
 
 Quantity = Literal["N", "V", "M"]
 UNITS: dict[Quantity, str] = {"N": "N", "V": "N", "M": "N m"}
+SIGNS: dict[Quantity, tuple[str, str]] = {"N": ("tension", "compression")}
 WORDS: dict[Quantity, str] = {
     "N": "axial force N, tension positive",
     "V": "shear force V",
