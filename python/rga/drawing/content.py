@@ -102,13 +102,14 @@ def gather(model: Model, shown: Shown) -> Content:
     chosen = () if shown.loads is None and shown.forces is not None else shown.loads
     # Beside a response stand the loads that bring it about, and no others.
     at = contexts if state else shown.contexts
+    loads = load_marks(scene, chosen, at)
     return Content(
         scene=scene,
         shown=shown,
         supports=support_marks(scene),
         springs=spring_marks(scene),
-        sensors=sensor_marks(scene) if with_sensors else [],
-        loads=load_marks(scene, chosen, at),
+        sensors=sensor_marks(scene, loads) if with_sensors else [],
+        loads=loads,
         deformed=shape,
         diagram=diagram,
     )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 
-from rga.drawing.content import Content, Shown, gather
+from rga.drawing.content import Shown, gather
 from rga.drawing.figure_style import style
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.sheet import WIDTH, sheet_bytes
@@ -49,17 +49,15 @@ def draw(model: Model, path: str | Path, shown: Shown | None = None, width: floa
             "width",
             f"give {NARROWEST:g} to {WIDEST:g}",
         )
-    write_whole({path: drawing_bytes(gather(model, shown), suffix[1:], width)})
-    return path
-
-
-def drawing_bytes(content: Content, kind: str, width: float = WIDTH) -> bytes:
-    """A drawing as the content of a file: "svg", "png" or "html"."""
-    if kind == "html":
+    if suffix == ".html":
+        # Templates take time to load, which a sheet does without.
         from rga.drawing.page.page import page
 
-        return str(page(content)).encode("utf-8", "replace")
-    return sheet_bytes(content, kind, width)
+        written = page(model, shown).encode("utf-8", "replace")
+    else:
+        written = sheet_bytes(gather(model, shown), suffix[1:], width)
+    write_whole({path: written})
+    return path
 
 
 def plot_model(

@@ -1,10 +1,12 @@
 """Where sensors sit and in which direction they measure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.drawing.scene.loads import LoadMark
 from rga.drawing.scene.scene import Scene
 
 
@@ -19,6 +21,7 @@ class SensorMark:
         side: from the axis of the member to the fibre, float[3] of length one or zeros.
         member, node: number of what it sits on; the other is None.
         place: 0 for the first sensor at a place, 1 for the second...
+        ahead: a load comes to the node in about this direction, from where the symbol would stand.
     """
 
     name: str
@@ -30,10 +33,11 @@ class SensorMark:
     member: int | None
     node: int | None
     place: int
+    ahead: bool
 
 
-def sensor_marks(scene: Scene) -> list[SensorMark]:
-    """The sensors of a model, in its order."""
+def sensor_marks(scene: Scene, loads: Sequence[LoadMark]) -> list[SensorMark]:
+    """The sensors of a model, in its order, where these loads are drawn too."""
     found: list[SensorMark] = []
     taken: dict[tuple[object, ...], int] = {}
     for name, sensor in scene.model.sensors.items():
@@ -57,6 +61,22 @@ def sensor_marks(scene: Scene) -> list[SensorMark]:
         key = (member, node, round(sensor.at, 3), turns, *np.round(side, 1), *np.round(direction))
         place = taken[key] = taken.get(key, -1) + 1
         found.append(
-            SensorMark(name, sensor.kind, sensor.unit, point, direction, side, member, node, place)
+            SensorMark(
+                name=name,
+                kind=sensor.kind,
+                unit=sensor.unit,
+                point=point,
+                direction=direction,
+                side=side,
+                member=member,
+                node=node,
+                place=place,
+                ahead=any(_pushes(load, node, direction) for load in loads),
+            )
         )
     return found
+
+
+def _pushes(load: LoadMark, node: int | None, direction: FloatArray) -> bool:
+    forces = load.forces[load.nodes == node] if node is not None else np.zeros((0, 3))
+    return bool((forces @ direction > 0.8 * np.linalg.norm(forces, axis=1)).any())

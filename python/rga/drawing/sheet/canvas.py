@@ -31,7 +31,6 @@ class Canvas:
         unit: metres in an inch.
         palette: the colours.
         room: what labels must not cover.
-        arrows: heads [inch] and directions of arrows that are drawn, float[k, 2, 2] each.
     """
 
     axes: Axes
@@ -39,7 +38,6 @@ class Canvas:
     unit: float
     palette: Palette
     room: Room = field(default_factory=Room)
-    arrows: list[FloatArray] = field(default_factory=list)
 
     def inches(self, points: FloatArray) -> FloatArray:
         """Points float[..., 3] on the paper in inches, float[..., 2]."""
@@ -96,14 +94,6 @@ class Canvas:
             for line, share in zip(lines, (np.linspace(0, 1, k) for k in counts), strict=True)
         ]
         self.room.lines = np.vstack([self.room.lines, *points])
-
-    def pushed(self, at: FloatArray, along: FloatArray) -> bool:
-        """Whether an arrow comes to a point [inch] in about this direction already."""
-        if not self.arrows:
-            return False
-        heads, directions = np.moveaxis(np.concatenate(self.arrows), 1, 0)
-        near = np.linalg.norm(heads - at, axis=1) < 0.06
-        return bool((near & (directions @ along > 0.8)).any())
 
     def keep_clear(self, at: FloatArray, half: float) -> None:
         """Let no label cover the square about a point [inch]."""

@@ -50,7 +50,6 @@ def _arrows(canvas: Canvas, tails: FloatArray, heads: FloatArray, colour: str) -
     corners = [heads, back + 0.4 * HEAD * across, back - 0.4 * HEAD * across]
     canvas.areas(list(np.stack(corners, axis=1)), colour, colour, 0.3, zorder=6)
     canvas.avoid(np.stack([tails, heads], axis=1))
-    canvas.arrows.append(np.stack([heads, unit], axis=1))
 
 
 def _along(canvas: Canvas, loads: Sequence[AlongMember], scene: Scene, colour: str) -> None:

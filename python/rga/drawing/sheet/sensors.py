@@ -52,8 +52,7 @@ def _at_node(canvas: Canvas, mark: SensorMark) -> FloatArray:
     along = along / size
     far = AWAY + (0.1 if mark.kind == "reaction" else 0.0) + STEP * mark.place
     across = np.array([-along[1], along[0]])
-    if canvas.pushed(node, along):
-        # A load comes from there: the gauge stands ahead of the node.
+    if mark.ahead:
         at, tip = node + far * along, node + (far - 0.06) * along
         canvas.lines([np.array([node, tip])], canvas.palette.ink, 0.8, zorder=6)
     else:
