@@ -8,6 +8,7 @@ from rga.lazy import opening
 if TYPE_CHECKING:
     from rga.diagnosis import diagnose
     from rga.drawing import draw, plot_model
+    from rga.drawing.charts import plot_findings, plot_record
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
@@ -41,7 +42,9 @@ _HOMES = {
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
+    "plot_findings": "rga.drawing.charts",
     "plot_model": "rga.drawing",
+    "plot_record": "rga.drawing.charts",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
 }
@@ -64,7 +67,9 @@ __all__ = [
     "load_model",
     "load_record",
     "plan",
+    "plot_findings",
     "plot_model",
+    "plot_record",
     "run",
     "write_findings",
 ]

@@ -72,22 +72,25 @@ def draw(
     width: Width = 10.0,
 ) -> None:
     """Draw a model: members, supports, loads and sensors, its deformed shape and forces."""
-    from rga.drawing import Shown
     from rga.drawing import draw as write
     from rga.drawing.content import NAMED
     from rga.model import load_model
 
     pairs = [pair for text in contexts or [] for pair in text.split(",") if pair.strip()]
-    chosen = {part.value for part in names or []}
-    shown = Shown(
-        names=frozenset(NAMED) if "all" in chosen else frozenset(chosen),
+    given = dict(setting(pair, "--contexts") for pair in pairs)
+    chosen = [part.value for part in names or []]
+    drawn = write(
+        load_model(model),
+        output,
+        width=width,
+        names=NAMED if "all" in chosen else chosen,
         sensors=sensors,
-        loads=None if load is None else tuple(load),
+        loads=load,
         local_axes=axes,
         deformed=deformed,
         scale=scale,
         forces=forces,
-        contexts=dict(setting(pair, "--contexts") for pair in pairs),
+        contexts=given,
         dark=dark,
     )
-    typer.echo(f"The drawing is {write(load_model(model), output, shown, width)}.")
+    typer.echo(f"The drawing is {drawn}.")

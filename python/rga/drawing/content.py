@@ -1,7 +1,8 @@
 """What a drawing shows: what was asked for, worked out once for every view."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import TypedDict
 
 import numpy as np
 
@@ -21,12 +22,26 @@ from rga.simulation import Simulator
 NAMED = ("nodes", "members", "sensors", "supports")
 
 
+class Options(TypedDict, total=False):
+    """What may be asked of a drawing by name; `Shown` has the meanings."""
+
+    names: str | Iterable[str]
+    sensors: bool | None
+    loads: Iterable[str] | None
+    local_axes: bool
+    deformed: bool
+    scale: float | None
+    forces: Quantity | None
+    contexts: Mapping[str, float]
+    dark: bool
+
+
 @dataclass(frozen=True)
 class Shown:
     """What is to be shown beside members and supports.
 
     Attributes:
-        names: which parts are named, of `NAMED`.
+        names: which parts are named, of "nodes", "members", "sensors" and "supports".
         sensors: None: unless a deformed shape or forces are drawn.
         loads: load effects by name; None: all of them, unless forces are drawn.
         local_axes: of the members.
@@ -58,6 +73,24 @@ class Shown:
                 "scale",
                 "give a positive one",
             )
+
+
+def asked(options: Options) -> Shown:
+    """What is to be shown, from the options of a call.
+
+    Raises:
+        InputError: names of what has none; a scale that is not positive.
+
+    >>> asked({"names": "nodes"}).names
+    frozenset({'nodes'})
+    """
+    names, loads = options.get("names", ()), options.get("loads")
+    given = {
+        **options,
+        "names": frozenset([names] if isinstance(names, str) else names),
+        "loads": None if loads is None else tuple(loads),
+    }
+    return Shown(**given)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from rga.drawing.figure_style import AFTER, STEEL, grid, inline, style
+from rga.drawing.time_axis import time_axis
 from rga.quantities import fixed
-from rga.report.figures.time_axis import time_axis
 from rga.report.figures.timeline import LEFT, RIGHT, WIDTH
 from rga.twin.history import History
 

@@ -24,9 +24,9 @@ from rga.drawing.figure_style import (
     style,
 )
 from rga.drawing.labels import LETTER
+from rga.drawing.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.quantities import number, short
 from rga.report.figures.run_gap import mean, row_of, smoothed, standardised, version_number, window
-from rga.report.figures.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.twin.history import Event, History
 
 WIDTH, LEFT, RIGHT = 10.0, 0.115, 0.985

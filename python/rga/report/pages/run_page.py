@@ -20,8 +20,8 @@ from rga.report.figures.run_gap import (
     standardised,
     usual,
 )
-from rga.report.figures.time_axis import when
 from rga.report.figures.timeline import draw_timeline
+from rga.report.figures.when import when
 from rga.report.pages.diagnosis_page import page
 from rga.report.pages.fault_tolerant_parts import part
 from rga.twin.history import Event, History

@@ -1,17 +1,16 @@
 """Drawing a model: into a file, or into axes of matplotlib."""
 
-from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Unpack
 
 from matplotlib.axes import Axes
 
-from rga.drawing.content import Shown, gather
+from rga.drawing.content import Options, asked, gather
 from rga.drawing.figure_style import style
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.sheet import WIDTH, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of
 from rga.drawing.sight import sights
-from rga.drawing.states.diagrams import Quantity
 from rga.errors import InputError
 from rga.files import write_whole
 from rga.model.schema import Model
@@ -21,14 +20,16 @@ SUFFIXES = (".svg", ".png", ".html")
 NARROWEST, WIDEST = 3.0, 40.0
 
 
-def draw(model: Model, path: str | Path, shown: Shown | None = None, width: float = WIDTH) -> Path:
+def draw(
+    model: Model, path: str | Path, *, width: float = WIDTH, **options: Unpack[Options]
+) -> Path:
     """Write a drawing of a model.
 
     Args:
         model: the model.
         path: of a .svg, .png or .html file; the page turns with the mouse.
-        shown: what is to be seen beside members and supports.
         width: of a sheet [inch]; 3.75 suits a phone.
+        options: what is to be seen beside members and supports, by the names of `Shown`.
 
     Returns:
         The path.
@@ -38,7 +39,7 @@ def draw(model: Model, path: str | Path, shown: Shown | None = None, width: floa
             cannot be written.
         UnstableStructureError: a deformed shape or forces of a structure that can move.
     """
-    path, shown = Path(path), shown or Shown()
+    path, shown = Path(path), asked(options)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         formats = "name a " + ", ".join(SUFFIXES[:-1]) + f" or {SUFFIXES[-1]} file"
@@ -61,19 +62,7 @@ def draw(model: Model, path: str | Path, shown: Shown | None = None, width: floa
 
 
 def plot_model(
-    model: Model,
-    ax: Axes | None = None,
-    *,
-    view: str | None = None,
-    names: str | Iterable[str] = (),
-    sensors: bool | None = None,
-    loads: Iterable[str] | None = None,
-    local_axes: bool = False,
-    deformed: bool = False,
-    scale: float | None = None,
-    forces: Quantity | None = None,
-    contexts: Mapping[str, float] | None = None,
-    dark: bool = False,
+    model: Model, ax: Axes | None = None, *, view: str | None = None, **options: Unpack[Options]
 ) -> Axes:
     """One view of a model in axes of matplotlib.
 
@@ -81,8 +70,7 @@ def plot_model(
         model: the model.
         ax: axes; None: those of a new figure.
         view: title of one of its views, such as "plan"; None: the first.
-        names: "nodes", "members", "sensors" or "supports", or several of them.
-        sensors, loads, local_axes, deformed, scale, forces, contexts, dark: as for `Shown`.
+        options: what is to be seen beside members and supports, by the names of `Shown`.
 
     Returns:
         The axes, in the metres of the view.
@@ -91,18 +79,7 @@ def plot_model(
         InputError: as for `draw`; a view that the model does not have.
         UnstableStructureError: as for `draw`.
     """
-    shown = Shown(
-        names=frozenset([names] if isinstance(names, str) else names),
-        sensors=sensors,
-        loads=None if loads is None else tuple(loads),
-        local_axes=local_axes,
-        deformed=deformed,
-        scale=scale,
-        forces=forces,
-        contexts=contexts or {},
-        dark=dark,
-    )
-    content = gather(model, shown)
+    content = gather(model, asked(options))
     found = sights(content.scene)
     chosen = next((one for one in found if view in (None, one.title)), None)
     if chosen is None:
