@@ -9,7 +9,7 @@ import typer
 from rga.cli.options import ModelFile, setting
 
 
-class Part(StrEnum):
+class NamedPart(StrEnum):
     """Parts of a model that have names, one kind or all."""
 
     nodes = "nodes"
@@ -33,7 +33,9 @@ Contexts = Annotated[
         help="Contexts of loads, displacements and forces; the others stand at mid-range.",
     ),
 ]  # fmt: skip
-Names = Annotated[list[Part] | None, typer.Option("--names", help="Parts to be named; repeatable.")]
+Names = Annotated[
+    list[NamedPart] | None, typer.Option("--names", help="Parts to be named; repeatable.")
+]
 Loads = Annotated[
     list[str] | None,
     typer.Option("--load", metavar="EFFECT", help="A load to draw instead of all; repeatable."),

@@ -22,8 +22,8 @@ from rga.simulation import Simulator
 NAMED = ("nodes", "members", "sensors", "supports")
 
 
-class Options(TypedDict, total=False):
-    """What may be asked of a drawing by name; `Shown` has the meanings."""
+class DrawingOptions(TypedDict, total=False):
+    """What may be asked of a drawing by name; `Selection` has the meanings."""
 
     names: str | Iterable[str]
     sensors: bool | None
@@ -37,7 +37,7 @@ class Options(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
-class Shown:
+class Selection:
     """What is to be shown beside members and supports.
 
     Attributes:
@@ -75,7 +75,7 @@ class Shown:
             )
 
 
-def asked(options: Options) -> Shown:
+def asked(options: DrawingOptions) -> Selection:
     """What is to be shown, from the options of a call.
 
     Raises:
@@ -90,7 +90,7 @@ def asked(options: Options) -> Shown:
         "names": frozenset([names] if isinstance(names, str) else names),
         "loads": None if loads is None else tuple(loads),
     }
-    return Shown(**given)  # type: ignore[arg-type]
+    return Selection(**given)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Content:
     """
 
     scene: Scene
-    shown: Shown
+    shown: Selection
     supports: list[SupportMark]
     springs: list[SpringMark]
     sensors: list[SensorMark]
@@ -114,7 +114,7 @@ class Content:
     diagram: Diagram | None
 
 
-def gather(model: Model, shown: Shown) -> Content:
+def gather(model: Model, shown: Selection) -> Content:
     """Work out what a drawing shows.
 
     Raises:

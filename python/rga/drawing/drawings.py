@@ -1,35 +1,37 @@
 """Drawing a model: into a file, or into axes of matplotlib."""
 
+import textwrap
 from pathlib import Path
 from typing import Unpack
 
 from matplotlib.axes import Axes
 
-from rga.drawing.content import Options, asked, gather
-from rga.drawing.figure_style import style
+from rga.drawing.content import DrawingOptions, asked, gather
+from rga.drawing.figure_style import label, style
 from rga.drawing.sheet import legend
-from rga.drawing.sheet.sheet import WIDTH, sheet_bytes
+from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of
 from rga.drawing.sight import sights
 from rga.errors import InputError
-from rga.files import write_whole
+from rga.files import make_folder, write_whole
 from rga.model.schema import Model
 
 SUFFIXES = (".svg", ".png", ".html")
 #: widths of a sheet [inch]
-NARROWEST, WIDEST = 3.0, 40.0
+NARROWEST, IN_NOTEBOOK, WIDEST = 3.0, 9.0, 40.0
 
 
 def draw(
-    model: Model, path: str | Path, *, width: float = WIDTH, **options: Unpack[Options]
+    model: Model, path: str | Path, *, width: float = WIDTH, **options: Unpack[DrawingOptions]
 ) -> Path:
     """Write a drawing of a model.
 
     Args:
         model: the model.
-        path: of a .svg, .png or .html file; the page turns with the mouse.
+        path: of a .svg, .png or .html file; the page turns with the mouse. Its folder is made
+            where it is missing.
         width: of a sheet [inch]; 3.75 suits a phone.
-        options: what is to be seen beside members and supports, by the names of `Shown`.
+        options: what is to be seen beside members and supports, by the names of `Selection`.
 
     Returns:
         The path.
@@ -57,12 +59,17 @@ def draw(
         written = page(model, shown).encode("utf-8", "replace")
     else:
         written = sheet_bytes(gather(model, shown), suffix[1:], width)
+    make_folder(path.parent)
     write_whole({path: written})
     return path
 
 
 def plot_model(
-    model: Model, ax: Axes | None = None, *, view: str | None = None, **options: Unpack[Options]
+    model: Model,
+    ax: Axes | None = None,
+    *,
+    view: str | None = None,
+    **options: Unpack[DrawingOptions],
 ) -> Axes:
     """One view of a model in axes of matplotlib.
 
@@ -70,7 +77,7 @@ def plot_model(
         model: the model.
         ax: axes; None: those of a new figure.
         view: title of one of its views, such as "plan"; None: the first.
-        options: what is to be seen beside members and supports, by the names of `Shown`.
+        options: what is to be seen beside members and supports, by the names of `Selection`.
 
     Returns:
         The axes, in the metres of the view.
@@ -88,20 +95,19 @@ def plot_model(
             f"model {model.name!r}",
             "it has " + ", ".join(repr(one.title) for one in found),
         )
-    palette = palette_of(content)
     with style():
         if ax is None:
             # A notebook shows figures of pyplot.
             from matplotlib import pyplot
 
-            _, ax = pyplot.subplots(figsize=(9.0, 6.0), layout=None, facecolor=palette.paper)
-            ax.set_position((0.02, 0.16, 0.96, 0.76))
+            return sheet(content, IN_NOTEBOOK, [chosen], pyplot.figure).axes[0]
+        palette = palette_of(content)
         draw_view(ax, content, chosen)
-        title = [model.name, legend.state_words(content)]
-        ax.set_title("\n".join(line for line in title if line), color=palette.ink, loc="left")
+        wide = ax.get_window_extent().width / ax.figure.dpi
+        title = [model.name, *textwrap.wrap(legend.state_words(content), letters(wide))]
+        ax.set_title("\n".join(label(line, letters(wide)) for line in title), color=palette.ink)
         entries = legend.entries(content, palette)
         if entries:
-            wide = ax.get_window_extent().width / ax.figure.dpi
             ax.legend(
                 handles=entries, loc="upper left", bbox_to_anchor=(0.0, -0.01),
                 ncols=legend.columns(entries, wide), labelcolor=palette.ink, fontsize=7.2,

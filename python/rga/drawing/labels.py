@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from unicodedata import east_asian_width
 
 import numpy as np
 
@@ -20,7 +21,7 @@ Point = Sequence[float] | FloatArray
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedLabel:
     """A label with its place: left, bottom, right and top of its box [inch]."""
 
     text: str
@@ -48,7 +49,7 @@ class Room:
         width: float = 0.0,
         letter: float = LETTER,
         over: bool = False,
-    ) -> Placed | None:
+    ) -> PlacedLabel | None:
         """The best free place beside a point, which is taken from then on; None where none is.
 
         Args:
@@ -62,7 +63,7 @@ class Room:
         >>> [room.place("S1", (0.0, 0.0)).box[0] > 0, room.place("S2", (0.0, 0.0)).box[0] > 0]
         [True, False]
         """
-        wide, high = letter * len(text), LINE
+        wide, high = letter * columns(text), LINE
         found = [(-1, self._around(at, wide, high))] if over else []
         for step, distance in enumerate(DISTANCES):
             for side, (right, up) in enumerate(SIDES):
@@ -80,7 +81,7 @@ class Room:
         if covered[best] > MOST_COVERED:
             return None
         self.boxes.append(found[best][1])
-        return Placed(text, found[best][1])
+        return PlacedLabel(text, found[best][1])
 
     @staticmethod
     def _around(at: Point, wide: float, high: float) -> Box:
@@ -111,6 +112,15 @@ class Room:
         near = near[((near > low) & (near < high)).all(axis=1)]
         inside = (near > boxes[:, None, :2]) & (near < boxes[:, None, 2:])
         return np.asarray(inside.all(axis=2).sum(axis=1), dtype=float)
+
+
+def columns(text: str) -> int:
+    """Width of a text in letters; those of East Asian scripts are twice as wide.
+
+    >>> columns("mast"), columns("桁")
+    (4, 2)
+    """
+    return sum(2 if east_asian_width(letter) in "WF" else 1 for letter in text)
 
 
 def overlap(a: Box, b: Box) -> bool:

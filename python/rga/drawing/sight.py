@@ -16,7 +16,7 @@ Direction = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Sight:
+class View:
     """A view of a structure.
 
     Attributes:
@@ -46,7 +46,7 @@ class Sight:
         return np.asarray(points @ np.array([self.right, self.up]).T)
 
 
-def sights(scene: Scene) -> list[Sight]:
+def sights(scene: Scene) -> list[View]:
     """The views of a drawing: one of a plane structure, else an axonometry and elevations."""
     if scene.normal is not None:
         return [_in_plane(scene, scene.normal)]
@@ -59,12 +59,12 @@ def sights(scene: Scene) -> list[Sight]:
     return [axonometry(scene), *high, _sides(scene)[-1]]
 
 
-def _rises(scene: Scene, sight: Sight) -> bool:
+def _rises(scene: Scene, sight: View) -> bool:
     wide, high = np.ptp(sight.flat(scene.points[sight.nodes]), axis=0)
     return bool(high > LOW * wide)
 
 
-def axonometry(scene: Scene) -> Sight:
+def axonometry(scene: Scene) -> View:
     """A view from the side and above, along which no lines of a usual structure fall together."""
     spread = np.ptp(scene.points, axis=0)
     # The longer side runs to the right.
@@ -74,14 +74,14 @@ def axonometry(scene: Scene) -> Sight:
     return _whole(scene, "axonometry", (cos, sin, 0.0), (-sin * low, cos * low, high))
 
 
-def _in_plane(scene: Scene, normal: FloatArray) -> Sight:
+def _in_plane(scene: Scene, normal: FloatArray) -> View:
     across = int(np.argmax(normal))
     right, up = ((1, 2), (0, 2), (0, 1))[across]
     title = "plan" if across == 2 else "elevation"
     return _whole(scene, title, _axis(right), _axis(up))
 
 
-def _sides(scene: Scene) -> list[Sight]:
+def _sides(scene: Scene) -> list[View]:
     spread = np.ptp(scene.points, axis=0)
     long = 0 if spread[0] >= spread[1] else 1
     return [
@@ -95,12 +95,12 @@ def _axis(number: int) -> Direction:
     return (float(number == 0), float(number == 1), float(number == 2))
 
 
-def _whole(scene: Scene, title: str, right: Direction, up: Direction) -> Sight:
-    return Sight(title, right, up, np.arange(len(scene.points)), np.arange(len(scene.ends)))
+def _whole(scene: Scene, title: str, right: Direction, up: Direction) -> View:
+    return View(title, right, up, np.arange(len(scene.points)), np.arange(len(scene.ends)))
 
 
-def _of(scene: Scene, view: Projection) -> Sight:
+def _of(scene: Scene, view: Projection) -> View:
     nodes = np.array(sorted(scene.nodes[name] for name in view.nodes), dtype=np.int64)
     members = np.array([scene.members[name] for name in view.members], dtype=np.int64)
     right, up = view.axes
-    return Sight(view.title, _axis(right), _axis(up), nodes, members)
+    return View(view.title, _axis(right), _axis(up), nodes, members)

@@ -182,7 +182,10 @@ class Plan(PlanPart):
         from rga.drawing.charts import plot_pairs
 
         return plot_pairs(
-            [f"{pair.one} | {pair.other}" for pair in self.separations],
+            [
+                " | ".join(words.partition(":")[0] for words in (pair.one, pair.other))
+                for pair in self.separations
+            ],
             [pair.d_perp_at_best for pair in self.separations],
             [pair.d_perp for pair in self.separations],
             ("with all that was thought of", "with the plan"),

@@ -36,7 +36,8 @@ const pen = {
   },
   stroke(path) { this.add("line", this.strokeStyle, (path || this.trace).parts); },
   fill(path) { this.add("area", this.fillStyle, (path || this.trace).parts); },
-  fillRect() { drawn = []; this.add("paper", this.fillStyle, []); },
+  clearRect() { drawn = []; },
+  fillRect(x, y, w, h) { this.add("area", this.fillStyle, [[[x, y], [x + w, y + h]]]); },
   fillText(text, x, y) {
     this.add("text", this.fillStyle, [[[x, y]]]);
     drawn.at(-1).text = text;

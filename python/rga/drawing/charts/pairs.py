@@ -4,10 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
 from numpy.typing import ArrayLike
 
 from rga.drawing.charts.axes import axes_or_new
 from rga.drawing.figure_style import AFTER, BEFORE, STEEL, label, style
+from rga.quantities import short
 
 #: names of things, and how many are drawn
 LONGEST, MOST = 60, 60
@@ -44,6 +46,9 @@ def plot_pairs(
             ax.plot(values, rows, "o", color=colour, markersize=4.5, label=word)
         if log:
             ax.set_xscale("log")
+            ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            ax.xaxis.set_major_formatter(lambda value, _: short(value))
+            ax.xaxis.set_minor_formatter(NullFormatter())
         ax.set_yticks(rows, [label(name, LONGEST) for name in shown])
         ax.set_ylim(len(shown) - 0.5, -0.5)
         ax.set_xlabel(axis)

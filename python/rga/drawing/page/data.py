@@ -57,6 +57,11 @@ def page_data(content: Content, response: Content | None) -> dict[str, Any]:
              "turns": one.turns}
             for one in content.springs
         ],
+        "ties": [[scene.nodes[node] for node in tie.nodes] for tie in scene.model.ties],
+        "masses": [
+            {"node": scene.nodes[one.node], "words": f"mass {name}\n{one.mass:g} kg"}
+            for name, one in scene.model.masses.items()
+        ],
         "sensors": [
             {
                 "name": mark.name,
@@ -134,13 +139,18 @@ def _response(content: Content) -> dict[str, Any]:
     assert content.diagram is not None
     return {
         "words": state_words(content),
-        "deformed": _deformed(content.deformed),
+        "deformed": _deformed(content.scene, content.deformed),
         "diagram": _diagram(content.diagram),
     }
 
 
-def _deformed(shape: Deformed) -> dict[str, Any]:
-    return {"scale": shape.scale, "curves": _numbers(shape.curves)}
+def _deformed(scene: Scene, shape: Deformed) -> dict[str, Any]:
+    # A bar stays straight: its ends say all.
+    curves = [
+        _numbers(curve if bends else curve[[0, -1]])
+        for curve, bends in zip(shape.curves, scene.frame, strict=True)
+    ]
+    return {"scale": shape.scale, "curves": curves}
 
 
 def _diagram(diagram: Diagram) -> dict[str, Any]:

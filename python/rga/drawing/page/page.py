@@ -8,7 +8,7 @@ from importlib.resources import files
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from rga.drawing.content import Content, Shown, gather
+from rga.drawing.content import Content, Selection, gather
 from rga.drawing.page.data import page_data
 from rga.drawing.scene.scene import MOST_NAMED
 from rga.errors import UnstableStructureError
@@ -20,7 +20,7 @@ SCRIPTS = ("paint.js", "camera.js", "view.js", "hand.js", "switches.js")
 ESCAPES = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 
-def page(model: Model, shown: Shown) -> str:
+def page(model: Model, shown: Selection) -> str:
     """A page that shows a model from all sides.
 
     It holds the loads, the sensors, the deformed shape and axial forces; what was asked for is

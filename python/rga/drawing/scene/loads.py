@@ -156,19 +156,21 @@ def _at(
 def _summed(scene: Scene, name: str, loads: list[Load], at: str) -> LoadMark:
     """The sum of the patterns of a load."""
     total = np.zeros((len(scene.points), 6))
-    along = []
+    spread: dict[tuple[int, float, float], FloatArray] = {}
     for load in loads:
         coefficient = float(load.coefficient[0])
         for node, force in load.forces.items():
             if node < len(total):
                 total[node] += coefficient * force
-        for member, axis, start, end, first, last in load.spread:
-            direction = coefficient * scene.axes[member, axis]
-            length = float(np.linalg.norm(np.diff(scene.points[scene.ends[member]], axis=0)))
-            stretch = (start / length, end / length)
-            forces = np.array([first * direction, last * direction])
-            if np.any(forces):
-                along.append(AlongMember(member, stretch, forces))
+        for member, axis, start, end, *values in load.spread:
+            forces = np.outer(values, coefficient * scene.axes[member, axis])
+            place = member, start, end
+            spread[place] = spread.get(place, np.zeros((2, 3))) + forces
+    along = []
+    for (member, start, end), forces in spread.items():
+        length = float(np.linalg.norm(np.diff(scene.points[scene.ends[member]], axis=0)))
+        if np.any(forces):
+            along.append(AlongMember(member, (start / length, end / length), forces))
     # A force at a point of a member stands among those along members, without a length.
     at_points = [one for one in along if one.places[0] == one.places[1]]
     places = [scene.along(one.member, one.places[0]) for one in at_points]

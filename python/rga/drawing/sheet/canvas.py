@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from rga.arrays import FloatArray
 from rga.drawing.labels import Point, Room
 from rga.drawing.palette import Palette
-from rga.drawing.sight import Sight
+from rga.drawing.sight import View
 
 #: points along lines that labels avoid [inch]
 SAMPLE = 0.05
@@ -34,7 +34,7 @@ class Canvas:
     """
 
     axes: Axes
-    sight: Sight
+    sight: View
     unit: float
     palette: Palette
     room: Room = field(default_factory=Room)
@@ -101,7 +101,7 @@ class Canvas:
 
 
 def canvas_in(
-    axes: Axes, sight: Sight, points: FloatArray, margin: float, palette: Palette
+    axes: Axes, sight: View, points: FloatArray, margin: float, palette: Palette
 ) -> Canvas:
     """Axes set to the largest scale at which a view and the symbols around it fit.
 

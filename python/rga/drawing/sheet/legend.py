@@ -49,6 +49,8 @@ def entries(content: Content, palette: Palette) -> list[Line2D | Patch]:
         for kind, marker in MARKERS.items()
         if kind in kinds
     ]  # fmt: skip
+    if scene.model.masses:
+        found.append(Line2D([], [], ls="", marker="s", color=palette.ink, label="mass"))
     for number, mark in enumerate(content.loads[:MOST_LOADS]):
         colour = palette.loads[number % len(palette.loads)]
         found.append(

@@ -2,10 +2,10 @@
 
 import io
 import textwrap
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from rga.drawing.content import Content
@@ -14,7 +14,7 @@ from rga.drawing.labels import LETTER
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.canvas import FOOT
 from rga.drawing.sheet.view import draw_view, margin_of, palette_of, seen
-from rga.drawing.sight import Sight, sights
+from rga.drawing.sight import View, sights
 
 #: inches
 WIDTH, TITLE, SUBTITLE, PANEL_TITLE, GAP = 10.0, 0.42, 0.16, 0.22, 0.12
@@ -29,61 +29,78 @@ DPI = 150
 class Panel:
     """A view on the sheet: left, top, width and height [inch] from the upper left corner."""
 
-    sight: Sight
+    sight: View
     left: float
     top: float
     wide: float
     high: float
 
 
-def sheet(content: Content, width: float = WIDTH) -> Figure:
+def sheet(
+    content: Content,
+    width: float = WIDTH,
+    shown: Sequence[View] | None = None,
+    figure: Callable[..., Figure] = Figure,
+) -> Figure:
     """The drawing as a figure of matplotlib.
 
     Args:
         content: what is shown.
         width: of the sheet [inch]; 3.75 suits a phone.
+        shown: the views; None: all of the structure.
+        figure: makes the figure.
     """
     palette = palette_of(content)
     found = legend.entries(content, palette)
-    words = textwrap.wrap(legend.state_words(content), max(int((width - 0.4) / LETTER), 20))
+    words = textwrap.wrap(legend.state_words(content), letters(width - 0.4))
     head = TITLE + SUBTITLE * len(words)
-    panels, bottom = _panels(content, sights(content.scene), width, head)
+    panels, bottom = _panels(content, shown or sights(content.scene), width, head)
     columns = legend.columns(found, width - 0.3) if found else 1
     rows = -(-len(found) // columns)
     high = bottom + 0.1 + legend.LINE * rows + 0.1
-    figure = Figure(figsize=(width, high), facecolor=palette.paper, dpi=100)
-    figure.set_canvas(FigureCanvasAgg(figure))
-    name = label(content.scene.model.name, max(int((width - 0.4) / LETTER / 1.7), 8))
-    figure.text(
+    drawn = figure(figsize=(width, high), facecolor=palette.paper, dpi=100)
+    name = label(content.scene.model.name, letters((width - 0.4) / 1.7))
+    drawn.text(
         0.2 / width, 1 - 0.1 / high, name, fontsize=11, weight="bold", va="top", color=palette.ink
     )
     for number, line in enumerate(words):
         y = 1 - (TITLE - 0.08 + SUBTITLE * number) / high
-        figure.text(0.2 / width, y, line, fontsize=7.5, va="top", color=palette.steel)
+        drawn.text(0.2 / width, y, line, fontsize=7.5, va="top", color=palette.steel)
     for panel in panels:
         if len(panels) > 1:
-            figure.text(
+            drawn.text(
                 panel.left / width, 1 - panel.top / high, panel.sight.title, fontsize=8,
                 va="top", color=palette.steel,
             )  # fmt: skip
-        axes = figure.add_axes(
+        axes = drawn.add_axes(
             (
                 panel.left / width, 1 - (panel.top + PANEL_TITLE + panel.high) / high,
                 panel.wide / width, panel.high / high,
             )
         )  # fmt: skip
-        draw_view(axes, content, panel.sight)
+        missed = draw_view(axes, content, panel.sight)
+        if missed:
+            drawn.text(
+                (panel.left + panel.wide) / width, 1 - panel.top / high,
+                f"{missed} name{'s' if missed > 1 else ''} without room", fontsize=7,
+                ha="right", va="top", color=palette.steel,
+            )  # fmt: skip
     if found:
-        figure.legend(
+        drawn.legend(
             handles=found, loc="lower left", ncols=columns, labelcolor=palette.ink,
             bbox_to_anchor=(0.1 / width, 0.02 / high), borderaxespad=0.2, fontsize=7.2,
             labelspacing=0.28, handlelength=1.6,
         )  # fmt: skip
-    return figure
+    return drawn
+
+
+def letters(wide: float) -> int:
+    """How many letters of a text fit into a width [inch]."""
+    return max(int(wide / LETTER), 8)
 
 
 def _panels(
-    content: Content, shown: list[Sight], width: float, top: float
+    content: Content, shown: Sequence[View], width: float, top: float
 ) -> tuple[list[Panel], float]:
     """The views in rows, as many in each as fit; and where they end."""
     whole = width - 0.3
@@ -108,7 +125,7 @@ def _panels(
     return panels, top
 
 
-def _size(content: Content, sight: Sight, widest: float, tallest: float) -> tuple[float, float]:
+def _size(content: Content, sight: View, widest: float, tallest: float) -> tuple[float, float]:
     """Width and height of a view with its symbols [inch], at the largest scale that fits."""
     margin = margin_of(content)
     size = np.ptp(sight.flat(seen(content, sight)), axis=0)

@@ -29,6 +29,8 @@ def curved_points(scene: Scene, shape: Deformed) -> FloatArray:
 def draw_deformed(canvas: Canvas, scene: Scene, shape: Deformed) -> None:
     """The deformed members."""
     curves = canvas.inches(curved_points(scene, shape))
+    chords = np.stack([curves[:, :-1], curves[:, 1:]], axis=2)[canvas.sight.members]
+    canvas.avoid(chords.reshape(-1, 2, 2))
     frame = scene.frame
     for bends, width in ((0, 1.5), (1, 2.2)):
         chosen = [k for k in canvas.sight.members if frame[k] == bends]

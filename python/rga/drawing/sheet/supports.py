@@ -1,10 +1,10 @@
-"""Supports and springs as engineers draw them."""
+"""Supports as engineers draw them."""
 
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.drawing.scene.scene import Scene
-from rga.drawing.scene.supports import SpringMark, SupportMark
+from rga.drawing.scene.supports import SupportMark
 from rga.drawing.sheet.canvas import Canvas
 
 #: height and half width of a triangle, half length of the ground [inch]
@@ -35,30 +35,6 @@ def draw_supports(canvas: Canvas, marks: list[SupportMark], scene: Scene) -> Non
         else:
             for direction in held:
                 _link(canvas, at, direction if direction[1] <= 0 else -direction)
-
-
-def draw_springs(canvas: Canvas, marks: list[SpringMark], scene: Scene) -> None:
-    """Zigzags along springs; a spiral where a turn is resisted."""
-    shown = set(canvas.sight.nodes.tolist())
-    places = canvas.inches(scene.points)
-    for mark in marks:
-        if mark.node not in shown:
-            continue
-        at = places[mark.node]
-        if mark.turns:
-            _spiral(canvas, at)
-        elif mark.to is not None and np.linalg.norm(places[mark.to] - at) > 2 * HIGH:
-            canvas.lines([_zigzag(at, places[mark.to])], canvas.palette.ink, 0.9, zorder=5)
-        else:
-            towards = canvas.direction(mark.direction)
-            if np.linalg.norm(towards) < SEEN:
-                continue
-            towards = towards / np.linalg.norm(towards)
-            towards = towards if towards[1] < -1e-9 or towards[0] < 0 else -towards
-            end = at + 0.3 * towards
-            canvas.lines([_zigzag(at, end)], canvas.palette.ink, 0.9, zorder=5)
-            if mark.to is None:
-                _ground(canvas, end, towards)
 
 
 def _in_paper(canvas: Canvas, at: FloatArray, held: list[FloatArray], mark: SupportMark) -> None:
@@ -100,12 +76,13 @@ def _snapped(direction: FloatArray) -> FloatArray:
     return -DOWN
 
 
-def _turned(along: FloatArray) -> FloatArray:
+def turned(along: FloatArray) -> FloatArray:
+    """A direction turned by a right angle, float[2]."""
     return np.array([-along[1], along[0]])
 
 
 def _triangle(canvas: Canvas, at: FloatArray, along: FloatArray, rollers: bool = False) -> None:
-    across = _turned(along)
+    across = turned(along)
     base = at + HIGH * along
     corners = np.array([at, base + HALF * across, base - HALF * across])
     canvas.areas([corners], canvas.palette.paper, canvas.palette.ink, 0.9, zorder=3)
@@ -116,12 +93,12 @@ def _triangle(canvas: Canvas, at: FloatArray, along: FloatArray, rollers: bool =
             mec=canvas.palette.ink, mew=0.7, zorder=3,
         )  # fmt: skip
         base = base + 0.054 * along
-    _ground(canvas, base, along)
+    draw_ground(canvas, base, along)
     canvas.keep_clear(at + 0.12 * along, 0.13)
 
 
 def _wall(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
-    across = _turned(along)
+    across = turned(along)
     base = at + 0.02 * along
     canvas.lines(
         [np.array([base - GROUND * across, base + GROUND * across])], canvas.palette.ink, 2.0,
@@ -132,7 +109,7 @@ def _wall(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
 
 
 def _sliding_wall(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
-    across = _turned(along)
+    across = turned(along)
     half = 0.8 * GROUND * across
     plate = at + 0.02 * along
     canvas.lines([np.array([plate - half, plate + half])], canvas.palette.ink, 2.0, zorder=3)
@@ -141,18 +118,19 @@ def _sliding_wall(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
         *(wheels * canvas.unit).T, "o", markersize=2.6, mfc=canvas.palette.paper,
         mec=canvas.palette.ink, mew=0.7, zorder=3,
     )  # fmt: skip
-    _ground(canvas, at + 0.09 * along, along)
+    draw_ground(canvas, at + 0.09 * along, along)
 
 
-def _ground(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
-    across = _turned(along)
+def draw_ground(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
+    """The ground under what stands on it, at a point [inch]."""
+    across = turned(along)
     ends = np.array([at - GROUND * across, at + GROUND * across])
     canvas.lines([ends], canvas.palette.ink, 0.9, zorder=3)
     _hatch(canvas, at, along)
 
 
 def _hatch(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
-    across = _turned(along)
+    across = turned(along)
     starts = [at + k * GROUND * across for k in (-0.75, -0.25, 0.25, 0.75)]
     ticks = [np.array([one, one + 0.045 * along - 0.04 * across]) for one in starts]
     canvas.lines(ticks, canvas.palette.ink, 0.6, zorder=3)
@@ -161,22 +139,7 @@ def _hatch(canvas: Canvas, at: FloatArray, along: FloatArray) -> None:
 def _link(canvas: Canvas, at: FloatArray, direction: FloatArray) -> None:
     along = direction / np.linalg.norm(direction)
     end = at + 0.17 * direction
-    half = 0.06 * _turned(along)
+    half = 0.06 * turned(along)
     bar, foot = np.array([at, end]), np.array([end - half, end + half])
     canvas.lines([bar, foot], canvas.palette.ink, 1.2, zorder=3)
     canvas.keep_clear(at + 0.1 * along, 0.05)
-
-
-def _zigzag(first: FloatArray, last: FloatArray) -> FloatArray:
-    along = last - first
-    across = 0.045 * _turned(along / np.linalg.norm(along))
-    shares = np.array([0.0, 0.2, 0.27, 0.4, 0.53, 0.66, 0.73, 0.8, 1.0])
-    sides = np.array([0, 0, 1, -1, 1, -1, 1, 0, 0])
-    return np.asarray(first + shares[:, None] * along + sides[:, None] * across)
-
-
-def _spiral(canvas: Canvas, at: FloatArray) -> None:
-    turn = np.linspace(0.0, 4.5 * np.pi, 60)
-    reach = 0.03 + 0.09 * turn / turn[-1]
-    curve = at + reach[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
-    canvas.lines([curve], canvas.palette.ink, 0.9, zorder=5)

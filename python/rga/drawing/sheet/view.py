@@ -11,9 +11,10 @@ from rga.drawing.sheet.loads import draw_loads
 from rga.drawing.sheet.members import draw_local_axes, draw_members
 from rga.drawing.sheet.names import draw_names
 from rga.drawing.sheet.sensors import draw_sensors
+from rga.drawing.sheet.springs import draw_masses, draw_springs, draw_ties
 from rga.drawing.sheet.states import curved_points, draw_deformed, draw_diagram
-from rga.drawing.sheet.supports import draw_springs, draw_supports
-from rga.drawing.sight import Sight
+from rga.drawing.sheet.supports import draw_supports
+from rga.drawing.sight import View
 from rga.quantities import short
 
 #: around the members: supports; more for arrows and sensors, and for names [inch]
@@ -31,7 +32,7 @@ def margin_of(content: Content) -> float:
     return MARGIN + FOR_ARROWS * arrows + FOR_NAMES * bool(content.shown.names)
 
 
-def seen(content: Content, sight: Sight) -> FloatArray:
+def seen(content: Content, sight: View) -> FloatArray:
     """Points that a view must hold, float[k, 3] [m]."""
     scene = content.scene
     parts = [scene.points[sight.nodes]]
@@ -40,7 +41,7 @@ def seen(content: Content, sight: Sight) -> FloatArray:
     return np.vstack(parts)
 
 
-def draw_view(axes: Axes, content: Content, sight: Sight) -> int:
+def draw_view(axes: Axes, content: Content, sight: View) -> int:
     """Draw one view into axes, as large as they are.
 
     Returns:
@@ -53,6 +54,8 @@ def draw_view(axes: Axes, content: Content, sight: Sight) -> int:
     draw_members(canvas, scene, faint=state)
     draw_supports(canvas, content.supports, scene)
     draw_springs(canvas, content.springs, scene)
+    draw_ties(canvas, scene)
+    draw_masses(canvas, scene)
     if content.diagram is not None:
         draw_diagram(canvas, scene, content.diagram)
     if content.deformed is not None:

@@ -17,6 +17,7 @@ function draw() {
   document.documentElement.classList.toggle("dark", shown.dark);
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.fillStyle = colours.paper;
+  pen.clearRect(0, 0, wide, tall);
   pen.fillRect(0, 0, wide, tall);
   pen.font = "12px system-ui, sans-serif";
   pen.lineCap = pen.lineJoin = "round";
@@ -24,6 +25,7 @@ function draw() {
   targets = [];
   if (shown.supports) drawSupports(places, colours);
   drawMembers(places, colours);
+  drawJoined(places, colours);
   if (shown.forces) drawForces(places, colours);
   if (shown.deformed) drawDeformed(places, colours);
   if (shown.axes) drawAxes(places, colours);
@@ -109,6 +111,22 @@ function drawSupports(places, colours) {
   }
 }
 
+function drawJoined(places, colours) {
+  pen.strokeStyle = pen.fillStyle = colours.ink;
+  pen.lineWidth = 1.2;
+  pen.setLineDash([1, 4]);
+  for (const pair of model.ties) {
+    polyline(pen, pair.map(node => places[node]));
+    pen.stroke();
+  }
+  pen.setLineDash([]);
+  for (const one of model.masses) {
+    const [x, y] = places[one.node];
+    pen.fillRect(x - 4.5, y - 4.5, 9, 9);
+    targets.push({kind: 0, a: [x, y], words: () => one.words});
+  }
+}
+
 // A point of a member between its ends, and how the deformed shape moves it.
 function along(k, share) {
   const [a, b] = members.ends[k].map(node => model.points[node]);
@@ -119,8 +137,8 @@ function drawDeformed(places, colours) {
   const path = new Path2D(), curves = response.deformed.curves;
   curves.forEach((curve, k) => {
     if (!visible(k)) return;
-    const last = curve.length - 1, step = members.frame[k] ? 1 : last;
-    for (let s = 0; s <= last; s += step) {
+    const last = curve.length - 1;
+    for (let s = 0; s <= last; s++) {
       const point = along(k, s / last).map((value, axis) => value + shown.scale * curve[s][axis]);
       if (s) path.lineTo(...seen(point));
       else path.moveTo(...seen(point));
