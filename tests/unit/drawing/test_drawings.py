@@ -113,7 +113,7 @@ class TestSheets:
         self, beam: Callable[..., Model], tmp_path: Path, dark: bool
     ) -> None:
         path = rga.draw(beam(), tmp_path / "beam.png", dark=dark)
-        image = matplotlib.image.imread(path)  # type: ignore[attr-defined]
+        image = matplotlib.image.imread(path)
         assert (image[0, 0, :3].mean() < 0.2) == dark
         assert struct.unpack(">I", path.read_bytes()[16:20]) == (1500,)
 
@@ -163,7 +163,8 @@ class TestAxes:
         from matplotlib import pyplot
 
         axes = bridge().plot(view="plan")
-        assert axes.figure.get_figwidth() == 9.0
+        assert pyplot.gcf() is axes.figure
+        assert pyplot.gcf().get_figwidth() == 9.0
         with pytest.raises(InputError, match=r"no view 'inside'.*'axonometry'"):
             bridge().plot(view="inside")
         pyplot.close("all")

@@ -69,6 +69,7 @@ function fitted() {
 }
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const turned = vector => [dot(basis[0], vector), -dot(basis[1], vector)];
 
 function seen(point) {

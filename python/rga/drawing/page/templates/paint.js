@@ -19,6 +19,19 @@ function arrow(pen, tail, head, colour) {
   pen.fill();
 }
 
+// A turn about what points to the reader, against the clock where it is positive.
+function turnAbout(pen, [x, y], size, colour) {
+  const curve = Array.from({length: 25}, (_, k) => {
+    const turn = (-140 + 250 * k / 24) * Math.PI / 180 * Math.sign(size);
+    return [x + 15 * Math.cos(turn), y - 15 * Math.sin(turn)];
+  });
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.6;
+  polyline(pen, curve.slice(0, -2));
+  pen.stroke();
+  arrow(pen, curve.at(-4), curve.at(-1), colour);
+}
+
 // The ground under a support: a line with hatches below it.
 function ground(pen, x, y) {
   polyline(pen, [[x - 13, y], [x + 13, y]]);

@@ -224,6 +224,10 @@ function drawLoad(load, places, colour) {
   });
   load.turned.forEach((point, k) => {
     const head = seen(point), moment = load.moments[k], tail = from(head, moment, REACH);
+    if (Math.hypot(...turned(moment)) < 0.5 * Math.hypot(...moment)) {
+      turnAbout(pen, head, dot(moment, cross(...basis)), colour);
+      return;
+    }
     arrow(pen, tail, head, colour);
     arrow(pen, tail, from(head, moment, 8), colour);
   });
