@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rga.lazy import opening
 
 if TYPE_CHECKING:
+    from rga.building import ModelBuilder
     from rga.diagnosis import diagnose
     from rga.drawing import draw, plot_model
     from rga.drawing.charts import plot_findings, plot_record
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, load_record
-    from rga.simulation import Simulator
+    from rga.simulation import Results, Simulator, results
     from rga.twin import Twin
 
 __version__ = version("rga")
@@ -30,8 +31,10 @@ _HOMES = {
     "Effect": "rga.model",
     "Findings": "rga.findings",
     "Model": "rga.model",
+    "ModelBuilder": "rga.building",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
+    "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
@@ -45,6 +48,7 @@ _HOMES = {
     "plot_findings": "rga.drawing.charts",
     "plot_model": "rga.drawing",
     "plot_record": "rga.drawing.charts",
+    "results": "rga.simulation",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
 }
@@ -54,8 +58,10 @@ __all__ = [
     "Effect",
     "Findings",
     "Model",
+    "ModelBuilder",
     "Plan",
     "Record",
+    "Results",
     "Simulator",
     "Twin",
     "__version__",
@@ -70,6 +76,7 @@ __all__ = [
     "plot_findings",
     "plot_model",
     "plot_record",
+    "results",
     "run",
     "write_findings",
 ]
