@@ -46,7 +46,8 @@ Scale = Annotated[
     typer.Option("--scale", metavar="TIMES", help="By which displacements are enlarged."),
 ]
 Forces = Annotated[
-    Literal["N"] | None, typer.Option("--forces", help="The diagram of a section force.")
+    Literal["N", "V", "M", "T", "Vy", "Vz", "My", "Mz"] | None,
+    typer.Option("--forces", help="The diagram of a section force; V and M are in the plane."),
 ]
 LocalAxes = Annotated[bool, typer.Option("--axes", help="Local axes of the members.")]
 Sensors = Annotated[

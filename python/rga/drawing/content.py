@@ -10,13 +10,11 @@ from rga.drawing.scene.loads import LoadMark, load_marks
 from rga.drawing.scene.scene import Scene, make_scene
 from rga.drawing.scene.sensors import SensorMark, sensor_marks
 from rga.drawing.scene.supports import SpringMark, SupportMark, spring_marks, support_marks
-from rga.drawing.states.contexts import context_words, settled
-from rga.drawing.states.deformed import Deformed, deformed
-from rga.drawing.states.diagrams import Diagram, Quantity, diagrams
-from rga.drawing.states.response import axial_forces, node_displacements
+from rga.drawing.states.contexts import settled
+from rga.drawing.states.diagrams import QUANTITIES, Quantity
+from rga.drawing.states.response import DrawnResponse, drawn_response
 from rga.errors import InputError
 from rga.model.schema import Model
-from rga.simulation import Simulator
 
 #: what may be named
 NAMED = ("nodes", "members", "sensors", "supports")
@@ -47,7 +45,7 @@ class Selection:
         local_axes: of the members.
         deformed: the deformed shape.
         scale: by which displacements are enlarged; None: a round one that shows them.
-        forces: the diagram of a section force.
+        forces: the diagram of a section force, of `QUANTITIES`.
         contexts: at which all this is; those left out stand at mid-range.
         dark: for a dark background.
     """
@@ -67,12 +65,23 @@ class Selection:
             raise InputError(
                 f"{unknown[0]!r} have no names to draw", "names", "choose of " + ", ".join(NAMED)
             )
+        if self.forces not in (None, *QUANTITIES):
+            raise InputError(
+                f"there is no section force {self.forces!r}",
+                "forces",
+                "choose of " + ", ".join(QUANTITIES),
+            )
         if self.scale is not None and not 0 < self.scale < np.inf:
             raise InputError(
                 f"displacements cannot be enlarged by {self.scale:g}",
                 "scale",
                 "give a positive one",
             )
+
+    @property
+    def of_response(self) -> bool:
+        """Whether the structure has to be solved."""
+        return self.deformed or self.forces is not None
 
 
 def asked(options: DrawingOptions) -> Selection:
@@ -101,7 +110,7 @@ class Content:
         scene: the structure.
         shown: what was asked for.
         supports, springs, sensors, loads: their marks.
-        deformed, diagram: None where they were not asked for.
+        response: None where neither a deformed shape nor forces were asked for.
     """
 
     scene: Scene
@@ -110,32 +119,26 @@ class Content:
     springs: list[SpringMark]
     sensors: list[SensorMark]
     loads: list[LoadMark]
-    deformed: Deformed | None
-    diagram: Diagram | None
+    response: DrawnResponse | None
 
 
 def gather(model: Model, shown: Selection) -> Content:
     """Work out what a drawing shows.
 
     Raises:
-        InputError: nothing to draw; an unknown load or context; a quantity that is not known.
+        InputError: nothing to draw; an unknown load or context.
         UnstableStructureError: a deformed shape or forces of a structure that can move.
     """
     scene = make_scene(model)
     contexts = settled(model, shown.contexts)
-    state = shown.deformed or shown.forces is not None
-    words = context_words(model, contexts, Simulator(model).needed) if state else ""
-    shape, diagram = None, None
-    if shown.deformed:
-        moved = node_displacements(model, contexts)
-        shape = deformed(scene, moved, words, shown.scale)
-    if shown.forces is not None:
-        diagram = _diagram(scene, shown.forces, contexts, words)
-    with_sensors = not state if shown.sensors is None else shown.sensors
+    response = None
+    if shown.of_response:
+        quantities = [] if shown.forces is None else [shown.forces]
+        response = drawn_response(scene, contexts, quantities, shown.scale, shown.deformed)
+    with_sensors = not shown.of_response if shown.sensors is None else shown.sensors
     chosen = () if shown.loads is None and shown.forces is not None else shown.loads
     # Beside a response stand the loads that bring it about, and no others.
-    at = contexts if state else shown.contexts
-    loads = load_marks(scene, chosen, at)
+    loads = load_marks(scene, chosen, contexts if shown.of_response else shown.contexts)
     return Content(
         scene=scene,
         shown=shown,
@@ -143,17 +146,5 @@ def gather(model: Model, shown: Selection) -> Content:
         springs=spring_marks(scene),
         sensors=sensor_marks(scene, loads) if with_sensors else [],
         loads=loads,
-        deformed=shape,
-        diagram=diagram,
-    )
-
-
-def _diagram(
-    scene: Scene, quantity: Quantity, contexts: Mapping[str, float], words: str
-) -> Diagram:
-    if quantity != "N":
-        raise InputError(f"the section force {quantity!r} cannot be drawn", "forces", "choose N")
-    positions = np.tile([0.0, 0.5, 1.0], (len(scene.ends), 1))
-    return diagrams(
-        scene, quantity, positions, axial_forces(scene.model, contexts, positions), words
+        response=response,
     )

@@ -104,7 +104,7 @@ def plot_model(
         palette = palette_of(content)
         draw_view(ax, content, chosen)
         wide = ax.get_window_extent().width / ax.figure.dpi
-        title = [model.name, *textwrap.wrap(legend.state_words(content), letters(wide))]
+        title = [model.name, *textwrap.wrap(legend.state_words(content.response), letters(wide))]
         ax.set_title("\n".join(label(line, letters(wide)) for line in title), color=palette.ink)
         entries = legend.entries(content, palette)
         if entries:

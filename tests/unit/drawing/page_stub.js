@@ -86,7 +86,7 @@ for (const [what, ...of] of actions) {
     elements.view.fire("pointermove", {clientX: of[0], clientY: of[1], pointerId: 9});
   } else if (what === "switch") {
     const line = every(elements.panel).find(one => one.tag === "label" && one.children.at(-1).textContent === of[0]);
-    line.children[0].checked = !line.children[0].checked;
+    line.children[0].checked = line.children[0].type === "radio" || !line.children[0].checked;
     line.children[0].fire("change");
   } else if (what === "press") {
     every(elements.panel).find(one => one.tag === "button" && one.textContent === of[0]).fire("click");

@@ -82,7 +82,7 @@ class TestScript:
 
     def test_switches_show_and_hide(self, small_bridge: dict[str, Any], tmp_path: Path) -> None:
         model = read_model(small_bridge, "bridge")
-        drawn = shown(model, tmp_path, ["switch", "deformed shape"], ["switch", "forces N"],
+        drawn = shown(model, tmp_path, ["switch", "deformed shape"], ["switch", "N"],
                       ["switch", "dark"])  # fmt: skip
         assert "times as large" in drawn["state"]
         assert "#ff9f45" in colours(drawn)
@@ -100,6 +100,9 @@ class TestScript:
         middle = [(a + b) / 2 for a, b in zip(first, last, strict=True)]
         told = shown(model, tmp_path, ["hover", *middle])["tip"]
         assert told.startswith("member ab\nframe, 3.00\u00a0m")
+        # At mid-range 5 kN at the tip.
+        assert "V = 5 kN\nM = " in told.replace("\N{MINUS SIGN}", "")
+        assert "15 kN m" in told
         assert "node b" in shown(model, tmp_path, ["hover", *last])["tip"]
         assert shown(model, tmp_path, ["hover", 5, 5])["tip"] == ""
 

@@ -1,5 +1,6 @@
 """What the script of the page draws, as JSON."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,14 +12,15 @@ from rga.drawing.scene.loads import LoadMark
 from rga.drawing.scene.scene import Scene
 from rga.drawing.sheet.legend import load_words, state_words
 from rga.drawing.states.deformed import Deformed
-from rga.drawing.states.diagrams import SIGNS, UNITS, Diagram
+from rga.drawing.states.diagrams import SIGNS, Diagram
+from rga.drawing.states.response import DrawnResponse
 from rga.quantities import quantity, scale
 
 #: digits of places and directions, far below what a screen shows
 DIGITS = 6
 
 
-def page_data(content: Content, response: Content | None) -> dict[str, Any]:
+def page_data(content: Content, response: DrawnResponse | None) -> dict[str, Any]:
     """A model as the page takes it.
 
     Args:
@@ -77,7 +79,7 @@ def page_data(content: Content, response: Content | None) -> dict[str, Any]:
             for mark in content.sensors
         ],
         "loads": [_load(scene, mark) for mark in content.loads],
-        "response": None if response is None else _response(response),
+        "response": None if response is None else _response(scene, response),
     }  # fmt: skip
 
 
@@ -134,13 +136,19 @@ def _load(scene: Scene, mark: LoadMark) -> dict[str, Any]:
     }
 
 
-def _response(content: Content) -> dict[str, Any]:
-    assert content.deformed is not None
-    assert content.diagram is not None
+def _response(scene: Scene, response: DrawnResponse) -> dict[str, Any]:
+    assert response.deformed is not None
+    shape, at = replace(response, diagrams=()), replace(response, deformed=None)
     return {
-        "words": state_words(content),
-        "deformed": _deformed(content.scene, content.deformed),
-        "diagram": _diagram(content.diagram),
+        "words": state_words(shape),
+        "deformed": _deformed(scene, response.deformed),
+        "diagrams": [
+            {
+                **_diagram(scene, diagram),
+                "words": state_words(replace(at, diagrams=(diagram,))),
+            }
+            for diagram in response.diagrams
+        ],
     }
 
 
@@ -153,15 +161,18 @@ def _deformed(scene: Scene, shape: Deformed) -> dict[str, Any]:
     return {"scale": shape.scale, "curves": curves}
 
 
-def _diagram(diagram: Diagram) -> dict[str, Any]:
-    factor, unit = scale(UNITS[diagram.quantity], diagram.largest)
+def _diagram(scene: Scene, diagram: Diagram) -> dict[str, Any]:
+    factor, unit = scale(diagram.unit, diagram.largest)
+    # Of a bar in which nothing changes along its axis two places say all.
+    even = (scene.frame == 0) & (np.ptp(diagram.values, axis=1) <= 1e-9 * diagram.largest)
+    stations = [slice(None) if not one else [0, -1] for one in even.tolist()]
     return {
         "quantity": diagram.quantity,
         "unit": unit,
         "factor": factor,
         "signs": SIGNS.get(diagram.quantity, ("positive", "negative")),
         "largest": diagram.largest,
-        "positions": _numbers(diagram.positions),
-        "values": _numbers(diagram.values),
+        "positions": [_numbers(row[k]) for row, k in zip(diagram.positions, stations, strict=True)],
+        "values": [_numbers(row[k]) for row, k in zip(diagram.values, stations, strict=True)],
         "sides": _numbers(diagram.sides),
     }

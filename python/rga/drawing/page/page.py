@@ -8,9 +8,12 @@ from importlib.resources import files
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from rga.drawing.content import Content, Selection, gather
+from rga.drawing.content import Selection, gather
 from rga.drawing.page.data import page_data
-from rga.drawing.scene.scene import MOST_NAMED
+from rga.drawing.scene.scene import MOST_NAMED, Scene
+from rga.drawing.states.contexts import settled
+from rga.drawing.states.diagrams import Quantity
+from rga.drawing.states.response import drawn_response
 from rga.errors import UnstableStructureError
 from rga.model.schema import Model
 
@@ -31,27 +34,29 @@ def page(model: Model, shown: Selection) -> str:
         UnstableStructureError: a deformed shape or forces of a structure that can move were
             asked for.
     """
-    content = gather(model, replace(shown, deformed=False, forces=None, sensors=True))
-    asked = shown.deformed or shown.forces is not None
-    fault = ""
-    response: Content | None = None
+    plain = replace(shown, deformed=False, forces=None, sensors=True)
+    content = gather(model, plain)
+    fault, response = "", None
     try:
-        response = gather(
-            model, replace(shown, deformed=True, forces=shown.forces or "N", loads=())
+        response = drawn_response(
+            content.scene,
+            settled(model, shown.contexts),
+            _quantities(content.scene, shown.forces),
+            shown.scale,
         )
     except UnstableStructureError as error:
-        if asked:
+        if shown.of_response:
             raise
         fault = str(error)
     data = page_data(content, response)
     data["start"] = {
         "dark": shown.dark,
         "names": sorted(shown.names) if len(model.members) <= MOST_NAMED else [],
-        "sensors": not asked if shown.sensors is None else shown.sensors,
-        "loads": not asked or shown.loads is not None,
+        "sensors": not shown.of_response if shown.sensors is None else shown.sensors,
+        "loads": not shown.of_response or shown.loads is not None,
         "axes": shown.local_axes,
         "deformed": shown.deformed,
-        "forces": shown.forces is not None,
+        "forces": shown.forces or "",
     }
     environment = Environment(
         loader=PackageLoader("rga.drawing.page"), autoescape=True, undefined=StrictUndefined
@@ -65,6 +70,14 @@ def page(model: Model, shown: Selection) -> str:
         style=Markup((folder / "view.css").read_text(encoding="utf-8")),
         scripts=[Markup((folder / name).read_text(encoding="utf-8")) for name in SCRIPTS],
     )
+
+
+def _quantities(scene: Scene, asked: Quantity | None) -> list[Quantity]:
+    """Section forces that the page can show: of bars N alone."""
+    plane: list[Quantity] = ["N", "V", "M"]
+    space: list[Quantity] = ["N", "Vy", "Vz", "T", "My", "Mz"]
+    found = (space if scene.model.plane is None else plane) if scene.frame.any() else ["N"]
+    return [*found, *([asked] if asked is not None and asked not in found else [])]
 
 
 def _facts(model: Model) -> str:

@@ -9,7 +9,8 @@ from rga.drawing.labels import LETTER
 from rga.drawing.palette import Palette, group_look
 from rga.drawing.scene.loads import LoadMark
 from rga.drawing.sheet.sensors import MARKERS
-from rga.drawing.states.diagrams import SIGNS, UNITS, WORDS
+from rga.drawing.states.diagrams import SIGNS, WORDS
+from rga.drawing.states.response import DrawnResponse
 from rga.quantities import quantity, scale
 
 #: groups and loads that are named
@@ -23,8 +24,8 @@ def entries(content: Content, palette: Palette) -> list[Line2D | Patch]:
     """Groups, sensors by kind, loads, and what is drawn of the response."""
     found: list[Line2D | Patch] = []
     scene = content.scene
-    plain = content.deformed is not None or content.diagram is not None
-    if not plain:
+    response = content.response
+    if response is None:
         for number, name in enumerate(scene.groups[:MOST_GROUPS]):
             colour, dashes = group_look(palette, number)
             line = Line2D([], [], color=colour, lw=2.2, label=label(name, LONGEST))
@@ -34,10 +35,10 @@ def entries(content: Content, palette: Palette) -> list[Line2D | Patch]:
             found.append(Line2D([], [], lw=0, label=f"and {left} more groups"))
         if scene.groups and (scene.group < 0).any():
             found.append(Line2D([], [], color=palette.steel, lw=2.2, label="in no group"))
-    if content.deformed is not None:
+    elif response.deformed is not None:
         found.append(Line2D([], [], color=palette.deformed, lw=2.2, label="deformed"))
-    if content.diagram is not None:
-        signs = SIGNS.get(content.diagram.quantity, ("positive", "negative"))
+    for diagram in response.diagrams if response is not None else ():
+        signs = SIGNS.get(diagram.quantity, ("positive", "negative"))
         for colour, word in zip((palette.positive, palette.negative), signs, strict=True):
             found.append(Patch(fc=colour, ec=colour, alpha=0.45, label=word))
     kinds = {mark.kind for mark in content.sensors}
@@ -74,22 +75,18 @@ def columns(found: list[Line2D | Patch], wide: float) -> int:
     return max(1, min(int(wide / (BEFORE + LETTER * 1.15 * longest)), len(found), 5))
 
 
-def state_words(content: Content) -> str:
+def state_words(response: DrawnResponse | None) -> str:
     """Displacements and forces in a sentence; empty where neither is drawn."""
+    if response is None:
+        return ""
     said = []
-    at = ""
-    if (shape := content.deformed) is not None:
+    if (shape := response.deformed) is not None:
         times = f"displacements {shape.scale:g} times as large"
         most = f"largest {quantity(shape.largest, 'm')} at {label(shape.at)}"
         said.append(f"{times}, {most}" if shape.largest > 0 else "nothing moves")
-        at = shape.contexts
-    if (diagram := content.diagram) is not None:
-        unit = UNITS[diagram.quantity]
-        _, written = scale(unit, diagram.largest)
-        most = quantity(diagram.largest, unit)
+    for diagram in response.diagrams:
+        _, written = scale(diagram.unit, diagram.largest)
+        most = quantity(diagram.largest, diagram.unit)
         said.append(f"{WORDS[diagram.quantity]}, written in {written}, at most {most}")
-        at = diagram.contexts
-    if not said:
-        return ""
     words = "; ".join(said)
-    return f"{words}; at {at}" if at else words
+    return f"{words}; at {response.contexts}" if response.contexts else words

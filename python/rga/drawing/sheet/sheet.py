@@ -52,7 +52,7 @@ def sheet(
     """
     palette = palette_of(content)
     found = legend.entries(content, palette)
-    words = textwrap.wrap(legend.state_words(content), letters(width - 0.4))
+    words = textwrap.wrap(legend.state_words(content.response), letters(width - 0.4))
     head = TITLE + SUBTITLE * len(words)
     panels, bottom = _panels(content, shown or sights(content.scene), width, head)
     columns = legend.columns(found, width - 0.3) if found else 1

@@ -8,7 +8,7 @@ from rga.arrays import FloatArray
 from rga.drawing.scene.scene import Scene
 from rga.drawing.sheet.canvas import Canvas
 from rga.drawing.states.deformed import Deformed
-from rga.drawing.states.diagrams import UNITS, Diagram
+from rga.drawing.states.diagrams import Diagram
 from rga.quantities import scale, short
 
 #: the largest value of a diagram, and half of an axial force's, which stands on both sides [inch]
@@ -41,7 +41,7 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> None:
     """Values across the members, and the largest of them written."""
     if diagram.largest == 0:
         return
-    factor, _ = scale(UNITS[diagram.quantity], diagram.largest)
+    factor, _ = scale(diagram.unit, diagram.largest)
     both = diagram.quantity == "N"
     reach = (HALF if both else REACH) / diagram.largest
     bases = canvas.inches(scene.points)[scene.ends]

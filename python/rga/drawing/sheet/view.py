@@ -28,7 +28,8 @@ def palette_of(content: Content) -> Palette:
 
 def margin_of(content: Content) -> float:
     """Room for symbols around the members of a view [inch]."""
-    arrows = bool(content.loads or content.sensors or content.diagram)
+    forces = content.shown.forces is not None
+    arrows = bool(content.loads or content.sensors or forces)
     return MARGIN + FOR_ARROWS * arrows + FOR_NAMES * bool(content.shown.names)
 
 
@@ -36,8 +37,9 @@ def seen(content: Content, sight: View) -> FloatArray:
     """Points that a view must hold, float[k, 3] [m]."""
     scene = content.scene
     parts = [scene.points[sight.nodes]]
-    if content.deformed is not None:
-        parts.append(curved_points(scene, content.deformed)[sight.members].reshape(-1, 3))
+    response = content.response
+    if response is not None and response.deformed is not None:
+        parts.append(curved_points(scene, response.deformed)[sight.members].reshape(-1, 3))
     return np.vstack(parts)
 
 
@@ -50,16 +52,16 @@ def draw_view(axes: Axes, content: Content, sight: View) -> int:
     palette = palette_of(content)
     canvas = canvas_in(axes, sight, seen(content, sight), margin_of(content), palette)
     scene = content.scene
-    state = content.deformed is not None or content.diagram is not None
-    draw_members(canvas, scene, faint=state)
+    draw_members(canvas, scene, faint=content.response is not None)
     draw_supports(canvas, content.supports, scene)
     draw_springs(canvas, content.springs, scene)
     draw_ties(canvas, scene)
     draw_masses(canvas, scene)
-    if content.diagram is not None:
-        draw_diagram(canvas, scene, content.diagram)
-    if content.deformed is not None:
-        draw_deformed(canvas, scene, content.deformed)
+    if content.response is not None:
+        for diagram in content.response.diagrams:
+            draw_diagram(canvas, scene, diagram)
+        if content.response.deformed is not None:
+            draw_deformed(canvas, scene, content.response.deformed)
     draw_loads(canvas, content.loads, scene)
     placed = draw_sensors(canvas, content.sensors)
     if content.shown.local_axes:

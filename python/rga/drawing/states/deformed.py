@@ -24,25 +24,20 @@ class Deformed:
         scale: by which a drawing enlarges them.
         largest: of the nodes' displacements [m].
         at: name of the node where it is.
-        contexts: at which, in words.
     """
 
     curves: FloatArray
     scale: float
     largest: float
     at: str
-    contexts: str
 
 
-def deformed(
-    scene: Scene, displacements: FloatArray, contexts: str, scale: float | None = None
-) -> Deformed:
+def deformed(scene: Scene, displacements: FloatArray, scale: float | None = None) -> Deformed:
     """The shape that displacements of nodes give.
 
     Args:
         scene: the structure.
         displacements: of the nodes, float[nodes, 6] [m, rad].
-        contexts: in words.
         scale: None: a round one, by which the largest displacement is easily seen.
     """
     sizes = np.linalg.norm(displacements[:, :3], axis=1)
@@ -51,7 +46,7 @@ def deformed(
     if scale is None:
         scale = round_scale(SHARE * scene.extent / largest) if largest > 0 else 1.0
     curves = member_curves(scene, displacements)
-    return Deformed(curves, scale, largest, list(scene.nodes)[node], contexts)
+    return Deformed(curves, scale, largest, list(scene.nodes)[node])
 
 
 def round_scale(value: float) -> float:

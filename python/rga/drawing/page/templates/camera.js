@@ -12,7 +12,8 @@ const shown = {
   sensors: start.sensors, supports: true, axes: start.axes,
   groups: model.groups.map(() => true), rest: true,
   loads: model.loads.map(() => start.loads),
-  deformed: start.deformed && !!response, forces: start.forces && !!response,
+  deformed: start.deformed && !!response,
+  forces: response ? response.diagrams.findIndex(one => one.quantity === start.forces) : -1,
   scale: response ? response.deformed.scale : 1,
   dark: start.dark || matchMedia("(prefers-color-scheme: dark)").matches,
 };

@@ -28,9 +28,25 @@ function toggle(parent, text, table, key, colour) {
   element(line, "span", text);
 }
 
+// One of several, or none.
+function choice(parent, texts) {
+  ["none", ...texts].forEach((text, k) => {
+    const line = element(parent, "label"), box = element(line, "input");
+    Object.assign(box, {type: "radio", name: "forces", checked: shown.forces === k - 1});
+    box.addEventListener("change", () => {
+      shown.forces = k - 1;
+      state();
+      frame();
+    });
+    element(line, "span", text);
+  });
+}
+
 function state() {
-  const said = response && (shown.deformed || shown.forces) ? response.words : "";
-  document.getElementById("state").textContent = said;
+  const said = [];
+  if (response && shown.deformed) said.push(response.words);
+  if (response && shown.forces >= 0) said.push(response.diagrams[shown.forces].words);
+  document.getElementById("state").textContent = said.join("; ");
 }
 
 function switches() {
@@ -53,7 +69,7 @@ function switches() {
       times.textContent = `${short(shown.scale)} times as large`;
       frame();
     });
-    toggle(states, `forces ${response.diagram.quantity}`, shown, "forces");
+    choice(section("Forces"), response.diagrams.map(one => one.quantity));
   }
   const parts = section("Show");
   toggle(parts, "supports", shown, "supports");

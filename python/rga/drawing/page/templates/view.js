@@ -1,6 +1,6 @@
 // The view: what is switched on, drawn from where the camera stands.
 
-let waiting = false, targets = [];
+let waiting = false, targets = [], boxes = [];
 
 function frame() {
   if (waiting) return;
@@ -22,11 +22,11 @@ function draw() {
   pen.font = "12px system-ui, sans-serif";
   pen.lineCap = pen.lineJoin = "round";
   const places = model.points.map(seen);
-  targets = [];
+  targets = [], boxes = [];
   if (shown.supports) drawSupports(places, colours);
   drawMembers(places, colours);
   drawJoined(places, colours);
-  if (shown.forces) drawForces(places, colours);
+  if (shown.forces >= 0) drawForces(places, colours, response.diagrams[shown.forces]);
   if (shown.deformed) drawDeformed(places, colours);
   if (shown.axes) drawAxes(places, colours);
   model.loads.forEach((load, k) => {
@@ -38,7 +38,7 @@ function draw() {
 }
 
 function drawMembers(places, colours) {
-  const faint = shown.deformed || shown.forces;
+  const faint = shown.deformed || shown.forces >= 0;
   const paths = new Map();
   members.ends.forEach(([i, j], k) => {
     if (!visible(k)) return;
@@ -79,11 +79,12 @@ function groupLook(group, colours) {
 
 function memberWords(k, name) {
   const lines = [`member ${name}`, members.words[k]];
-  if (response) {
-    const diagram = response.diagram, values = diagram.values[k].map(value => value * diagram.factor);
+  for (const diagram of response ? response.diagrams : []) {
+    if (diagram.quantity !== "N" && !members.frame[k]) continue;
+    const values = diagram.values[k].map(value => value * diagram.factor);
     const least = Math.min(...values), most = Math.max(...values);
-    const text = most - least < 1e-6 * Math.abs(most) ? short(most) : `${short(least)} to ${short(most)}`;
-    lines.push(`${diagram.quantity} = ${text} ${diagram.unit}`);
+    const even = most - least <= 1e-6 * Math.max(Math.abs(most), Math.abs(least));
+    lines.push(`${diagram.quantity} = ${even ? short(most) : `${short(least)} to ${short(most)}`} ${diagram.unit}`);
   }
   return lines.join("\n");
 }
@@ -149,8 +150,7 @@ function drawDeformed(places, colours) {
   pen.stroke(path);
 }
 
-function drawForces(places, colours) {
-  const diagram = response.diagram, boxes = [];
+function drawForces(places, colours, diagram) {
   if (!diagram.largest) return;
   const both = diagram.quantity === "N", reach = (both ? 12 : REACH) / diagram.largest;
   const written = [];
@@ -280,8 +280,7 @@ function sensorPlace(one, colours) {
 }
 
 function drawNames(places, colours) {
-  const boxes = targets.filter(one => one.sensor !== undefined)
-    .map(({a: [x, y]}) => [x - 6, y - 6, x + 6, y + 6]);
+  for (const {a: [x, y], sensor: is} of targets) if (is !== undefined) boxes.push([x - 6, y - 6, x + 6, y + 6]);
   let left = MOST_LABELS;
   const write = (text, at, colour) => {
     const inside = at[0] > 0 && at[1] > 0 && at[0] < wide && at[1] < tall;
