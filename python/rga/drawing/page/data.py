@@ -138,14 +138,17 @@ def _load(scene: Scene, mark: LoadMark) -> dict[str, Any]:
 
 def _response(scene: Scene, response: DrawnResponse) -> dict[str, Any]:
     assert response.deformed is not None
-    shape, at = replace(response, diagrams=()), replace(response, deformed=None)
+    # Each part in words of its own, and once at which contexts all of them are.
+    shape = replace(response, diagrams=(), contexts="")
+    forces = replace(response, deformed=None, contexts="")
     return {
+        "at": response.contexts,
         "words": state_words(shape),
         "deformed": _deformed(scene, response.deformed),
         "diagrams": [
             {
                 **_diagram(scene, diagram),
-                "words": state_words(replace(at, diagrams=(diagram,))),
+                "words": state_words(replace(forces, diagrams=(diagram,))),
             }
             for diagram in response.diagrams
         ],

@@ -46,6 +46,7 @@ function state() {
   const said = [];
   if (response && shown.deformed) said.push(response.words);
   if (response && shown.forces >= 0) said.push(response.diagrams[shown.forces].words);
+  if (said.length && response.at) said.push(`at ${response.at}`);
   document.getElementById("state").textContent = said.join("; ");
 }
 

@@ -160,21 +160,18 @@ function drawForces(places, colours, diagram) {
     const [a, b] = members.ends[k].map(node => places[node]);
     const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
     const side = both ? [-(b[1] - a[1]) / length, (b[0] - a[0]) / length] : turned(diagram.sides[k]);
-    const feet = diagram.positions[k].map(share =>
-      [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]);
-    for (let s = 0; s + 1 < values.length; s++) {
-      for (const [from, to, sign] of pieces(values[s], values[s + 1])) {
-        const at = share => [0, 1].map(axis => feet[s][axis] + share * (feet[s + 1][axis] - feet[s][axis]));
-        const value = share => reach * (values[s] + share * (values[s + 1] - values[s]));
-        const top = (share, way) => at(share).map((foot, axis) => foot + way * value(share) * side[axis]);
-        pen.fillStyle = sign > 0 ? colours.positive : colours.negative;
-        polyline(pen, [top(from, 1), top(to, 1), ...(both ? [top(to, -1), top(from, -1)] : [at(to), at(from)])]);
-        pen.fill();
-      }
+    const foot = share => [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+    for (const part of stretches(diagram.positions[k], values)) {
+      const edge = way => part.map(([share, value]) =>
+        foot(share).map((at, axis) => at + way * reach * value * side[axis]));
+      pen.fillStyle = part.some(([, value]) => value > 0) ? colours.positive : colours.negative;
+      polyline(pen, [...edge(1), ...edge(both ? -1 : 0).reverse()]);
+      pen.fill();
     }
     const s = values.reduce((best, value, n) => (Math.abs(value) > Math.abs(values[best]) ? n : best), 0);
     const n = both ? Math.floor(values.length / 2) : s, lift = both ? 0 : reach * values[n];
-    written.push([Math.abs(values[n]), [feet[n][0] + lift * side[0], feet[n][1] + lift * side[1]], values[n]]);
+    const [x, y] = foot(diagram.positions[k][n]);
+    written.push([Math.abs(values[n]), [x + lift * side[0], y + lift * side[1]], values[n]]);
   });
   pen.globalAlpha = 1;
   written.sort((one, other) => other[0] - one[0]);
@@ -183,11 +180,19 @@ function drawForces(places, colours, diagram) {
   }
 }
 
-// Shares of a stretch in which a straight line has one sign.
-function pieces(first, last) {
-  if (first * last >= 0) return [[0, 1, first + last]];
-  const zero = first / (first - last);
-  return [[0, zero, first], [zero, 1, last]];
+// Places and values in stretches of one sign, cut where the values pass zero.
+function stretches(places, values) {
+  const found = [[[places[0], values[0]]]];
+  for (let s = 1; s < values.length; s++) {
+    if (values[s - 1] * values[s] < 0) {
+      const share = values[s - 1] / (values[s - 1] - values[s]);
+      const zero = [places[s - 1] + share * (places[s] - places[s - 1]), 0];
+      found.at(-1).push(zero);
+      found.push([zero]);
+    }
+    found.at(-1).push([places[s], values[s]]);
+  }
+  return found;
 }
 
 function drawAxes(places, colours) {
