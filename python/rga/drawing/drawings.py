@@ -11,7 +11,7 @@ from rga.drawing.figure_style import label, style
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of
-from rga.drawing.sight import sights
+from rga.drawing.views import views_of
 from rga.errors import InputError
 from rga.files import make_folder, write_whole
 from rga.model.schema import Model
@@ -87,7 +87,7 @@ def plot_model(
         UnstableStructureError: as for `draw`.
     """
     content = gather(model, asked(options))
-    found = sights(content.scene)
+    found = views_of(content.scene)
     chosen = next((one for one in found if view in (None, one.title)), None)
     if chosen is None:
         raise InputError(

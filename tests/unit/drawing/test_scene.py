@@ -13,7 +13,7 @@ from rga.drawing.scene.scene import make_scene
 from rga.drawing.scene.sensors import sensor_marks
 from rga.drawing.scene.supports import support_marks
 from rga.drawing.sheet.legend import load_words
-from rga.drawing.sight import axonometry, sights
+from rga.drawing.views import axonometry, views_of
 from rga.errors import InputError
 from rga.model import Model, read_model
 
@@ -128,17 +128,17 @@ class TestSensors:
         assert [mark.ahead for mark in marks] == [True, False]
 
 
-class TestSights:
+class TestViews:
     def test_a_plane_structure_has_one_view(self, beam: Callable[..., Model]) -> None:
-        (view,) = sights(make_scene(beam()))
+        (view,) = views_of(make_scene(beam()))
         assert (view.right, view.up, view.straight) == ((1, 0, 0), (0, 0, 1), True)
 
     def test_a_column_is_upright_in_its_view(self, beam: Callable[..., Model]) -> None:
-        (view,) = sights(make_scene(beam(plane="yz", nodes={"a": [0, 0, 0], "b": [0, 0, 3]})))
+        (view,) = views_of(make_scene(beam(plane="yz", nodes={"a": [0, 0, 0], "b": [0, 0, 3]})))
         assert view.flat(np.array([0.0, 0.0, 3.0])).tolist() == [0.0, 3.0]
 
     def test_in_space_there_are_an_axonometry_elevations_and_a_plan(self) -> None:
-        titles = [one.title for one in sights(make_scene(bridge()))]
+        titles = [one.title for one in views_of(make_scene(bridge()))]
         assert titles[0] == "axonometry"
         assert titles[-1] == "plan"
         assert len(titles) == 4

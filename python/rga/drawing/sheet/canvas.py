@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from rga.arrays import FloatArray
 from rga.drawing.labels import Point, Room
 from rga.drawing.palette import Palette
-from rga.drawing.sight import View
+from rga.drawing.views import View
 
 #: points along lines that labels avoid [inch]
 SAMPLE = 0.05
@@ -27,26 +27,26 @@ class Canvas:
 
     Attributes:
         axes: matplotlib's, in the metres of the view.
-        sight: the view.
+        view: the view.
         unit: metres in an inch.
         palette: the colours.
         room: what labels must not cover.
     """
 
     axes: Axes
-    sight: View
+    view: View
     unit: float
     palette: Palette
     room: Room = field(default_factory=Room)
 
     def inches(self, points: FloatArray) -> FloatArray:
         """Points float[..., 3] on the paper in inches, float[..., 2]."""
-        return self.sight.flat(np.asarray(points, dtype=float)) / self.unit
+        return self.view.flat(np.asarray(points, dtype=float)) / self.unit
 
     def direction(self, vector: FloatArray) -> FloatArray:
         """A direction on the paper, float[2], shorter than one where it is inclined to it."""
         size = float(np.linalg.norm(vector))
-        return self.sight.flat(np.asarray(vector)) / size if size > 0 else np.zeros(2)
+        return self.view.flat(np.asarray(vector)) / size if size > 0 else np.zeros(2)
 
     def lines(
         self, lines: Sequence[FloatArray] | FloatArray, colour: str, width: float, **look: Any
@@ -101,13 +101,13 @@ class Canvas:
 
 
 def canvas_in(
-    axes: Axes, sight: View, points: FloatArray, margin: float, palette: Palette
+    axes: Axes, view: View, points: FloatArray, margin: float, palette: Palette
 ) -> Canvas:
     """Axes set to the largest scale at which a view and the symbols around it fit.
 
     Args:
         axes: matplotlib's; their size is that on the figure now.
-        sight: the view.
+        view: the view.
         points: what must be seen, float[k, 3] [m].
         margin: around it [inch].
         palette: the colours.
@@ -115,7 +115,7 @@ def canvas_in(
     box = axes.get_window_extent().width, axes.get_window_extent().height
     dpi = axes.figure.dpi
     wide, high = (side / dpi for side in box)
-    flat = sight.flat(points)
+    flat = view.flat(points)
     low, size = flat.min(axis=0), np.ptp(flat, axis=0)
     unit = metres_per_inch(size, wide, high, margin)
     middle = low + size / 2
@@ -126,7 +126,7 @@ def canvas_in(
     axes.set_ylim(bottom, bottom + high * unit)
     axes.set_aspect("equal", adjustable="datalim")
     box_in = (left / unit, bottom / unit + FOOT * 0.8, left / unit + wide, bottom / unit + high)
-    return Canvas(axes, sight, unit, palette, Room(limits=box_in))
+    return Canvas(axes, view, unit, palette, Room(limits=box_in))
 
 
 def metres_per_inch(size: FloatArray, wide: float, high: float, margin: float) -> float:

@@ -17,7 +17,7 @@ APART = 0.22
 
 def draw_loads(canvas: Canvas, marks: Sequence[LoadMark], scene: Scene) -> None:
     """Each load in its own colour; its largest force is the longest arrow."""
-    nodes = set(canvas.sight.nodes.tolist())
+    nodes = set(canvas.view.nodes.tolist())
     places = canvas.inches(scene.points)
     for number, mark in enumerate(marks):
         colour = canvas.palette.loads[number % len(canvas.palette.loads)]
@@ -28,7 +28,7 @@ def draw_loads(canvas: Canvas, marks: Sequence[LoadMark], scene: Scene) -> None:
         reach = LONGEST / max(float(sizes.max(initial=0.0)), 1e-300)
         here = [k for k, node in enumerate(mark.nodes.tolist()) if node in nodes]
         heads = canvas.inches(mark.points[here])
-        tails = heads - reach * canvas.sight.flat(mark.forces[here])
+        tails = heads - reach * canvas.view.flat(mark.forces[here])
         _arrows(canvas, tails, heads, colour)
         _along(canvas, mark.along, scene, colour)
         for node, moment in zip(mark.turned.tolist(), mark.moments, strict=True):
@@ -53,7 +53,7 @@ def _arrows(canvas: Canvas, tails: FloatArray, heads: FloatArray, colour: str) -
 
 
 def _along(canvas: Canvas, loads: Sequence[AlongMember], scene: Scene, colour: str) -> None:
-    shown = set(canvas.sight.members.tolist())
+    shown = set(canvas.view.members.tolist())
     most = max((float(np.linalg.norm(one.forces, axis=1).max()) for one in loads), default=0.0)
     for one in loads:
         if one.member not in shown:
@@ -63,7 +63,7 @@ def _along(canvas: Canvas, loads: Sequence[AlongMember], scene: Scene, colour: s
         shares = np.linspace(0.0, 1.0, max(round(length / APART), 1) + 1)[:, None]
         feet = ends[0] + shares * (ends[1] - ends[0])
         forces = one.forces[0] + shares * (one.forces[1] - one.forces[0])
-        tails = feet - ALONG / most * canvas.sight.flat(forces)
+        tails = feet - ALONG / most * canvas.view.flat(forces)
         outline = np.vstack([feet[:1], tails, feet[-1:]])
         canvas.lines([outline], colour, 0.7, zorder=5, alpha=0.9)
         canvas.areas([outline], colour, "none", 0.0, zorder=1, alpha=0.12)
@@ -73,13 +73,13 @@ def _along(canvas: Canvas, loads: Sequence[AlongMember], scene: Scene, colour: s
 def _moment(canvas: Canvas, centre: FloatArray, moment: FloatArray, colour: str) -> None:
     """An arc about an axis that points out of the paper, else an arrow with two heads."""
     unit = moment / np.linalg.norm(moment)
-    turning = float(unit @ canvas.sight.towards)
+    turning = float(unit @ canvas.view.towards)
     if abs(turning) > 0.7:
         turn = np.radians(np.linspace(-140, 110, 30)) * np.sign(turning)
         curve = centre + 0.14 * np.column_stack([np.cos(turn), np.sin(turn)])
         canvas.lines([curve[:-3]], colour, 1.2, zorder=6)
         _arrows(canvas, curve[-6:-5], curve[-1:], colour)
         return
-    along = canvas.sight.flat(unit)
+    along = canvas.view.flat(unit)
     _arrows(canvas, (centre - LONGEST * along)[None], centre[None], colour)
     _arrows(canvas, (centre - LONGEST * along)[None], (centre - 0.08 * along)[None], colour)

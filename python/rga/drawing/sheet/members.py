@@ -18,7 +18,7 @@ def draw_members(canvas: Canvas, scene: Scene, faint: bool = False) -> None:
     Args:
         faint: they step back behind something else.
     """
-    shown = canvas.sight.members
+    shown = canvas.view.members
     places = canvas.inches(scene.points)[scene.ends]
     canvas.avoid(places[shown])
     frame = scene.frame
@@ -30,7 +30,7 @@ def draw_members(canvas: Canvas, scene: Scene, faint: bool = False) -> None:
             look = (canvas.palette.faint, 0.9) if faint else (colour, width * thin)
             style = (0, dashes) if dashes and not faint else "solid"
             canvas.lines(places[chosen], *look, zorder=2, linestyles=[style])
-    if not faint and len(canvas.sight.nodes) <= MOST_NODES:
+    if not faint and len(canvas.view.nodes) <= MOST_NODES:
         _nodes(canvas, scene)
         _releases(canvas, scene, places)
 
@@ -38,7 +38,7 @@ def draw_members(canvas: Canvas, scene: Scene, faint: bool = False) -> None:
 def draw_local_axes(canvas: Canvas, scene: Scene) -> None:
     """Local x, y and z of every member at its middle."""
     middles = canvas.inches(scene.points[scene.ends].mean(axis=1))
-    for member in canvas.sight.members:
+    for member in canvas.view.members:
         at = middles[member]
         for axis, colour, name in zip(scene.axes[member], canvas.palette.axes, "xyz", strict=True):
             along = canvas.direction(axis)
@@ -58,11 +58,11 @@ def _nodes(canvas: Canvas, scene: Scene) -> None:
                 stiff[node] |= not {"ry", "rz"} & set(released)
     places = canvas.inches(scene.points)
     for chosen, face in ((stiff, canvas.palette.ink), (~stiff, canvas.palette.paper)):
-        shown = places[[node for node in canvas.sight.nodes if chosen[node]]] * canvas.unit
+        shown = places[[node for node in canvas.view.nodes if chosen[node]]] * canvas.unit
         canvas.axes.plot(
             *shown.T, "o", markersize=3.0, mfc=face, mec=canvas.palette.ink, mew=0.7, zorder=4
         )
-    for node in canvas.sight.nodes:
+    for node in canvas.view.nodes:
         canvas.keep_clear(places[node], 0.03)
 
 
@@ -71,7 +71,7 @@ def _releases(canvas: Canvas, scene: Scene, places: FloatArray) -> None:
     every = list(scene.model.members.values())
     rings: dict[str, list[FloatArray]] = {canvas.palette.paper: [], canvas.palette.faint: []}
     bars = []
-    for member in canvas.sight.members:
+    for member in canvas.view.members:
         one = every[member]
         if one.kind != "frame":
             continue

@@ -69,13 +69,13 @@ def _places(
         yield from sensors.items()
     elif kind == "nodes":
         names = list(scene.nodes)
-        yield from ((names[node], points[node]) for node in canvas.sight.nodes)
+        yield from ((names[node], points[node]) for node in canvas.view.nodes)
     elif kind == "members":
         names = list(scene.members)
-        for member in canvas.sight.members:
+        for member in canvas.view.members:
             yield names[member], points[scene.ends[member]].mean(axis=0)
     else:
-        shown = set(canvas.sight.nodes.tolist())
+        shown = set(canvas.view.nodes.tolist())
         for mark in content.supports:
             if mark.node in shown:
                 yield mark.name, points[mark.node] - np.array([0.0, 0.1])

@@ -20,7 +20,7 @@ def draw_sensors(canvas: Canvas, marks: list[SensorMark]) -> dict[str, FloatArra
     Returns:
         Where the symbols stand, by name [inch].
     """
-    nodes, members = set(canvas.sight.nodes.tolist()), set(canvas.sight.members.tolist())
+    nodes, members = set(canvas.view.nodes.tolist()), set(canvas.view.members.tolist())
     placed: dict[str, FloatArray] = {}
     by_kind: dict[str, list[FloatArray]] = {}
     for mark in marks:

@@ -14,7 +14,7 @@ from rga.drawing.labels import LETTER
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.canvas import FOOT
 from rga.drawing.sheet.view import draw_view, margin_of, palette_of, seen
-from rga.drawing.sight import View, sights
+from rga.drawing.views import View, views_of
 
 #: inches
 WIDTH, TITLE, SUBTITLE, PANEL_TITLE, GAP = 10.0, 0.42, 0.16, 0.22, 0.12
@@ -29,7 +29,7 @@ DPI = 150
 class Panel:
     """A view on the sheet: left, top, width and height [inch] from the upper left corner."""
 
-    sight: View
+    view: View
     left: float
     top: float
     wide: float
@@ -54,7 +54,7 @@ def sheet(
     found = legend.entries(content, palette)
     words = textwrap.wrap(legend.state_words(content.response), letters(width - 0.4))
     head = TITLE + SUBTITLE * len(words)
-    panels, bottom = _panels(content, shown or sights(content.scene), width, head)
+    panels, bottom = _panels(content, shown or views_of(content.scene), width, head)
     columns = legend.columns(found, width - 0.3) if found else 1
     rows = -(-len(found) // columns)
     high = bottom + 0.1 + legend.LINE * rows + 0.1
@@ -69,7 +69,7 @@ def sheet(
     for panel in panels:
         if len(panels) > 1:
             drawn.text(
-                panel.left / width, 1 - panel.top / high, panel.sight.title, fontsize=8,
+                panel.left / width, 1 - panel.top / high, panel.view.title, fontsize=8,
                 va="top", color=palette.steel,
             )  # fmt: skip
         axes = drawn.add_axes(
@@ -78,7 +78,7 @@ def sheet(
                 panel.wide / width, panel.high / high,
             )
         )  # fmt: skip
-        missed = draw_view(axes, content, panel.sight)
+        missed = draw_view(axes, content, panel.view)
         if missed:
             drawn.text(
                 (panel.left + panel.wide) / width, 1 - panel.top / high,
@@ -125,10 +125,10 @@ def _panels(
     return panels, top
 
 
-def _size(content: Content, sight: View, widest: float, tallest: float) -> tuple[float, float]:
+def _size(content: Content, view: View, widest: float, tallest: float) -> tuple[float, float]:
     """Width and height of a view with its symbols [inch], at the largest scale that fits."""
     margin = margin_of(content)
-    size = np.ptp(sight.flat(seen(content, sight)), axis=0)
+    size = np.ptp(view.flat(seen(content, view)), axis=0)
     room = widest - 2 * margin, tallest - 2 * margin - FOOT
     unit = max(size[0] / room[0], size[1] / room[1], 1e-9)
     wide, high = size / unit + 2 * margin

@@ -14,7 +14,7 @@ APART = 0.26
 
 def draw_springs(canvas: Canvas, marks: list[SpringMark], scene: Scene) -> None:
     """Zigzags along springs; a spiral where a turn is resisted."""
-    shown = set(canvas.sight.nodes.tolist())
+    shown = set(canvas.view.nodes.tolist())
     places = canvas.inches(scene.points)
     for mark in marks:
         if mark.node not in shown:
@@ -38,7 +38,7 @@ def draw_springs(canvas: Canvas, marks: list[SpringMark], scene: Scene) -> None:
 
 def draw_ties(canvas: Canvas, scene: Scene) -> None:
     """A dotted line between nodes that move together."""
-    shown = set(canvas.sight.nodes.tolist())
+    shown = set(canvas.view.nodes.tolist())
     places = canvas.inches(scene.points)
     pairs = [[scene.nodes[node] for node in tie.nodes] for tie in scene.model.ties]
     lines = [places[pair] for pair in pairs if set(pair) <= shown]
@@ -47,7 +47,7 @@ def draw_ties(canvas: Canvas, scene: Scene) -> None:
 
 def draw_masses(canvas: Canvas, scene: Scene) -> None:
     """A filled square at every mass."""
-    shown = set(canvas.sight.nodes.tolist())
+    shown = set(canvas.view.nodes.tolist())
     nodes = {scene.nodes[mass.node] for mass in scene.model.masses.values()} & shown
     if nodes:
         places = canvas.inches(scene.points[sorted(nodes)]) * canvas.unit

@@ -29,11 +29,11 @@ def curved_points(scene: Scene, shape: Deformed) -> FloatArray:
 def draw_deformed(canvas: Canvas, scene: Scene, shape: Deformed) -> None:
     """The deformed members."""
     curves = canvas.inches(curved_points(scene, shape))
-    chords = np.stack([curves[:, :-1], curves[:, 1:]], axis=2)[canvas.sight.members]
+    chords = np.stack([curves[:, :-1], curves[:, 1:]], axis=2)[canvas.view.members]
     canvas.avoid(chords.reshape(-1, 2, 2))
     frame = scene.frame
     for bends, width in ((0, 1.5), (1, 2.2)):
-        chosen = [k for k in canvas.sight.members if frame[k] == bends]
+        chosen = [k for k in canvas.view.members if frame[k] == bends]
         canvas.lines(curves[chosen], canvas.palette.deformed, width, zorder=5)
 
 
@@ -47,7 +47,7 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> None:
     bases = canvas.inches(scene.points)[scene.ends]
     written = []
     areas: dict[str, list[FloatArray]] = {canvas.palette.positive: [], canvas.palette.negative: []}
-    for member in canvas.sight.members:
+    for member in canvas.view.members:
         values, stations = diagram.values[member], diagram.positions[member]
         first, last = bases[member]
         side = _across(last - first) if both else canvas.direction(diagram.sides[member])

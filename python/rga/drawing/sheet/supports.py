@@ -20,13 +20,13 @@ def draw_supports(canvas: Canvas, marks: list[SupportMark], scene: Scene) -> Non
     On an elevation only what is held within the paper counts; in an axonometry a node that is held
     in some directions has a link along each of them.
     """
-    shown = set(canvas.sight.nodes.tolist())
+    shown = set(canvas.view.nodes.tolist())
     for mark in marks:
         if mark.node not in shown:
             continue
         at = canvas.inches(scene.points[mark.node])
         held = [v for v in map(canvas.direction, mark.held) if np.linalg.norm(v) > SEEN]
-        if canvas.sight.straight:
+        if canvas.view.straight:
             _in_paper(canvas, at, held, mark)
         elif mark.sort == "fixed":
             _wall(canvas, at, DOWN)
@@ -38,7 +38,7 @@ def draw_supports(canvas: Canvas, marks: list[SupportMark], scene: Scene) -> Non
 
 
 def _in_paper(canvas: Canvas, at: FloatArray, held: list[FloatArray], mark: SupportMark) -> None:
-    towards = canvas.sight.towards
+    towards = canvas.view.towards
     clamped = any(abs(float(axis @ towards)) > 0.9 for axis in mark.clamped)
     outward = canvas.direction(mark.outward)
     directions = np.array(held).reshape(-1, 2)

@@ -14,7 +14,7 @@ from rga.drawing.sheet.sensors import draw_sensors
 from rga.drawing.sheet.springs import draw_masses, draw_springs, draw_ties
 from rga.drawing.sheet.states import curved_points, draw_deformed, draw_diagram
 from rga.drawing.sheet.supports import draw_supports
-from rga.drawing.sight import View
+from rga.drawing.views import View
 from rga.quantities import short
 
 #: around the members: supports; more for arrows and sensors, and for names [inch]
@@ -33,24 +33,24 @@ def margin_of(content: Content) -> float:
     return MARGIN + FOR_ARROWS * arrows + FOR_NAMES * bool(content.shown.names)
 
 
-def seen(content: Content, sight: View) -> FloatArray:
+def seen(content: Content, view: View) -> FloatArray:
     """Points that a view must hold, float[k, 3] [m]."""
     scene = content.scene
-    parts = [scene.points[sight.nodes]]
+    parts = [scene.points[view.nodes]]
     response = content.response
     if response is not None and response.deformed is not None:
-        parts.append(curved_points(scene, response.deformed)[sight.members].reshape(-1, 3))
+        parts.append(curved_points(scene, response.deformed)[view.members].reshape(-1, 3))
     return np.vstack(parts)
 
 
-def draw_view(axes: Axes, content: Content, sight: View) -> int:
+def draw_view(axes: Axes, content: Content, view: View) -> int:
     """Draw one view into axes, as large as they are.
 
     Returns:
         How many names found no room.
     """
     palette = palette_of(content)
-    canvas = canvas_in(axes, sight, seen(content, sight), margin_of(content), palette)
+    canvas = canvas_in(axes, view, seen(content, view), margin_of(content), palette)
     scene = content.scene
     draw_members(canvas, scene, faint=content.response is not None)
     draw_supports(canvas, content.supports, scene)

@@ -46,7 +46,7 @@ class View:
         return np.asarray(points @ np.array([self.right, self.up]).T)
 
 
-def sights(scene: Scene) -> list[View]:
+def views_of(scene: Scene) -> list[View]:
     """The views of a drawing: one of a plane structure, else an axonometry and elevations."""
     if scene.normal is not None:
         return [_in_plane(scene, scene.normal)]
@@ -59,8 +59,8 @@ def sights(scene: Scene) -> list[View]:
     return [axonometry(scene), *high, _sides(scene)[-1]]
 
 
-def _rises(scene: Scene, sight: View) -> bool:
-    wide, high = np.ptp(sight.flat(scene.points[sight.nodes]), axis=0)
+def _rises(scene: Scene, view: View) -> bool:
+    wide, high = np.ptp(view.flat(scene.points[view.nodes]), axis=0)
     return bool(high > LOW * wide)
 
 
