@@ -8,18 +8,6 @@ from pathlib import Path
 from rga.errors import InputError
 
 
-def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, where they are missing.
-
-    Raises:
-        InputError: it cannot be made.
-    """
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise _refused(path, error) from None
-
-
 def write_whole(files: Mapping[Path, bytes]) -> None:
     """Write files under temporary names beside them, and rename them when all are written.
 
@@ -49,10 +37,6 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         for draft in drafts.values():
             with suppress(OSError):
                 draft.unlink()
-        raise _refused(path, error) from None
-
-
-def _refused(path: Path, error: OSError) -> InputError:
-    reason = (error.strerror or "refused").lower()
-    what = f"the output cannot be written, {reason}"
-    return InputError(what, str(path), "give another place")
+        reason = (error.strerror or "refused").lower()
+        what = f"the output cannot be written, {reason}"
+        raise InputError(what, str(path), "give another place") from None

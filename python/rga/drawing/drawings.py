@@ -13,7 +13,7 @@ from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of
 from rga.drawing.views import views_of
 from rga.errors import InputError
-from rga.files import make_folder, write_whole
+from rga.files import write_whole
 from rga.model.schema import Model
 
 SUFFIXES = (".svg", ".png", ".html")
@@ -59,7 +59,6 @@ def draw(
         written = page(model, shown).encode("utf-8", "replace")
     else:
         written = sheet_bytes(gather(model, shown), suffix[1:], width)
-    make_folder(path.parent)
     write_whole({path: written})
     return path
 
