@@ -81,7 +81,7 @@ def sheet(
         missed = draw_view(axes, content, panel.view)
         if missed:
             drawn.text(
-                (panel.left + panel.wide) / width, 1 - panel.top / high,
+                (panel.left + panel.wide - 0.15) / width, 1 - panel.top / high,
                 f"{missed} name{'s' if missed > 1 else ''} without room", fontsize=7,
                 ha="right", va="top", color=palette.steel,
             )  # fmt: skip
