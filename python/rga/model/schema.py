@@ -19,6 +19,7 @@ from pydantic import (
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment, seconds
 from rga.model.parameter import Number, listed
+from rga.model.pictured import Pictured
 from rga.model.units import UNITS
 from rga.model.vocabulary import field_texts, kind_text
 
@@ -228,7 +229,7 @@ class Analysis(Part):
     geometry: Literal["linear", "nonlinear"] = "linear"
 
 
-class Model(Part):
+class Model(Pictured, Part):
     """A model file. SI units, z up, tension and elongation positive; see the design of the format.
 
     Raises on validation: unknown keys, members between missing nodes, places that do not exist.

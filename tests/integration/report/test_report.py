@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga.drawing.projection import views
 from rga.findings import schema as contract
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Cause, Explanation, Findings, GroupGap, Unexplained
 from rga.model import Model, read_model
+from rga.quantities import number, percent, quantity
 from rga.records import Record
 from rga.report import write_report
-from rga.report.drawing.projection import views
 from rga.report.figures.deviation import percent_off
 from rga.report.figures.gain import blocks
 from rga.report.figures.series import runs_on
-from rga.report.text.quantities import number, percent, quantity
 
 HOSTILE = "<script>alert('x')</script> $\\frac{a_b}$ & \"q\""
 #: what a full report says somewhere
