@@ -57,8 +57,8 @@ class TestChannels:
         readings = np.zeros(100_000)
         readings[77_777] = 5.0
         found = channels(readings)
-        assert found.every == -(-4 * 100_000 // MOST_NUMBERS) == 7
-        assert len(table(found)) == -(-100_000 // 7)
+        assert found.every == -(-4 * 100_000 // MOST_NUMBERS) == 20
+        assert len(table(found)) == -(-100_000 // 20)
         drawn = str(found.each[0].figure)
         assert len(re.findall("[ML]", drawn.split('stroke="#8c959f"')[0])) < POINTS + 10
         highest = min(float(y) for y in re.findall(r"L[\d.]+ ([\d.]+)", drawn))

@@ -14,9 +14,9 @@ from rga.findings import Findings
 #: width and height of a figure, room for the axis on its left, and its foot [pixels]
 WIDTH, HEIGHT, LEFT, FOOT = 760, 190, 64, 20
 #: points of a line, beyond which a stretch of rows is drawn as its lowest and highest value
-POINTS = 360
-#: numbers in the tables of all channels together: 1 MB of text
-MOST_NUMBERS = 60_000
+POINTS = 200
+#: numbers in the tables of all channels together: a third of a megabyte of text
+MOST_NUMBERS = 20_000
 #: colours and widths: measured, as given, with the causes
 LOOKS = (("#8c959f", 2.2), ("#c8641e", 1.0), ("#0072b2", 1.0))
 
@@ -112,7 +112,7 @@ def _path(values: FloatArray, low: float, high: float) -> str:
     for across, down in zip(x, y, strict=True):
         known = bool(np.isfinite(down))
         if known:
-            parts.append(f"{'L' if drawing else 'M'}{across:.1f} {down:.1f}")
+            parts.append(f"{'L' if drawing else 'M'}{across:.0f} {down:.1f}")
         drawing = known
     return "".join(parts)
 
