@@ -19,7 +19,7 @@ from rga.cli.schema import schema
 from rga.cli.simulate import simulate
 from rga.cli.verify import verify
 from rga.cli.whatif import whatif
-from rga.errors import InputError, MissingPackageError, ReportError
+from rga.errors import InputError, MissingPackageError, ReportError, SeveralMistakes
 from rga.lazy import needing_extras
 
 app = typer.Typer(
@@ -64,8 +64,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with needing_extras():
             app(args=_json_with_target(given), prog_name="rga")
     except (InputError, MissingPackageError, ReportError) as error:
-        typer.echo("error: " + " ".join(str(error).split()), err=True)
+        typer.echo(f"error: {_words(error)}", err=True)
         sys.exit(1 if isinstance(error, ReportError) else 2)
+
+
+def _words(error: Exception) -> str:
+    """One line, or the list of several mistakes."""
+    return str(error) if isinstance(error, SeveralMistakes) else " ".join(str(error).split())
 
 
 def _json_with_target(arguments: list[str]) -> list[str]:
