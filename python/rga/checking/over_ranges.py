@@ -1,0 +1,169 @@
+"""What a model does over the ranges of its contexts: simulated once for all checks."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.stats import qmc
+
+from rga.arrays import FloatArray, IntArray
+from rga.errors import InputError
+from rga.model.effect import seconds
+from rga.model.schema import Model, Sensor
+from rga.model.structure import Structure
+from rga.simulation import Simulator
+
+#: values of each context along its range, the others at their middle; draws of all together
+ALONG, DRAWN = 25, 32
+#: places along a frame member where it is looked at
+STATIONS = (0.0, 0.5, 1.0)
+DIRECTIONS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """Simulated values of some sensors.
+
+    Attributes:
+        values: float[rows, sensors].
+        trouble: why the rows are not those of the whole ranges, or are none; None: they are.
+        anywhere: whether the middle of all ranges, at least, can be simulated.
+    """
+
+    values: FloatArray
+    trouble: InputError | None = None
+    anywhere: bool = True
+
+
+@dataclass(frozen=True)
+class OverRanges:
+    """A model and what it does over the ranges of its contexts.
+
+    Effects with an onset act in all rows.
+
+    Attributes:
+        model: that is looked at.
+    """
+
+    model: Model
+
+    @cached_property
+    def contexts(self) -> dict[str, FloatArray]:
+        """Rows: the middle, each context along its range, draws of all; and `time` [s]."""
+        ranges = {name: one.range for name, one in self.model.context.items()}
+        middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
+        drawn = np.zeros((0, len(ranges)))
+        if ranges:
+            drawn = qmc.Sobol(len(ranges), scramble=True, rng=0).random(DRAWN)
+        table = {}
+        for number, (name, (low, high)) in enumerate(ranges.items()):
+            along = [
+                np.linspace(low, high, ALONG) if one == name else np.full(ALONG, middle[name])
+                for one in ranges
+            ]
+            columns = [[middle[name]], *along, low + (high - low) * drawn[:, number]]
+            table[name] = np.concatenate(columns)
+        rows = len(next(iter(table.values()))) if table else 1
+        return {**table, "time": np.full(rows, self._moment)}
+
+    def rows_along(self, context: str) -> IntArray:
+        """Rows in which a context runs along its range."""
+        first = 1 + ALONG * list(self.model.context).index(context)
+        return np.arange(first, first + ALONG)
+
+    @property
+    def _moment(self) -> float:
+        """A time at which every effect acts in full [s]."""
+        moments = [
+            seconds(moment)
+            for effect in self.model.effects.values()
+            for moment in (effect.onset, effect.end)
+            if moment is not None
+        ]
+        return max(moments, default=-1.0) + 1.0
+
+    @cached_property
+    def middle(self) -> dict[str, FloatArray]:
+        """The middle of all ranges, one row."""
+        return {name: column[:1] for name, column in self.contexts.items()}
+
+    @cached_property
+    def simulator(self) -> Simulator:
+        """Of the model, without the zeros of loggers."""
+        return Simulator(self.model.without_zeros())
+
+    @cached_property
+    def structure(self) -> Structure:
+        """As the effects make it at the middle of the ranges.
+
+        Raises:
+            InputError: an effect cannot be put on it.
+        """
+        assembly = self.simulator.assembly
+        request = assembly.request(self.simulator.resolve(self.middle), 1)
+        return request.change(request.states[0])
+
+    @cached_property
+    def readings(self) -> Simulated:
+        """Of the sensors of the model, in their units."""
+        return self._simulated(self.simulator)
+
+    @cached_property
+    def motions(self) -> FloatArray:
+        """Displacements of all nodes, float[rows, nodes, 3] [m]; no row where there are none."""
+        return self._probed[0]
+
+    @cached_property
+    def strains(self) -> dict[tuple[str, str], FloatArray]:
+        """Largest mechanical strain of each member at a fibre, in size, float[rows] [m/m].
+
+        Fibres are those of the section, or the axis.
+        """
+        return self._probed[1]
+
+    @cached_property
+    def _probed(self) -> tuple[FloatArray, dict[tuple[str, str], FloatArray]]:
+        nodes, places = len(self.model.nodes), _gauges(self.model)
+        probes = [*_motions(self.model), *(sensor for _, sensor in places)]
+        sensors = {str(number): sensor for number, sensor in enumerate(probes)}
+        values = self._simulated(Simulator(self.model.with_sensors(sensors))).values
+        motions = values[:, : 3 * nodes].reshape(len(values), nodes, 3)
+        strains: dict[tuple[str, str], FloatArray] = {}
+        for (place, _), column in zip(places, np.abs(values[:, 3 * nodes :]).T, strict=True):
+            strains[place] = np.maximum(column, strains.get(place, column))
+        return motions, strains
+
+    def _simulated(self, simulator: Simulator) -> Simulated:
+        try:
+            with np.errstate(all="ignore"):
+                return Simulated(simulator.predict(self.contexts))
+        except InputError as error:
+            trouble = error
+        try:
+            with np.errstate(all="ignore"):
+                return Simulated(simulator.predict(self.middle), trouble)
+        except InputError as error:
+            none = np.zeros((0, len(simulator.model.sensors)))
+            return Simulated(none, error, anywhere=False)
+
+
+def _motions(model: Model) -> list[Sensor]:
+    """Sensors of the motion of every node, in three directions."""
+    return [
+        Sensor(kind="displacement", node=node, direction=direction, unit="m")
+        for node in model.nodes
+        for direction in DIRECTIONS
+    ]
+
+
+def _gauges(model: Model) -> list[tuple[tuple[str, str], Sensor]]:
+    """Gauges on every member at its fibres, with the names of both."""
+    places: list[tuple[tuple[str, str], Sensor]] = []
+    for name, member in model.members.items():
+        bends = member.kind == "frame"
+        fibres = (bends and model.sections[member.section].fibres) or {"axis": (0.0, 0.0)}
+        for fibre, (y, z) in fibres.items():
+            for at in STATIONS if bends else STATIONS[1:2]:
+                gauge = Sensor(kind="strain", member=name, at=at, y=y, z=z, unit="m/m")
+                places.append(((name, fibre), gauge))
+    return places
