@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rga.lazy import opening
 
 if TYPE_CHECKING:
+    from rga.checking import check
     from rga.diagnosis import diagnose
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
@@ -32,6 +33,7 @@ _HOMES = {
     "Record": "rga.records",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
+    "check": "rga.checking",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
     "load_criteria": "rga.findings.criteria",
@@ -53,6 +55,7 @@ __all__ = [
     "Simulator",
     "Twin",
     "__version__",
+    "check",
     "diagnose",
     "diagnose_many",
     "load_criteria",

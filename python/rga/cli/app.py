@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rga import __version__
+from rga.cli.check import check
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
@@ -29,8 +30,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify, schema,
-    doctor,
+    check, run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify,
+    schema, doctor,
 ):  # fmt: skip
     app.command()(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

@@ -24,7 +24,7 @@ def unused(over: OverRanges) -> Iterator[Finding]:
         yield Finding(
             "note",
             parts("context", idle),
-            "it drives no effect, so it changes nothing; a diagnosis may find that a load follows it",
+            "it drives no effect, so it changes nothing; a diagnosis may find what does",
             'where it is known what it does, let it drive a parameter: {"context": name}',
         )
     grouped = _named(model, "group")
