@@ -3,9 +3,7 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import numpy as np
-
-from rga.arrays import FloatArray
+from rga.arrays import FloatArray, IntArray
 from rga.checking.over_ranges import OverRanges
 from rga.diagnosis.data.observations import Data
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
@@ -56,17 +54,12 @@ class Measured:
         """What the model says of `data`, float[rows, sensors]."""
         return self.data.predict(self.over.simulator)
 
-    @property
-    def all_measured(self) -> bool:
-        """Whether no context was guessed."""
-        return not self.data.belief.inferred
-
     def moment(self, row: int) -> str:
         """A row of the record in words, with its time."""
         label = self.record.time_label(float(self.record.time[row]))
         return f"row {row + 1}, {label if isinstance(label, str) else f'{label:.12g} s'}"
 
-    def rows_in_words(self, rows: "np.ndarray") -> str:
+    def rows_in_words(self, rows: IntArray) -> str:
         """Rows in words: how many, the first and the last.
 
         Args:
