@@ -59,7 +59,7 @@ def joined(structure: Structure, plane: str | None) -> Joined:
     _, part = connected_components(coo_array((ones, (pairs[:, 0], pairs[:, 1])), (nodes, nodes)))
     fixed = arrays["fixed"].copy()
     fixed[:, list(HELD_BY_PLANE.get(plane or "", ()))] = False
-    held = fixed.any(axis=1)
+    held = np.asarray(fixed.any(axis=1), dtype=bool)
     held[arrays["inclined_node"]] = True
     held[springs[grounded, 0]] = True
     members = np.bincount(np.append(pairs.ravel(), springs[grounded, 0]), minlength=nodes)

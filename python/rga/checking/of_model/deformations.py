@@ -50,11 +50,11 @@ def _strains(over: OverRanges) -> Iterator[Finding]:
                 yields[name] = max(yields.get(name, (0.0, "", 0)), (used, fibre, row))
     if stretched:
         worst = max(stretched, key=lambda name: stretched[name][0])
-        strain, row = stretched[worst]
+        share, row = stretched[worst]
         yield Finding(
             "warning",
             parts("member", sorted(stretched)),
-            f"at {_at(over, row)} {worst!r} is strained by {100 * strain:.3g} %",
+            f"at {_at(over, row)} {worst!r} is strained by {100 * share:.3g} %",
             "check units of loads, E, A and I, and the ranges of the contexts",
         )
     if yields:

@@ -39,12 +39,12 @@ def mechanisms(over: OverRanges) -> Iterator[Finding]:
             "nothing holds it" + (f": it moves freely in {ways} ways" if ways > 1 else ""),
             "give it supports, or join it to what is held",
         )
-    motions = [one for one in motions if not _alone(one, together)]
-    for motion in motions[:MOST_TOLD]:
+    others = [one for one in motions if not _alone(one, together)]
+    for motion in others[:MOST_TOLD]:
         told = True
         yield _told(over, structure, names, motion)
-    if len(motions) > MOST_TOLD:
-        more = len(motions) - MOST_TOLD
+    if len(others) > MOST_TOLD:
+        more = len(others) - MOST_TOLD
         yield Finding("error", "structure", f"{more} more motions meet no resistance", REMEDY)
     if not told and not (together.members == 0).any():
         # Nothing is loose, but beside the stiffest parts the softest are lost in rounding.

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rga.arrays import FloatArray
+from rga.arrays import BoolArray, FloatArray
 from rga.checking.finding import Finding, parts
 from rga.checking.over_ranges import OverRanges
 from rga.model.axes import local_axes
@@ -68,7 +69,7 @@ def _known(*inertias: FloatArray) -> list[FloatArray]:
 
 
 def _far_apart(
-    what: str, unit: str, sizes: FloatArray, of: FloatArray, names: FloatArray
+    what: str, unit: str, sizes: FloatArray, of: BoolArray, names: NDArray[np.object_]
 ) -> Iterator[Finding]:
     if not of.any():
         return
