@@ -160,9 +160,12 @@ def _gauges(model: Model) -> list[tuple[tuple[str, str], Sensor]]:
     """Gauges on every member at its fibres, with the names of both."""
     places: list[tuple[tuple[str, str], Sensor]] = []
     for name, member in model.members.items():
-        bends = member.kind == "frame"
-        fibres = (bends and model.sections[member.section].fibres) or {"axis": (0.0, 0.0)}
-        for fibre, (y, z) in fibres.items():
+        bends, section = member.kind == "frame", model.sections[member.section]
+        bending = section.Iz, section.Iy
+        fibres = (bends and section.fibres) or {"axis": (0.0, 0.0)}
+        for fibre, place in fibres.items():
+            # Where it does not resist bending the solver knows no strain beside the axis.
+            y, z = (one if inertia else 0.0 for one, inertia in zip(place, bending, strict=True))
             for at in STATIONS if bends else STATIONS[1:2]:
                 gauge = Sensor(kind="strain", member=name, at=at, y=y, z=z, unit="m/m")
                 places.append(((name, fibre), gauge))
