@@ -318,7 +318,7 @@ class Model(Part):
                 name in sensors and sensors[name] == self.sensors.get(name)
                 for field, mark in effect.place_fields().items()
                 if mark.of == "sensor"
-                for name in listed(effect.place[field])
+                for name in listed(effect.place.get(field))
             )
 
         effects = {name: effect for name, effect in self.effects.items() if stays(effect)}

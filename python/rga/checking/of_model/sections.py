@@ -49,7 +49,7 @@ def _longest(model: Model) -> dict[str, tuple[float, bool]]:
 
 
 def _beside_length(where: str, one: Section, length: float, bends: bool) -> Iterator[Finding]:
-    side = np.sqrt(one.A)
+    side, length = np.sqrt(one.A), np.float64(length)
     if side > (THICKEST_BEAM if bends else THICKEST_BAR) * length:
         # A side of a hundredth to a tenth of the length is usual.
         usual = ((1e-3 * length) ** 2, (0.2 * length) ** 2)
@@ -66,17 +66,18 @@ def _beside_length(where: str, one: Section, length: float, bends: bool) -> Iter
 
 
 def _hollow(inertia: float, area: float) -> bool:
-    return inertia > HOLLOWEST * area**2
+    return inertia > HOLLOWEST * area * area
 
 
 def _by_itself(where: str, one: Section) -> Iterator[Finding]:
-    usual = (0.01 * one.A**2, 20 * one.A**2)
+    square = one.A * one.A
+    usual = (0.01 * square, 20 * square)
     for key, inertia in (("Iy", one.Iy), ("Iz", one.Iz)):
         if _hollow(inertia, one.A):
             what = f"{key} is {inertia:g} m4, which no section of A = {one.A:g} m2 has"
             remedy = meant(inertia, "m4", usual, INERTIAS)
             yield Finding("warning", where, what, remedy)
-        elif 0 < inertia < FLATTEST * one.A**2:
+        elif 0 < inertia < FLATTEST * square:
             what = f"{key} is {inertia:g} m4, less than of the thinnest plate of A = {one.A:g} m2"
             yield Finding("warning", where, what, "check both: A in m2, I in m4")
     polar = one.Iy + one.Iz
