@@ -1,7 +1,7 @@
 """A portal frame of which no check has anything to say, and a record of it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -119,7 +119,7 @@ def measured(model: Model) -> Callable[..., Record]:
             name: column + (model.context[name].noise or 0.0) * draw.standard_normal(rows)
             for name, column in contexts.items()
         }
-        kind = "iso" if isinstance(start, str) else "seconds"
+        kind: Literal["iso", "seconds"] = "iso" if isinstance(start, str) else "seconds"
         given: dict[str, Any] = {"readings": readings, "contexts": told, "time": time, **changed}
         return Record(start=start, time_format=kind, sensors=tuple(model.sensors), **given)
 

@@ -10,6 +10,7 @@ import pytest
 
 import rga
 from rga.checking import Checked, Finding, check
+from rga.checking.finding import refused
 from rga.errors import SeveralMistakes
 from rga.model import Model
 from rga.records import Record
@@ -60,8 +61,6 @@ def test_html_is_escaped_and_bounded() -> None:
 
 
 def test_a_list_of_mistakes_is_a_finding_each_up_to_a_bound() -> None:
-    from rga.checking.finding import refused
-
     few = refused(SeveralMistakes(["a: b", "c: d"], "model.json", "mend"))
     assert [one.what for one in few] == ["a: b", "c: d"]
     many = refused(SeveralMistakes([f"{k}: b" for k in range(50)], "model.json", "mend"))

@@ -363,8 +363,8 @@ def test_no_finding(case: str, checked: Callable[[Change], Checked]) -> None:
 
 
 def test_all_findings_come_at_once(checked: Callable[[Change], Checked]) -> None:
-    cases = ("a node by itself", "E in GPa", "density in t/m3", "a support of nothing")
-    cases = (*cases, "a load of nothing", "an unused section", "a member twice")
+    cases = ["a node by itself", "E in GPa", "density in t/m3", "a support of nothing"]
+    cases += ["a load of nothing", "an unused section", "a member twice"]
     found = checked(joined(*(SAID[case][0] for case in cases)))
     for case in cases:
         _, severity, expected = SAID[case]

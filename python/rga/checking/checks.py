@@ -9,8 +9,8 @@ import numpy as np
 from rga.checking.checked import Checked
 from rga.checking.finding import Finding, refused
 from rga.checking.measured import Measured
-from rga.checking.over_ranges import OverRanges
 from rga.checking.of_record.channels import channels
+from rga.checking.over_ranges import OverRanges
 from rga.checking.registry import OF_MODEL, OF_RECORD
 from rga.errors import InputError
 from rga.given import as_model, as_record
