@@ -3,7 +3,7 @@
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-from rga.lazy import opening
+from rga.lazy import listing, opening
 
 if TYPE_CHECKING:
     from rga.checking import check
@@ -69,3 +69,4 @@ __all__ = [
 
 
 __getattr__ = opening(__name__, _HOMES)
+__dir__ = listing(__name__, __all__)

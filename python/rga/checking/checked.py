@@ -13,13 +13,13 @@ MOST_SHOWN = 30
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckResult:
     """What checks have found.
 
     Attributes:
         findings: errors, then warnings, then notes.
 
-    >>> checked = Checked((Finding("note", "group 'a'", "no effect names it", "leave it"),))
+    >>> checked = CheckResult((Finding("note", "group 'a'", "no effect names it", "leave it"),))
     >>> checked.ok
     True
     >>> print(checked)

@@ -6,15 +6,15 @@ from typing import TypeVar
 
 import numpy as np
 
-from rga.checking.checked import Checked
+from rga.checking.checked import CheckResult
 from rga.checking.finding import Finding, refused
 from rga.checking.measured import Measured
 from rga.checking.of_record.channels import channels
 from rga.checking.over_ranges import OverRanges
 from rga.checking.registry import OF_MODEL, OF_RECORD
 from rga.errors import InputError
-from rga.given import as_model, as_record
-from rga.model.schema import Model
+from rga.given import as_record
+from rga.model import Model, as_model
 from rga.records import Record, RecordMapping
 
 T = TypeVar("T")
@@ -26,7 +26,7 @@ def check(
     record: Record | str | Path | None = None,
     *,
     mapping: str | Path | RecordMapping | None = None,
-) -> Checked:
+) -> CheckResult:
     """Everything that looks wrong or odd of a model, and of a record beside it.
 
     What cannot be read is a finding as well, so that all others come with it.
@@ -54,14 +54,14 @@ def check(
     try:
         structure = as_model(model)
     except InputError as error:
-        return Checked(tuple(refused(error)))
+        return CheckResult(tuple(refused(error)))
     over = OverRanges(structure)
     found = list(_all(OF_MODEL, over))
     if record is not None:
         found += _of_record(over, record, mapping)
     # What several checks meet is told once.
     found = list(dict.fromkeys(found))
-    return Checked(tuple(sorted(found, key=lambda one: ORDER.index(one.severity))))
+    return CheckResult(tuple(sorted(found, key=lambda one: ORDER.index(one.severity))))
 
 
 def _of_record(

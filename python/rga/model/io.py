@@ -48,6 +48,24 @@ def load_model(path: str | Path) -> Model:
     return model
 
 
+def as_model(given: Model | str | Path) -> Model:
+    """A model, read where its file is given.
+
+    Args:
+        given: the model, or the path of its file.
+
+    Raises:
+        InputError: the file cannot be used, or this is neither.
+    """
+    if isinstance(given, Model):
+        return given
+    if isinstance(given, str | Path):
+        return load_model(given)
+    raise InputError(
+        f"a {type(given).__name__} is no model", "model", "give a Model, or the path of its file"
+    )
+
+
 def read_model(content: Any, where: str) -> Model:
     """A model from parsed content; InputError with every mistake: key, value, what is right."""
     try:

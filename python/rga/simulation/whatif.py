@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model import Effect, Model, read_effect
+from rga.model import Effect, Model, as_model, read_effect
 from rga.model.parameter import Estimated
 from rga.simulation.simulator import Simulator
 
@@ -48,7 +48,7 @@ class WhatIf:
 
 
 def whatif(
-    model: Model,
+    model: Model | str | Path,
     settings: Mapping[str, float],
     add: Mapping[str, Effect] | None = None,
     *,
@@ -58,7 +58,7 @@ def whatif(
     """Compare the model with the same model after a change.
 
     Args:
-        model: the model.
+        model: the model, or its file.
         settings: context variables after the change, and `time` [s] where it matters.
         add: effects that the changed model has besides its own; one of the same name is replaced.
         base: contexts before the change, and `time` [s]; mid-range where left out.
@@ -67,6 +67,7 @@ def whatif(
     Raises:
         InputError: a setting is no context variable of the model, or an effect does not fit it.
     """
+    model = as_model(model)
     for name in settings:
         if name != "time" and name not in model.context:
             raise InputError(

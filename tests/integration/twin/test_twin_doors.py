@@ -20,7 +20,10 @@ LINUX = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="open file
 @pytest.fixture(scope="module")
 def ended(small_stream: Callable[..., Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The directory of a short run that has ended."""
-    folder, directory = small_stream(drifts=False, sinks=False, rows=60), tmp_path_factory.mktemp("r")
+    folder, directory = (
+        small_stream(drifts=False, sinks=False, rows=60),
+        tmp_path_factory.mktemp("r"),
+    )
     settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
     chosen = Settings.model_validate({**settings, "level": "A"})
     rga.run(folder / "model.json", folder / "record.csv", directory, settings=chosen)

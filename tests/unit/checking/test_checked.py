@@ -9,7 +9,7 @@ import polars as pl
 import pytest
 
 import rga
-from rga.checking import Checked, Finding, check
+from rga.checking import CheckResult, Finding, check
 from rga.checking.finding import refused
 from rga.errors import SeveralMistakes
 from rga.model import Model
@@ -34,7 +34,7 @@ def files(portal: dict[str, Any], measured: Callable[..., Record], tmp_path: Pat
 
 
 def test_text_and_json_say_the_same() -> None:
-    checked = Checked(FINDINGS)
+    checked = CheckResult(FINDINGS)
     assert not checked.ok
     lines = str(checked).split("\n")
     assert lines[0] == "error: it moves (node <X>): hold it"
@@ -47,15 +47,15 @@ def test_text_and_json_say_the_same() -> None:
         "what": "a < b & c",
         "remedy": "swap them",
     }
-    assert Checked(FINDINGS[1:]).ok
-    assert str(Checked()) == "Nothing looks wrong."
+    assert CheckResult(FINDINGS[1:]).ok
+    assert str(CheckResult()) == "Nothing looks wrong."
 
 
 def test_html_is_escaped_and_bounded() -> None:
-    html = Checked(FINDINGS)._repr_html_()
+    html = CheckResult(FINDINGS)._repr_html_()
     assert "node &lt;X&gt;" in html
     assert "a &lt; b &amp; c" in html
-    many = Checked(tuple(Finding("note", str(k), "w", "r") for k in range(500)))._repr_html_()
+    many = CheckResult(tuple(Finding("note", str(k), "w", "r") for k in range(500)))._repr_html_()
     assert many.count("<tr>") == 31
     assert "470 more" in many
 

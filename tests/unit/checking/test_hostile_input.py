@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.checking import Checked, check
+from rga.checking import CheckResult, check
 from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records import Record
@@ -27,7 +27,7 @@ def numbers(part: Any, here: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
             yield (*here, key)
 
 
-def whole(found: Checked) -> None:
+def whole(found: CheckResult) -> None:
     """Findings can be told in every form."""
     assert str(found)
     assert json.loads(found.to_json())["ok"] == found.ok

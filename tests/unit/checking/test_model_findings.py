@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from rga.checking import Checked, check
+from rga.checking import CheckResult, check
 
 Content = dict[str, Any]
 Change = Callable[[Content], object]
@@ -273,10 +273,10 @@ SAID: dict[str, tuple[Change, str, list[str]]] = {
 
 
 @pytest.fixture
-def checked(portal: Content, tmp_path: Path) -> Callable[[Change], Checked]:
+def checked(portal: Content, tmp_path: Path) -> Callable[[Change], CheckResult]:
     """What is said of the file of the changed portal."""
 
-    def found(change: Change) -> Checked:
+    def found(change: Change) -> CheckResult:
         change(portal)
         path = tmp_path / "portal.json"
         path.write_text(json.dumps(portal), encoding="utf-8")
@@ -285,12 +285,12 @@ def checked(portal: Content, tmp_path: Path) -> Callable[[Change], Checked]:
     return found
 
 
-def test_nothing_is_said_of_a_sound_model(checked: Callable[[Change], Checked]) -> None:
+def test_nothing_is_said_of_a_sound_model(checked: Callable[[Change], CheckResult]) -> None:
     assert checked(lambda content: None).findings == ()
 
 
 @pytest.mark.parametrize("case", SAID)
-def test_a_finding(case: str, checked: Callable[[Change], Checked]) -> None:
+def test_a_finding(case: str, checked: Callable[[Change], CheckResult]) -> None:
     change, severity, expected = SAID[case]
     found = checked(change)
     said = [one for one in found.findings if all(part in str(one) for part in expected)]
@@ -358,11 +358,11 @@ SILENT: dict[str, Change] = {
 
 
 @pytest.mark.parametrize("case", SILENT)
-def test_no_finding(case: str, checked: Callable[[Change], Checked]) -> None:
+def test_no_finding(case: str, checked: Callable[[Change], CheckResult]) -> None:
     assert str(checked(SILENT[case])) == "Nothing looks wrong."
 
 
-def test_all_findings_come_at_once(checked: Callable[[Change], Checked]) -> None:
+def test_all_findings_come_at_once(checked: Callable[[Change], CheckResult]) -> None:
     cases = ["a node by itself", "E in GPa", "density in t/m3", "a support of nothing"]
     cases += ["a load of nothing", "an unused section", "a member twice"]
     found = checked(joined(*(SAID[case][0] for case in cases)))

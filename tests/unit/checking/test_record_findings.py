@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rga.checking import Checked, check
+from rga.checking import CheckResult, check
 from rga.model import Model, read_model
 from rga.records import Record
 
@@ -250,7 +250,7 @@ def test_a_record_that_cannot_be_read_comes_beside_the_model(
 ) -> None:
     portal["materials"]["steel"]["E"] = 210
     (tmp_path / "record.csv").write_text("time,U\n0,1\n0,2\n", encoding="utf-8")
-    found: Checked = check(read_model(portal, "portal"), tmp_path / "record.csv")
+    found: CheckResult = check(read_model(portal, "portal"), tmp_path / "record.csv")
     assert not found.ok
     assert "record.csv" in found.findings[0].where
     assert any("E is 210 Pa" in one.what for one in found.findings)
