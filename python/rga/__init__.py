@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rga.lazy import listing, opening
 
 if TYPE_CHECKING:
+    from rga.building import ModelBuilder
     from rga.checking import check
     from rga.diagnosis import diagnose
     from rga.findings import Findings
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, load_record
-    from rga.simulation import Simulator
+    from rga.simulation import Results, Simulator, results
     from rga.twin import Twin
 
 __version__ = version("rga")
@@ -29,8 +30,10 @@ _HOMES = {
     "Effect": "rga.model",
     "Findings": "rga.findings",
     "Model": "rga.model",
+    "ModelBuilder": "rga.building",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
+    "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "check": "rga.checking",
@@ -41,6 +44,7 @@ _HOMES = {
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
+    "results": "rga.simulation",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
 }
@@ -50,8 +54,10 @@ __all__ = [
     "Effect",
     "Findings",
     "Model",
+    "ModelBuilder",
     "Plan",
     "Record",
+    "Results",
     "Simulator",
     "Twin",
     "__version__",
@@ -63,6 +69,7 @@ __all__ = [
     "load_model",
     "load_record",
     "plan",
+    "results",
     "run",
     "write_findings",
 ]

@@ -16,6 +16,7 @@ EXTRAS = {
     "sqlalchemy": "twin",
     "alembic": "twin",
     "filelock": "twin",
+    "weasyprint": "pdf",
 }
 
 

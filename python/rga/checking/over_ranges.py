@@ -1,5 +1,6 @@
 """What a model does over the ranges of its contexts: simulated once for all checks."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,15 +10,14 @@ from scipy.stats import qmc
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
 from rga.model.effect import seconds
-from rga.model.schema import Model, Sensor
+from rga.model.schema import Model
 from rga.model.structure import Structure
-from rga.simulation import Simulator
+from rga.simulation import Results, Simulator, results
 
 #: values of each context along its range, the others at their middle; draws of all together
 ALONG, DRAWN = 25, 32
-#: places along a frame member where it is looked at
-STATIONS = (0.0, 0.5, 1.0)
-DIRECTIONS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+#: places along a member where its stress is looked at
+STATIONS = 5
 
 
 @dataclass(frozen=True)
@@ -109,29 +109,16 @@ class OverRanges:
         return self._simulated(self.simulator)
 
     @cached_property
-    def motions(self) -> FloatArray:
-        """Displacements of all nodes, float[rows, nodes, 3] [m]; no row where there are none."""
-        return self._probed[0]
-
-    @cached_property
-    def strains(self) -> dict[tuple[str, str], FloatArray]:
-        """Largest mechanical strain of each member at a fibre, in size, float[rows] [m/m].
-
-        Fibres are those of the section, or the axis.
-        """
-        return self._probed[1]
-
-    @cached_property
-    def _probed(self) -> tuple[FloatArray, dict[tuple[str, str], FloatArray]]:
-        nodes, places = len(self.model.nodes), _gauges(self.model)
-        probes = [*_motions(self.model), *(sensor for _, sensor in places)]
-        sensors = {str(number): sensor for number, sensor in enumerate(probes)}
-        values = self._simulated(Simulator(self.model.with_sensors(sensors))).values
-        motions = values[:, : 3 * nodes].reshape(len(values), nodes, 3)
-        strains: dict[tuple[str, str], FloatArray] = {}
-        for (place, _), column in zip(places, np.abs(values[:, 3 * nodes :]).T, strict=True):
-            strains[place] = np.maximum(column, strains.get(place, column))
-        return motions, strains
+    def results(self) -> Results | None:
+        """Of the structure at all rows, else at the middle; None where it cannot be simulated."""
+        if not self.readings.anywhere:
+            return None
+        whole = self.readings.trouble is None
+        with np.errstate(all="ignore"):
+            for contexts in (self.contexts, self.middle) if whole else (self.middle,):
+                with suppress(InputError):
+                    return results(self.model, contexts, stations=STATIONS)
+        return None
 
     def _simulated(self, simulator: Simulator) -> Simulated:
         try:
@@ -145,28 +132,3 @@ class OverRanges:
         except InputError as error:
             none = np.zeros((0, len(simulator.model.sensors)))
             return Simulated(none, error, anywhere=False)
-
-
-def _motions(model: Model) -> list[Sensor]:
-    """Sensors of the motion of every node, in three directions."""
-    return [
-        Sensor(kind="displacement", node=node, direction=direction, unit="m")
-        for node in model.nodes
-        for direction in DIRECTIONS
-    ]
-
-
-def _gauges(model: Model) -> list[tuple[tuple[str, str], Sensor]]:
-    """Gauges on every member at its fibres, with the names of both."""
-    places: list[tuple[tuple[str, str], Sensor]] = []
-    for name, member in model.members.items():
-        bends, section = member.kind == "frame", model.sections[member.section]
-        bending = section.Iz, section.Iy
-        fibres = (bends and section.fibres) or {"axis": (0.0, 0.0)}
-        for fibre, place in fibres.items():
-            # Where it does not resist bending the solver knows no strain beside the axis.
-            y, z = (one if inertia else 0.0 for one, inertia in zip(place, bending, strict=True))
-            for at in STATIONS if bends else STATIONS[1:2]:
-                gauge = Sensor(kind="strain", member=name, at=at, y=y, z=z, unit="m/m")
-                places.append(((name, fibre), gauge))
-    return places

@@ -13,8 +13,10 @@ from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
+from rga.cli.example import example
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
+from rga.cli.results import results
 from rga.cli.run import run
 from rga.cli.schema import schema
 from rga.cli.simulate import simulate
@@ -30,8 +32,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    check, run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify,
-    schema, doctor,
+    check, run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, results, dataset,
+    verify, schema, example, doctor,
 ):  # fmt: skip
     app.command()(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

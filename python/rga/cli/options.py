@@ -37,6 +37,12 @@ JsonTarget = Annotated[
         "--json", metavar="[FILE]", help="Write the result as JSON; without FILE to the output."
     ),
 ]
+PrintPdf = Annotated[
+    bool,
+    typer.Option(
+        "--pdf", help="Write report.pdf too: by a browser that is installed, else WeasyPrint."
+    ),
+]
 Workers = Annotated[
     int, typer.Option("--workers", min=1, help="Processes at work on this machine.")
 ]

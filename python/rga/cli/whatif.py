@@ -1,4 +1,4 @@
-"""`rga whatif`: what a change does to every sensor."""
+"""`rga whatif`: what an added effect, or a change of contexts, does to every sensor."""
 
 from math import isclose
 from pathlib import Path
@@ -42,6 +42,8 @@ def whatif(
 ) -> None:
     """Show every sensor before and after a change, with intervals where something is not sure.
 
+    With --add the structure without and with the effect is compared at the same contexts, those
+    that are set among them; without it, the contexts as they stand with those that are set.
     Contexts that are not set stand at mid-range, or where the twin of a run stands.
     """
     from rga.cli.output import write_json
@@ -55,6 +57,7 @@ def whatif(
     if json is not None:
         write_json(_content(result), json)
     if json != "-":
+        typer.echo(_contexts(result))
         _show(result)
 
 
@@ -81,7 +84,30 @@ def _content(result: "WhatIf") -> dict[str, Any]:
         if table is not None:
             for name, interval in zip(result.sensors, table.tolist(), strict=True):
                 sensors[name][key] = interval
-    return {"contexts": result.contexts, "sensors": sensors, "warnings": result.warnings}
+    return {
+        "contexts_before": result.contexts_before,
+        "contexts": result.contexts,
+        "sensors": sensors,
+        "warnings": result.warnings,
+    }
+
+
+def _contexts(result: "WhatIf") -> str:
+    """At which contexts the two sides are compared."""
+
+    def listed(contexts: dict[str, float]) -> str:
+        return ", ".join(f"{name} = {value:.4g}" for name, value in contexts.items())
+
+    if not result.contexts:
+        return "No context drives the model."
+    if result.contexts_before == result.contexts:
+        return f"Without and with the change, at {listed(result.contexts)}."
+    moved = {
+        name: value
+        for name, value in result.contexts.items()
+        if value != result.contexts_before[name]
+    }
+    return f"Before: {listed(result.contexts_before)}. After: {listed(moved)}."
 
 
 def _show(result: "WhatIf") -> None:

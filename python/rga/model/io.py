@@ -89,7 +89,7 @@ def model_content(model: Model) -> dict[str, Any]:
 
     An effect keeps what it was given, since one that is given nothing is refused.
     """
-    content = model.model_dump(mode="json", by_alias=True, exclude_defaults=True)
+    content = model.model_dump(mode="json", exclude_defaults=True)
     content["effects"] = {
         name: {
             "kind": effect.kind,

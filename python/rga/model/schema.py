@@ -256,6 +256,8 @@ class Model(Part):
         schema_file: the JSON Schema by which an editor completes the file (`"$schema"`).
     """
 
+    model_config = ConfigDict(serialize_by_alias=True, validate_by_name=True)
+
     schema_file: Annotated[str | None, Field(alias="$schema")] = None
     rga_model: Literal[1]
     name: str

@@ -152,7 +152,7 @@ def _planned(
     scope = _scope(model, findings, rivalries, lane, truck, warnings)
     progress("choosing measurements", 0.0)
     chooser = scope.chooser(_separable(scope))
-    sensors, tests = advised(findings, scope.site.added, scope.site.tests, truck)
+    sensors, tests = advised(findings, scope.site.added, scope.site.tests)
     columns = [scope.site.standing + one for one in sensors]
     choice = chooser.best(*budget, (columns, tests))
     beside = _beside(chooser, scope.site, choice, columns, tests)
@@ -336,7 +336,9 @@ def _sentence(separations: Sequence[Separation], scope: Scope, choice: Choice) -
 
 def _truck(truck: Truck, lane: Lane) -> PlannedTruck:
     paths = [list(path) for path in lane.paths]
-    return PlannedTruck(loads=list(truck.loads), spacings=list(truck.spacings), paths=paths)
+    return PlannedTruck(
+        loads=list(truck.loads), spacings=list(truck.spacings), paths=paths, driven=lane.driven
+    )
 
 
 def _silent(stage: str, done: float) -> None:

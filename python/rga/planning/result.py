@@ -81,11 +81,18 @@ class PlannedTest(PlanPart):
 
 
 class PlannedTruck(PlanPart):
-    """The truck of the tests: axle loads [kN], spacings [m], and the paths that share it."""
+    """The truck of the tests, or the test weights where nothing drives on the structure.
+
+    Attributes:
+        loads, spacings: of its axles [kN] [m].
+        paths: nodes, that share it.
+        driven: whether it is a truck.
+    """
 
     loads: list[float]
     spacings: list[float]
     paths: list[list[str]]
+    driven: bool = True
 
 
 class SimulatedTrials(PlanPart):

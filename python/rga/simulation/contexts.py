@@ -11,7 +11,7 @@ from rga.errors import InputError
 from rga.model.effect import seconds
 
 
-class Frame(Protocol):
+class ColumnTable(Protocol):
     """A table with named columns, as polars and pandas have them."""
 
     @property
@@ -21,7 +21,7 @@ class Frame(Protocol):
 
 
 #: context variables by name, each a value a row or one for all; or a table of them
-Contexts: TypeAlias = Mapping[str, ArrayLike] | Frame
+Contexts: TypeAlias = Mapping[str, ArrayLike] | ColumnTable
 
 
 def by_name(given: Contexts) -> Mapping[str, ArrayLike]:

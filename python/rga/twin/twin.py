@@ -8,6 +8,7 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.model import Effect, Model
+from rga.model.effect import seconds
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.archive import Archive
 from rga.twin.digital_twin import DigitalTwin, TwinState
@@ -73,20 +74,43 @@ class Twin:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def as_of(self, *, row: int | None = None, time: float | None = None) -> "Twin":
-        """The twin as it stood when the record had reached a row, or a time since its start [s].
+    def as_of(self, *, row: int | None = None, time: float | str | None = None) -> "Twin":
+        """The twin as it stood when the record had reached a row, or a time.
+
+        Args:
+            row: number of the row, from 0.
+            time: seconds since the first row, or a date as in the record (ISO 8601).
 
         Raises:
-            InputError: a row or time before the record.
+            InputError: a row or time before the record, or a text that is no date.
         """
-        for name, value in (("row", row), ("time", time)):
+        elapsed = self._elapsed(time) if isinstance(time, str) else time
+        for name, value, given in (("row", row, row), ("time", elapsed, time)):
             if value is not None and not value >= 0:
                 raise InputError(
-                    f"the {name} {value:g} is none of the record",
+                    f"the {name} {given} is none of the record",
                     name,
-                    "give rows, or seconds since the first row, from 0 on",
+                    "give rows, seconds since the first row from 0 on, or a date of the record",
                 )
-        return Twin(self._view.as_of(row, time=time), self._place)
+        return Twin(self._view.as_of(row, time=elapsed), self._place)
+
+    def _elapsed(self, moment: str) -> float:
+        """Seconds from the first row of the record to a date."""
+        station = station_of(self._view)
+        if station.time_format != "iso":
+            raise InputError(
+                f"the record counts seconds, and {moment!r} is a date",
+                "time",
+                "give seconds since the first row",
+            )
+        try:
+            return seconds(moment) - station.origin
+        except ValueError:
+            raise InputError(
+                f"{moment!r} is no date",
+                "time",
+                "write it as in the record, such as 2026-03-01T12:00",
+            ) from None
 
     @property
     def version(self) -> int:

@@ -29,7 +29,7 @@ SPRING = {"kind": "support_spring", "support": "rocker", "dof": "ux", "stiffness
 SAID = """120 rows | the gap left its band | w1, w2, w3 | 8.31 → 1.13 | version 2 | 130 [121, 138]
 in force | 90 % interval | people on 1 row | What happened | The closing diagnosis
 Provenance | grew to 2400 | 1 alarm | 2024-03-03 12:00:00 | beyond the model as given"""
-FIGURES = {"Gap over time", "The bridge with the gap", "Gap of", "Contexts", "Stored simulations"}
+FIGURES = {"Gap over time", "The structure and the gap", "Gap of", "Contexts", "Stored simulations"}
 
 
 @pytest.fixture(scope="module")
@@ -250,7 +250,7 @@ def test_a_quiet_run(model: Model, tmp_path: Path) -> None:
     assert "Nothing happened to the twin." in reader.text
     assert "in force" not in reader.text
     assert ">alarm<" not in html
-    assert reader.figures_of_the_run() == {"Gap over time", "The bridge with the gap", "Gap of"}
+    assert reader.figures_of_the_run() == {"Gap over time", "The structure and the gap", "Gap of"}
 
 
 def test_columns_without_values(model: Model, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from rga.checking.finding import Finding, parts
 from rga.checking.over_ranges import OverRanges
+from rga.simulation.stresses import AXIS, Stresses
 
 #: share of the size of the structure by which it may move in use, and beyond which it is another
 MOST, FAR = 0.01, 0.1
@@ -15,12 +16,12 @@ ELASTIC = 0.02
 
 def deformations(over: OverRanges) -> Iterator[Finding]:
     """Deflections beyond a hundredth of the size, strains beyond 2 %, stresses beyond yield."""
-    model, motions = over.model, over.motions
-    points = np.array(list(model.nodes.values()), dtype=float).reshape(-1, 3)
-    if not len(motions) or not len(points) or not model.members:
+    model, found = over.model, over.results if over.model.members else None
+    if found is None:
         return
+    points = np.array(list(model.nodes.values()), dtype=float)
     size = float(np.ptp(points, axis=0).max())
-    moved = np.linalg.norm(motions, axis=2)
+    moved = np.linalg.norm(found.displacements[..., :3], axis=2)
     row, node = np.unravel_index(int(np.argmax(moved)), moved.shape)
     largest = float(moved[row, node])
     if largest > MOST * size:
@@ -32,21 +33,22 @@ def deformations(over: OverRanges) -> Iterator[Finding]:
             "size of the structure" + (": beyond what a linear analysis tells" if beyond else ""),
             "check units of loads, E, A and I, and the ranges of the contexts",
         )
-    yield from _strains(over)
+    yield from _stresses(over, found.stresses)
 
 
-def _strains(over: OverRanges) -> Iterator[Finding]:
+def _stresses(over: OverRanges, stresses: Stresses) -> Iterator[Finding]:
     model = over.model
     yields: dict[str, tuple[float, str, int]] = {}
     stretched: dict[str, tuple[float, int]] = {}
-    for (name, fibre), strain in over.strains.items():
-        row = int(np.argmax(strain))
-        if strain[row] > ELASTIC:
-            stretched[name] = max(stretched.get(name, (0.0, 0)), (float(strain[row]), row))
+    for name, fibres in stresses.of_members.items():
         material = model.materials[model.members[name].material]
-        if material.yield_strength is not None:
-            used = float(material.E * strain[row] / material.yield_strength)
-            if used > 1:
+        for fibre, along in fibres.items():
+            of_rows = np.abs(along).max(axis=1)
+            row, size = int(np.argmax(of_rows)), float(of_rows.max())
+            if size > ELASTIC * material.E:
+                stretched[name] = max(stretched.get(name, (0.0, 0)), (size / material.E, row))
+            if material.yield_strength is not None and size > material.yield_strength:
+                used = size / material.yield_strength
                 yields[name] = max(yields.get(name, (0.0, "", 0)), (used, fibre, row))
     if stretched:
         worst = max(stretched, key=lambda name: stretched[name][0])
@@ -60,7 +62,7 @@ def _strains(over: OverRanges) -> Iterator[Finding]:
     if yields:
         worst = max(yields, key=lambda name: yields[name][0])
         used, fibre, row = yields[worst]
-        at = "" if fibre == "axis" else f" at fibre {fibre!r}"
+        at = "" if fibre == AXIS else f" at fibre {fibre!r}"
         yield Finding(
             "warning",
             parts("member", sorted(yields)),

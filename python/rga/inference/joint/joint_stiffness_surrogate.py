@@ -27,7 +27,7 @@ def with_bending(model: Model) -> Model:
             bending[f"{name}, {BENDING}"] = member.model_copy(update=changed)
     return Model.model_validate(
         {
-            **{one.alias or key: getattr(model, key) for key, one in Model.model_fields.items()},
+            **{key: getattr(model, key) for key in Model.model_fields},
             "sections": sections,
             "members": {**model.members, **bending},
         }

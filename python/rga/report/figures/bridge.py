@@ -91,4 +91,4 @@ def _words(off: dict[str, FloatArray]) -> str:
         if len(seen):
             parts.append(f"{when} the extension by {percent(float(np.median(seen)), sign=False)}")
     said = " and ".join(parts) or "by an amount that cannot be determined"
-    return f"The bridge with its sensors; the median sensor is off {said}."
+    return f"The structure with its sensors; the median sensor is off {said}."

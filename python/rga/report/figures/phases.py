@@ -72,7 +72,9 @@ def draw_phases(history: History) -> Markup | None:
         worst = number(float(np.nanmax(values)), 2) if np.isfinite(values).any() else "not known"
         words = ", ".join(phase.title for phase in looked_at)
         return inline(
-            figure, "phases", f"The bridge with the gap of its sensors: {words}; at most {worst}."
+            figure,
+            "phases",
+            f"The structure and the gap of its sensors: {words}; at most {worst}.",
         )
 
 
