@@ -29,9 +29,8 @@ def diagnoses(folder: Path) -> str:
     assert_type(found, rga.Findings)
     rga.diagnose(record, model)  # type: ignore[arg-type]
     rga.diagnose(model)  # type: ignore[call-arg]
-    assert_type(
-        rga.diagnose("model.json", folder / "record.csv", mapping="import.toml"), rga.Findings
-    )
+    of_files = rga.diagnose("model.json", folder / "record.csv", mapping="import.toml")
+    assert_type(of_files, rga.Findings)
     found.write(folder / "out")
     plan = rga.plan(model, found, sensors=1, positions=2)
     assert_type(plan.sentence, str)
@@ -44,8 +43,7 @@ def simulates(model: Model) -> Array:
     shown = simulator.predict({"load": np.array([1.0, 2.0]), "temperature": 10.0})
     assert_type(shown, Array)
     simulator.predict(["load"])  # type: ignore[arg-type]
-    shown = rga.Simulator("model.json").predict(pl.DataFrame({"load": [1.0, 2.0]}))
-    return shown
+    return rga.Simulator("model.json").predict(pl.DataFrame({"load": [1.0, 2.0]}))
 
 
 def checks(model: Model, record: Record) -> bool:

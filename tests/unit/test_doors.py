@@ -158,7 +158,7 @@ def test_times_of_a_table_are_dates(two_bars: dict[str, Any]) -> None:
     }
     simulator = rga.Simulator(read_model(two_bars, "two bars"))
     moments = [datetime(2024, 5, 1, 11) + timedelta(hours=k) for k in range(3)]
-    level = {"temperature": np.full(3, 10.0), "load": np.zeros(3)}
+    level: dict[str, Any] = {"temperature": np.full(3, 10.0), "load": np.zeros(3)}
     texts = [moment.isoformat() for moment in moments]
     expected = simulator.predict({**level, "time": [seconds(text) for text in texts]})
     assert expected[:, 0].tolist() == pytest.approx([0.0, -5.0, -5.0])
@@ -176,7 +176,10 @@ def test_whatif_takes_a_file(model_file: Path) -> None:
 
 def test_many_bridges_are_taken_by_name(model_file: Path, tmp_path: Path) -> None:
     model = rga.load_model(model_file)
-    bridges = {"north": (model, tmp_path / "no.csv"), "south": (tmp_path / "no.json", "x.csv")}
+    bridges: dict[str, tuple[Any, Any]] = {
+        "north": (model, tmp_path / "no.csv"),
+        "south": (tmp_path / "no.json", "x.csv"),
+    }
     summaries = rga.diagnose_many(bridges, tmp_path / "out")
     assert [one.name for one in summaries] == ["north", "south"]
     assert "no.csv" in str(summaries[0].error)
