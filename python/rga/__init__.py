@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from rga.building import ModelBuilder
     from rga.checking import check
     from rga.diagnosis import diagnose
+    from rga.drawing import draw, plot_model
+    from rga.drawing.charts import plot_findings, plot_record
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
@@ -39,11 +41,15 @@ _HOMES = {
     "check": "rga.checking",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
+    "draw": "rga.drawing",
     "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
+    "plot_findings": "rga.drawing.charts",
+    "plot_model": "rga.drawing",
+    "plot_record": "rga.drawing.charts",
     "results": "rga.simulation",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
@@ -64,11 +70,15 @@ __all__ = [
     "check",
     "diagnose",
     "diagnose_many",
+    "draw",
     "load_criteria",
     "load_findings",
     "load_model",
     "load_record",
     "plan",
+    "plot_findings",
+    "plot_model",
+    "plot_record",
     "results",
     "run",
     "write_findings",

@@ -13,6 +13,7 @@ from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
+from rga.cli.draw import draw
 from rga.cli.example import example
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
@@ -32,8 +33,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    check, run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, results, dataset,
-    verify, schema, example, doctor,
+    check, run, diagnose, diagnose_many, plan, draw, whatif, replay, rollback, simulate, results,
+    dataset, verify, schema, example, doctor,
 ):  # fmt: skip
     app.command()(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

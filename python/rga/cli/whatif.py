@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rga.cli.options import JsonTarget
-from rga.errors import InputError
+from rga.cli.options import JsonTarget, setting
 
 if TYPE_CHECKING:
     from rga.model import Effect
@@ -49,7 +48,7 @@ def whatif(
     from rga.cli.output import write_json
     from rga.simulation.whatif import read_effects
 
-    given = dict(_setting(text) for text in settings or [])
+    given = dict(setting(text, "--set") for text in settings or [])
     effects = {name: effect for path in add or [] for name, effect in read_effects(path).items()}
     result = _answer(model, given, effects)
     for warning in result.warnings:
@@ -135,13 +134,3 @@ def _show(result: "WhatIf") -> None:
             "Intervals are of what is not sure of contexts and of estimated effects; without one "
             "(-) all of these are taken as exact. What scatters as built is not in them."
         )
-
-
-def _setting(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    try:
-        return name.strip(), float(value)
-    except ValueError:
-        raise InputError(
-            f"{text!r} sets no number", "--set", "write --set name=value, such as temperature=35"
-        ) from None

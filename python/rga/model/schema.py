@@ -21,6 +21,7 @@ from pydantic import (
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment, seconds
 from rga.model.parameter import Number, listed
+from rga.model.pictured import Pictured
 from rga.model.references import EVERYTHING_READ, Mistake, effect_mistakes, mistakes, refuse
 from rga.model.units import UNITS
 from rga.model.vocabulary import field_texts, kind_text
@@ -247,7 +248,7 @@ def _of_vocabulary(effect: Any) -> Effect:
     return Effect.vocabulary[effect["kind"]].model_validate(effect)
 
 
-class Model(Part):
+class Model(Pictured, Part):
     """A model file. SI units, z up, tension and elongation positive; see the design of the format.
 
     Raises on validation: unknown keys, members between missing nodes, places that do not exist.

@@ -72,22 +72,7 @@ def whatif(
         InputError: a setting is no context variable of the model, or an effect does not fit it.
     """
     model = as_model(model)
-    for name in settings:
-        if name != "time" and name not in model.context:
-            raise InputError(
-                f"there is no context variable {name!r}",
-                f"model {model.name!r}",
-                "it has " + (", ".join(model.context) or "none"),
-            )
-    for name, variable in model.context.items():
-        low, high = variable.range
-        far = FAR * (high - low)
-        if name in settings and not low - far <= settings[name] <= high + far:
-            raise InputError(
-                f"{name} = {settings[name]:g} is more than {FAR} times its range away from it",
-                f"model {model.name!r}",
-                f"give a value near {low:g}..{high:g} {variable.unit}",
-            )
+    check_settings(model, settings)
     middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
     contexts = {**middle, **(base or {}), **settings}
     # Without a base both sides stand at the same time: only what was set makes a difference.
@@ -112,6 +97,30 @@ def whatif(
     units = tuple(sensor.unit for sensor in model.sensors.values())
     without, having = ({name: table[name] for name in model.context} for table in (first, contexts))
     return WhatIf(tuple(model.sensors), units, before, after, *intervals, without, having, warnings)
+
+
+def check_settings(model: Model, settings: Mapping[str, float]) -> None:
+    """Refuse settings of contexts that the model does not have, or far from their ranges.
+
+    Raises:
+        InputError: names the context.
+    """
+    for name in settings:
+        if name != "time" and name not in model.context:
+            raise InputError(
+                f"there is no context variable {name!r}",
+                f"model {model.name!r}",
+                "it has " + (", ".join(model.context) or "none"),
+            )
+    for name, variable in model.context.items():
+        low, high = variable.range
+        far = FAR * (high - low)
+        if name in settings and not low - far <= settings[name] <= high + far:
+            raise InputError(
+                f"{name} = {settings[name]:g} is more than {FAR} times its range away from it",
+                f"model {model.name!r}",
+                f"give a value near {low:g}..{high:g} {variable.unit}",
+            )
 
 
 def _intervals(

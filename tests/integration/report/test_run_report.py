@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga.drawing.time_axis import spaced, thinned, time_axis
 from rga.findings import schema as contract
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Cause, Findings, Unexplained
 from rga.model import Model, read_model
+from rga.quantities import number
 from rga.records import Record
 from rga.report.figures.gap_map import MOST_CELLS, stretches
 from rga.report.figures.run_gap import MOST_PHASES, phases, smoothed, standardised
-from rga.report.figures.time_axis import spaced, thinned, time_axis
 from rga.report.pages.run_page import lived
 from rga.report.pages.write import write_report, write_run_report
-from rga.report.text.quantities import number
 from rga.twin.history import Event, History, Version
 from rga_bench.synthetic import draw_case
 
@@ -146,7 +146,9 @@ class Reader(HTMLParser):
         for name, value in attrs:
             if tag == "svg" and name == "aria-label":
                 self.figures.append(str(value))
-            if name in ("src", "href", "xlink:href") and not str(value).startswith("#"):
+            if name in ("src", "href", "xlink:href") and not str(value).startswith(
+                ("#", "data:text/csv")
+            ):
                 self.fetched.append(str(value))
 
     def handle_data(self, data: str) -> None:

@@ -6,10 +6,10 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from rga.arrays import FloatArray
 from rga.findings import Findings
+from rga.quantities import DASH, percent, short
 from rga.report.drawing.bridge_drawing import Shades, draw_at_sensors
 from rga.report.drawing.places import named_parts
 from rga.report.figures.deviation import percent_off, squares
-from rga.report.text.quantities import DASH, percent, short
 
 #: below the reference, at it, above it
 EITHER_WAY = LinearSegmentedColormap.from_list(

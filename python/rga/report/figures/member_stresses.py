@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rga.diagnosis.member_forces import IDLE
 from rga.diagnosis.member_stresses import MemberStress
-from rga.report.text.quantities import DASH, fixed, number, percent
+from rga.quantities import DASH, fixed, number, percent
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,18 @@ import numpy as np
 from rga.diagnosis.checks.leave_one_out import unseen_groups
 from rga.diagnosis.member_forces import member_forces
 from rga.diagnosis.member_stresses import member_stresses
+from rga.drawing.figure_style import FONTS
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, kind_words
 from rga.findings.schema import Cause
 from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
+from rga.quantities import DASH, duration, number, percent, short
 from rga.report.figures.bridge import draw_bridge, draw_residuals
+from rga.report.figures.channels import all_channels
 from rga.report.figures.deviation import percent_off, runs
 from rga.report.figures.explanations import draw_explanations, kept, ranked
-from rga.report.figures.figure_style import FONTS
 from rga.report.figures.gain import draw_gain
 from rga.report.figures.member_forces import draw_forces, force_table, restraint_words
 from rga.report.figures.member_stresses import stress_table
@@ -28,7 +30,6 @@ from rga.report.pages.cards import card, generic, moment, plain
 from rga.report.pages.evidence import evidence
 from rga.report.pages.fault_tolerant_parts import part
 from rga.report.text.actions import BY_VERDICT, actions
-from rga.report.text.quantities import DASH, duration, number, percent, short
 
 VERDICTS = {
     "nothing_wrong": "Nothing wrong found",
@@ -96,6 +97,7 @@ def page(findings: Findings) -> dict[str, Any]:
             for group in findings.groups
         ],
         "sensors": part("The table of the sensors", sensors, findings),
+        "channels": part("Every channel", all_channels, findings) if len(record) else None,
         "series": series[0] if series else series,
         "over_time": bool(series and series[1]),
         "explanations": part("The table of explanations", explanations, findings),
