@@ -3,10 +3,11 @@
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-from rga.lazy import opening
+from rga.lazy import listing, opening
 
 if TYPE_CHECKING:
     from rga.building import ModelBuilder
+    from rga.checking import check
     from rga.diagnosis import diagnose
     from rga.drawing import draw, plot_model
     from rga.drawing.charts import plot_findings, plot_record
@@ -37,6 +38,7 @@ _HOMES = {
     "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
+    "check": "rga.checking",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
     "draw": "rga.drawing",
@@ -65,6 +67,7 @@ __all__ = [
     "Simulator",
     "Twin",
     "__version__",
+    "check",
     "diagnose",
     "diagnose_many",
     "draw",
@@ -83,3 +86,4 @@ __all__ = [
 
 
 __getattr__ = opening(__name__, _HOMES)
+__dir__ = listing(__name__, __all__)

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rga import __version__
+from rga.cli.check import check
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
@@ -22,7 +23,7 @@ from rga.cli.schema import schema
 from rga.cli.simulate import simulate
 from rga.cli.verify import verify
 from rga.cli.whatif import whatif
-from rga.errors import InputError, MissingPackageError, ReportError
+from rga.errors import InputError, MissingPackageError, ReportError, SeveralMistakes
 from rga.lazy import needing_extras
 
 app = typer.Typer(
@@ -32,7 +33,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    run, diagnose, diagnose_many, plan, draw, whatif, replay, rollback, simulate, results,
+    check, run, diagnose, diagnose_many, plan, draw, whatif, replay, rollback, simulate, results,
     dataset, verify, schema, example, doctor,
 ):  # fmt: skip
     app.command()(command)
@@ -67,8 +68,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with needing_extras():
             app(args=_json_with_target(given), prog_name="rga")
     except (InputError, MissingPackageError, ReportError) as error:
-        typer.echo("error: " + " ".join(str(error).split()), err=True)
+        typer.echo(f"error: {_words(error)}", err=True)
         sys.exit(1 if isinstance(error, ReportError) else 2)
+
+
+def _words(error: Exception) -> str:
+    """One line, or the list of several mistakes."""
+    return str(error) if isinstance(error, SeveralMistakes) else " ".join(str(error).split())
 
 
 def _json_with_target(arguments: list[str]) -> list[str]:

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model import Effect, Model, read_effect
+from rga.model import Effect, Model, as_model, read_effect
 from rga.model.parameter import Estimated
 from rga.simulation.simulator import Simulator
 
@@ -49,7 +49,7 @@ class WhatIf:
 
 
 def whatif(
-    model: Model,
+    model: Model | str | Path,
     settings: Mapping[str, float],
     add: Mapping[str, Effect] | None = None,
     *,
@@ -62,7 +62,7 @@ def whatif(
     none is, contexts before are compared with those that are set.
 
     Args:
-        model: the model.
+        model: the model, or its file.
         settings: context variables, and `time` [s] where it matters.
         add: effects that the changed model has besides its own; one of the same name is replaced.
         base: contexts that are not set, and `time` [s]; mid-range where left out.
@@ -71,6 +71,7 @@ def whatif(
     Raises:
         InputError: a setting is no context variable of the model, or an effect does not fit it.
     """
+    model = as_model(model)
     check_settings(model, settings)
     middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
     contexts = {**middle, **(base or {}), **settings}

@@ -1,0 +1,30 @@
+"""A record as a caller gives it: itself, or the file that holds it."""
+
+from pathlib import Path
+
+from rga.errors import InputError
+from rga.model import Model
+from rga.records import Record, RecordMapping, load_record
+
+
+def as_record(
+    given: Record | str | Path,
+    model: Model,
+    mapping: str | Path | RecordMapping | None = None,
+) -> Record:
+    """A record, read against a model where its file is given.
+
+    Args:
+        given: the record, or the path of its file.
+        model: that names its channels.
+        mapping: how to read the file, as `load_record` takes it.
+
+    Raises:
+        InputError: the file cannot be used, or this is neither.
+    """
+    if isinstance(given, Record):
+        return given
+    if isinstance(given, str | Path):
+        return load_record(given, model, mapping)
+    what = f"a {type(given).__name__} is no record"
+    raise InputError(what, "record", "give a Record, or the path of its file")
