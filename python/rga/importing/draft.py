@@ -123,9 +123,7 @@ class Draft:
             own = self.supports.setdefault(node, {"node": node, "fixed": []})
             own["fixed"] = [dof for dof in DOFS if dof in {*own["fixed"], *fixed}]
 
-    def add_spring(
-        self, node: str, to: str | None, dof: str, stiffness: float, where: str
-    ) -> None:
+    def add_spring(self, node: str, to: str | None, dof: str, stiffness: float, where: str) -> None:
         """Add a spring to another node, or to the ground [N/m or N m/rad]."""
         for end in filter(None, (node, to)):
             self._known(end, "a spring", where)
@@ -255,7 +253,9 @@ class Draft:
         content = self.content()
         model = read_model(content, where)
         for nodes, motion in free_motions(content):
-            self.notes.say("noticed", nodes, f"no support holds them as a whole: what they join {motion}")
+            self.notes.say(
+                "noticed", nodes, f"no support holds them as a whole: what they join {motion}"
+            )
         return model
 
 

@@ -80,9 +80,7 @@ class Notes:
         places = self._places.setdefault((severity, what, remedy), [])
         places.append(where)
 
-    def refuse(
-        self, where: str, what: str, remedy: str, unless: Acceptance | None = None
-    ) -> None:
+    def refuse(self, where: str, what: str, remedy: str, unless: Acceptance | None = None) -> None:
         """Note what would make the model wrong, or was accepted.
 
         Args:

@@ -40,7 +40,7 @@ def free_motions(content: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         ]
         restraint = np.array(rows).reshape(-1, 6)[:, allowed]
         values = np.linalg.svd(restraint, full_matrices=True)
-        rank = int((values.S > FREE * max(values.S.max(initial=0.0), 1e-300)).sum())
+        rank = int((FREE * max(values.S.max(initial=0.0), 1e-300) < values.S).sum())
         if rank < len(allowed):
             motion = np.zeros(6)
             motion[list(allowed)] = values.Vh[-1]

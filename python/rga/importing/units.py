@@ -50,8 +50,10 @@ class Units:
         known = {*FORCES, *LENGTHS, *OTHERS}
         unknown = [word for word in words if word.lower() not in known]
         if unknown or len(forces) != 1 or len(lengths) != 1:
-            said = f"{unknown[0]!r} is no unit of force or length" if unknown else (
-                f"{text!r} is not one unit of force and one of length"
+            said = (
+                f"{unknown[0]!r} is no unit of force or length"
+                if unknown
+                else (f"{text!r} is not one unit of force and one of length")
             )
             raise InputError(said, where, 'write them as "kN, m", "N, mm" or "kip, in"')
         return cls(forces[0], lengths[0], text.strip())
@@ -105,7 +107,9 @@ def to_si(unit: str, si: str, where: str) -> float:
     """
     factor = _factor(unit.strip(), si)
     if factor is None:
-        raise InputError(f"{unit!r} is no unit that becomes {si}", where, f"write it as {si} has it")
+        raise InputError(
+            f"{unit!r} is no unit that becomes {si}", where, f"write it as {si} has it"
+        )
     return factor
 
 

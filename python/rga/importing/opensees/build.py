@@ -102,7 +102,10 @@ class _Members:
             self._second_order(element.where, f"element {tag} is {element.command}")
         if any(values.get(name, 1.0) <= 0 for name in ("A", "E")):
             self.draft.notes.refuse(
-                element.where, f"element {tag} has no area or modulus above 0", "correct it", "partial"
+                element.where,
+                f"element {tag} has no area or modulus above 0",
+                "correct it",
+                "partial",
             )
             return
         local_y = None
@@ -201,7 +204,9 @@ def _add_masses(script: ScriptModel, units: Units, draft: Draft) -> None:
     for tag, (masses, where) in script.masses.items():
         by_dof = dict(zip(script.nodes[tag].freedoms, masses, strict=False))
         along = [mass for dof, mass in by_dof.items() if dof[0] == "u"]
-        inertia = [by_dof.get(dof, 0.0) * units.mass * units.length**2 for dof in ("rx", "ry", "rz")]
+        inertia = [
+            by_dof.get(dof, 0.0) * units.mass * units.length**2 for dof in ("rx", "ry", "rz")
+        ]
         if len(set(along)) > 1:
             draft.notes.say(
                 "assumed", where, "masses differ by direction: the largest acts in all of them"
@@ -216,7 +221,9 @@ def _add_loads(script: ScriptModel, units: Units, draft: Draft) -> None:
         kind = series.kind if series else pattern.series
         if pattern.kind != "Plain":
             draft.notes.say(
-                "dropped", pattern.where, f"pattern {pattern.kind}: a motion in time, no static load"
+                "dropped",
+                pattern.where,
+                f"pattern {pattern.kind}: a motion in time, no static load",
             )
         elif kind not in STATIC_SERIES:
             draft.notes.say(
@@ -241,7 +248,9 @@ def _add_loads(script: ScriptModel, units: Units, draft: Draft) -> None:
         if load.pattern not in factors:
             continue
         for tag in load.elements:
-            _load_element(script, units, draft, load, tag, names[load.pattern], factors[load.pattern])
+            _load_element(
+                script, units, draft, load, tag, names[load.pattern], factors[load.pattern]
+            )
     for moved in script.moved:
         if moved.pattern in factors:
             dof = script.nodes[moved.node].freedoms[moved.freedom - 1]

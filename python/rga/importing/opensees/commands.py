@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from rga.importing.opensees.command_names import CHANGES, MESHES, TIES, UNUSED
 from rga.importing.opensees.elements import add_element
 from rga.importing.opensees.loads import add_element_load, add_force, add_moved, add_pattern
 from rga.importing.opensees.script_model import FREEDOMS, Defined, Node, ScriptModel
@@ -9,28 +10,6 @@ from rga.importing.scripts.values import Arguments
 
 #: coordinates that `fixX` takes as the same
 SAME_PLACE = 1e-10
-#: commands that say nothing of a model: they analyse it, or show what came out
-PASSED_OVER = frozenset(
-    """
-    algorithm analysis analyze constraints convergenceTest eigen integrator loadConst modalDamping
-    modalProperties numberer rayleigh reactions record recorder reset responseSpectrumAnalysis
-    setTime start stop system test timer wipeAnalysis initialize partition
-    basicDeformation basicForce eleDynamicalForce eleForce eleNodes eleResponse eleType
-    getEleTags getLoadFactor getNodeTags getTime nodeAccel nodeBounds nodeCoord nodeDisp
-    nodeDOFs nodeEigenvector nodeMass nodePressure nodeReaction nodeResponse nodeUnbalance nodeVel
-    numFact numIter sectionForce sectionDeformation testIter testNorm testUniaxialMaterial version
-    print printA printB printGID printModel puts logFile display vup vpn vrp prp plane port
-    projection viewWindow fill defaultUnits database save restore setMaxOpenFiles region
-    setPrecision setNumThread getNumThreads systemSize getCTestNorms getCTestIter getPID getNP
-    barrier domainChange updateElementDomain sensitivityAlgorithm computeGradients sensNodeDisp
-    getNumElements getNodes updateMaterialStage setStrain setElementRayleighDampingFactors
-    """.split()
-)
-#: commands that a file system or another program would obey, and a reader does not
-NOT_DONE = frozenset(
-    "file exec open close gets read eof flush seek socket load_package package cd pwd glob exit "
-    "after vwait fconfigure fileevent clock rename trace interp unknown auto_load".split()
-)
 
 
 def command(model: ScriptModel, name: str, given: Arguments) -> bool:
@@ -195,9 +174,7 @@ def _not_needed(model: ScriptModel, given: Arguments) -> None:
     """A definition that only elements use which are refused themselves."""
     given.left.clear()
     given.named.clear()
-    model.dropped.append(
-        (given.where, f"{given.command}: no member of trusses or frames uses it")
-    )
+    model.dropped.append((given.where, f"{given.command}: no member of trusses or frames uses it"))
 
 
 DEFINING: dict[str, Callable[[ScriptModel, Arguments], None]] = {
@@ -219,21 +196,8 @@ DEFINING: dict[str, Callable[[ScriptModel, Arguments], None]] = {
     "eleLoad": add_element_load,
     "sp": add_moved,
     "remove": _remove,
-    **dict.fromkeys(("nDMaterial", "frictionModel", "damping", "patch", "layer", "fiber"), _not_needed),
-    **dict.fromkeys(
-        ("rigidLink", "rigidDiaphragm", "equalDOF_Mixed", "mp", "pressureConstraint"),
-        _refused("ties between nodes that are not of equal degrees of freedom"),
-    ),
-    **dict.fromkeys(
-        ("block2D", "block3D", "mesh", "remesh", "beam3d", "quadr", "brick"),
-        _refused("a mesh of elements that are no members"),
-    ),
-    **dict.fromkeys(
-        ("setNodeDisp", "setNodeCoord", "setElementValue", "parameter", "updateParameter",
-         "addToParameter", "InitialStateAnalysis", "addElementRayleigh"),
-        _refused("a model that changes while it is analysed"),
-    ),  # fmt: skip
-    **dict.fromkeys(
-        ("imposedMotion", "groundMotion", "imposedSupportMotion"), _not_needed
-    ),
+    **dict.fromkeys(UNUSED, _not_needed),
+    **dict.fromkeys(TIES, _refused("ties between nodes that are not of equal degrees of freedom")),
+    **dict.fromkeys(MESHES, _refused("a mesh of elements that are no members")),
+    **dict.fromkeys(CHANGES, _refused("a model that changes while it is analysed")),
 }

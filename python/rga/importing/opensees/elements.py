@@ -107,7 +107,9 @@ def _integrated_beam(model: ScriptModel, kind: str, given: Arguments) -> Element
         points, section, transformation = int(numbers[0]), numbers[1], numbers[2]
     if points < 3:
         model.refuse(given, f"{kind} with {points} points of integration bends otherwise")
-    return Element("frame", kind, nodes, given.where, section=section, transformation=transformation)
+    return Element(
+        "frame", kind, nodes, given.where, section=section, transformation=transformation
+    )
 
 
 def _zero_length(model: ScriptModel, kind: str, given: Arguments) -> Element | None:

@@ -4,7 +4,8 @@ from collections.abc import Collection
 from typing import Any
 
 from rga.errors import InputError
-from rga.importing.opensees.commands import DEFINING, NOT_DONE, PASSED_OVER, command, start
+from rga.importing.opensees.command_names import NOT_DONE, PASSED_OVER
+from rga.importing.opensees.commands import DEFINING, command, start
 from rga.importing.opensees.script_model import ScriptModel
 from rga.importing.scripts.values import Arguments, Unknown
 

@@ -36,6 +36,7 @@ def read_opensees(
         InputError: it cannot be read.
     """
     host: Host
+    assumed: list[tuple[str, str]] = []
     if path.suffix.lower() == ".tcl":
         tcl = host = TclHost(without)
         fault = _fault(lambda: read_tcl(path, tcl))
@@ -43,7 +44,7 @@ def read_opensees(
         from rga.importing.opensees.python_host import PythonHost, read_python
 
         python = host = PythonHost(without)
-        fault = _fault(lambda: read_python(path, python))
+        fault = _fault(lambda: assumed.extend(read_python(path, python)))
     chosen = next((one for one in host.models if one.elements or one.refusals), None)
     if fault is not None and (chosen is None or chosen is host.current):
         raise fault
@@ -54,6 +55,8 @@ def read_opensees(
     _say_units(draft, units, path)
     build(chosen, units or SI, draft)
     _say_axes(draft, plane, up)
+    for words, where in assumed:
+        draft.notes.say("assumed", where, words)
     _say_others(draft, host, chosen, fault)
     return draft
 
@@ -95,9 +98,9 @@ def _say_others(draft: Draft, host: Host, chosen: ScriptModel, fault: InputError
         )
     for words, where in host.not_done:
         draft.notes.say("dropped", where, f"not done, only read: {words}")
-    for name, places in host.passed.items():
-        for where in places:
-            draft.notes.say("dropped", where, f"{name}: analysis or output, which no model needs")
+    names = ", ".join(host.passed)
+    for where in sorted({where for places in host.passed.values() for where in places}, key=_line):
+        draft.notes.say("dropped", where, f"analysis and output, which no model needs: {names}")
     used = {tag for one in chosen.elements.values() for tag, _ in one.materials}
     used_sections = {one.section for one in chosen.elements.values()}
     for what, table, names, kinds in (
@@ -107,13 +110,20 @@ def _say_others(draft: Draft, host: Host, chosen: ScriptModel, fault: InputError
         for tag, defined in table.items():
             if tag not in names and defined.kind not in kinds:
                 draft.notes.say(
-                    "dropped", defined.where, f"{what} {tag} ({defined.kind}), which no element uses"
+                    "dropped",
+                    defined.where,
+                    f"{what} {tag} ({defined.kind}), which no element uses",
                 )
     for other in host.models:
         if other is not chosen:
             _say_other_model(draft, host, chosen, other)
     if fault is not None:
         draft.notes.say("dropped", fault.where, f"the rest of the script: {fault.what}")
+
+
+def _line(where: str) -> int:
+    number = where.rpartition(" ")[2]
+    return int(number) if number.isdigit() else 0
 
 
 def _say_other_model(draft: Draft, host: Host, chosen: ScriptModel, other: ScriptModel) -> None:
@@ -123,7 +133,9 @@ def _say_other_model(draft: Draft, host: Host, chosen: ScriptModel, other: Scrip
         for tag, defined in table.items():
             if defined.kind not in kinds:
                 draft.notes.say(
-                    "dropped", defined.where, f"of another model: {defined.kind} {tag} is not linear"
+                    "dropped",
+                    defined.where,
+                    f"of another model: {defined.kind} {tag} is not linear",
                 )
     for tag, defined in other.series.items():
         if defined.kind not in ("Linear", "Constant"):
@@ -133,5 +145,7 @@ def _say_other_model(draft: Draft, host: Host, chosen: ScriptModel, other: Scrip
     for tag, defined in other.transformations.items():
         if defined.kind != "Linear":
             draft.notes.say(
-                "dropped", defined.where, f"of another model: {defined.kind} {tag} is of second order"
+                "dropped",
+                defined.where,
+                f"of another model: {defined.kind} {tag} is of second order",
             )

@@ -8,7 +8,9 @@ from rga.errors import InputError
 #: steps that a script may take: the loops of any model of a structure
 MOST_STEPS = 400_000
 #: characters of the longest text, and items of the longest list
-LONGEST = 1_000_000
+LONGEST = 300_000
+#: characters or items that weigh as much as a step
+WEIGHT = 2_000
 
 
 class Unknown:
@@ -28,13 +30,13 @@ class Steps:
     def __init__(self) -> None:
         self.taken = 0
 
-    def take(self, where: str) -> None:
-        """One more step.
+    def take(self, where: str, size: int = 0) -> None:
+        """One more step, or as many as a value of a size weighs.
 
         Raises:
             InputError: there were too many.
         """
-        self.taken += 1
+        self.taken += 1 + size // WEIGHT
         if self.taken > MOST_STEPS:
             raise InputError(
                 f"the script takes more than {MOST_STEPS} steps",

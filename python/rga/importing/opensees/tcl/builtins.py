@@ -249,7 +249,9 @@ def _source(tcl: Interpreter, words: list[Any], where: str) -> Any:
 
 
 def _error(tcl: Interpreter, words: list[Any], where: str) -> Any:
-    raise InputError(f"the script ends with an error: {' '.join(map(str, words))}", where, "mend it")
+    raise InputError(
+        f"the script ends with an error: {' '.join(map(str, words))}", where, "mend it"
+    )
 
 
 def _unset(tcl: Interpreter, words: list[Any], where: str) -> Any:

@@ -134,7 +134,9 @@ class Expression:
             return inner
         if text in ("-", "+", "!", "~"):
             # These bind more tightly than any operator of two values, powers included.
-            return self._one(text, self._of(12, depth + 1) if text in "!~" else self._of(12, depth + 1))
+            return self._one(
+                text, self._of(12, depth + 1) if text in "!~" else self._of(12, depth + 1)
+            )
         raise self.error()
 
     def _marked(self, value: Any) -> Any:
@@ -194,7 +196,9 @@ class Expression:
             if any(isinstance(value, str) for value in values):
                 raise ValueError("a text is no number")
             found = function(*values)
-            if isinstance(found, complex) or (isinstance(found, float) and not math.isfinite(found)):
+            if isinstance(found, complex) or (
+                isinstance(found, float) and not math.isfinite(found)
+            ):
                 raise ValueError("the value is no finite number")
         except (ValueError, ZeroDivisionError, OverflowError, TypeError) as error:
             raise InputError(

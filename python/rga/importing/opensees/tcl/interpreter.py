@@ -87,7 +87,9 @@ class Interpreter:
     def run_body(self, body: Any, where: str) -> Any:
         """Evaluate a script that is the word of a command."""
         if isinstance(body, Unknown):
-            raise InputError(f"a script cannot be known: it is {body.reason}", where, "write it out")
+            raise InputError(
+                f"a script cannot be known: it is {body.reason}", where, "write it out"
+            )
         if isinstance(body, Text):
             return self.run(body, body.line, body.file)
         line = where.rpartition("line ")[2]
@@ -125,7 +127,10 @@ class Interpreter:
 
     def _built_in(self, name: str, rest: list[Any], where: str) -> Any:
         try:
-            return checked_size(self.builtins[name](self, rest, where), where)
+            result = checked_size(self.builtins[name](self, rest, where), where)
+            if isinstance(result, str):
+                self.steps.take(where, len(result))
+            return result
         except (TypeError, ValueError, IndexError) as error:
             if isinstance(error, InputError):
                 raise

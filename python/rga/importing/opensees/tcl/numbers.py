@@ -23,7 +23,9 @@ def number(text: str, where: str) -> Number:
             return int(stripped, 16)
         if len(digits) > 1 and digits[0] == "0":
             raise InputError(
-                f"{stripped} is octal in Tcl 8 and decimal in Tcl 9", where, "write it without zeros"
+                f"{stripped} is octal in Tcl 8 and decimal in Tcl 9",
+                where,
+                "write it without zeros",
             )
         return int(stripped)
     if FLOATING.match(text):

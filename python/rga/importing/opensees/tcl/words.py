@@ -250,4 +250,3 @@ class Cutter:
     def error(self, what: str, line: int) -> InputError:
         """An error at a line."""
         return InputError(what, f"{self.file}, line {line}", "give the whole script, and close it")
-
