@@ -1,4 +1,4 @@
-"""Models of other programs, read into model files, with all that was left out or taken for granted."""
+"""Models of other programs, read into model files, and all that is said about them."""
 
 from rga.importing.imported import ImportedModel
 from rga.importing.importer import import_model

@@ -22,6 +22,14 @@ def import_model(
     without: Collection[str] = (),
 ) -> ImportedModel:
     path = Path(source)
+    if path.suffix.lower() in (".s2k", ".$2k"):
+        from rga.importing.sap2000 import read_sap2000
+
+        draft = read_sap2000(
+            path, None if units is None else Units.read(units, "units"), frozenset(accept)
+        )
+        model = draft.model(str(path))
+        return ImportedModel(model, draft.notes.listed(), draft.counts())
     if path.suffix.lower() not in (".tcl", ".py"):
         raise InputError("no reader knows this kind of file", str(path), f"give {SUFFIXES}")
     from rga.importing.opensees import read_opensees

@@ -20,7 +20,7 @@ PASSED_OVER = frozenset((
 ))  # fmt: skip
 #: commands that a file system or another program would obey, and a reader does not
 NOT_DONE = frozenset((
-    "after", "auto_load", "cd", "clock", "close", "eof", "exec", "exit", "fconfigure", "file",
+    "after", "auto_load", "cd", "clock", "close", "eof", "exec", "fconfigure", "file",
     "fileevent", "flush", "gets", "glob", "interp", "load_package", "open", "package", "pwd",
     "read", "rename", "seek", "socket", "trace", "unknown", "vwait",
 ))  # fmt: skip

@@ -5,7 +5,7 @@ from typing import Any
 
 from rga.importing.opensees.host import Host
 from rga.importing.opensees.tcl import Interpreter
-from rga.importing.opensees.tcl.interpreter import Text
+from rga.importing.opensees.tcl.interpreter import Leaving, Text
 from rga.importing.reading import read_text
 
 
@@ -32,4 +32,7 @@ def read_tcl(path: Path, host: TclHost) -> None:
     """
     interpreter = Interpreter(host, path.parent, host.without)
     host.interpreter, interpreter.main = interpreter, path.name
-    interpreter.run(read_text(path), 1, path.name)
+    try:
+        interpreter.run(read_text(path), 1, path.name)
+    except Leaving:
+        return  # the script ends here: `return` or `exit`

@@ -132,7 +132,7 @@ def _turn(tcl: Interpreter, body: Any, where: str) -> bool:
     try:
         tcl.run_body(body, where)
     except Leaving as leaving:
-        if leaving.kind == "return":
+        if leaving.kind not in ("break", "continue"):
             raise
         return leaving.kind == "continue"
     return True
@@ -303,6 +303,7 @@ BUILTINS: dict[str, Builtin] = {
     "break": _leave("break"),
     "continue": _leave("continue"),
     "return": _leave("return"),
+    "exit": _leave("exit"),
     "string": _of_texts(strings.string),
     "format": _of_texts(strings.format_text),
     **{name: _of_texts(function) for name, function in lists.COMMANDS.items()},

@@ -134,9 +134,7 @@ class Expression:
             return inner
         if text in ("-", "+", "!", "~"):
             # These bind more tightly than any operator of two values, powers included.
-            return self._one(
-                text, self._of(12, depth + 1) if text in "!~" else self._of(12, depth + 1)
-            )
+            return self._one(text, self._of(12, depth + 1))
         raise self.error()
 
     def _marked(self, value: Any) -> Any:

@@ -46,7 +46,7 @@ class Procedure:
 
 
 class Leaving(Exception):
-    """`break`, `continue` or `return` on its way out."""
+    """`break`, `continue`, `return` or `exit` on its way out."""
 
     def __init__(self, kind: str, value: Any = "") -> None:
         self.kind, self.value = kind, value
@@ -258,6 +258,8 @@ class Interpreter:
             try:
                 return self.run(read_text(path), 1, name)
             except Leaving as leaving:
+                if leaving.kind != "return":
+                    raise
                 return leaving.value
 
 

@@ -76,7 +76,8 @@ NUMPY: dict[str, Any] = {
         )
     },
     "arange": _arange, "linspace": _linspace, "array": _array, "asarray": _array,
-    "zeros": _filled(0.0), "ones": _filled(1.0), "linalg": Table("numpy.linalg", {"norm": np.linalg.norm}),
+    "zeros": _filled(0.0), "ones": _filled(1.0),
+    "linalg": Table("numpy.linalg", {"norm": np.linalg.norm}),
     "float64": float, "int64": int,
 }  # fmt: skip
 #: methods of plain values

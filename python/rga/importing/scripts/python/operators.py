@@ -61,9 +61,9 @@ def _check(kind: type[ast.operator], left: Any, right: Any) -> None:
             raise ValueError("the number is too large")
     elif kind is ast.Mult:
         for many, times in ((left, right), (right, left)):
-            if isinstance(many, str | list | tuple) and isinstance(times, int):
-                if len(many) * max(times, 0) > LONGEST:
-                    raise ValueError("the list is too long")
+            repeated = isinstance(many, str | list | tuple) and isinstance(times, int)
+            if repeated and len(many) * times > LONGEST:
+                raise ValueError("the list is too long")
     if isinstance(left, np.ndarray) or isinstance(right, np.ndarray):
         shape = np.broadcast_shapes(np.shape(left), np.shape(right))
         if np.prod(shape, dtype=float) > LONGEST:
