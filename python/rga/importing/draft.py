@@ -88,6 +88,7 @@ class Draft:
         kind: Literal["truss", "frame"] = "frame",
         local_y: Sequence[float] | None = None,
         releases: Mapping[str, list[str]] | None = None,
+        end_springs: Mapping[str, dict[str, float]] | None = None,
         groups: Sequence[str] = (),
     ) -> bool:
         """Add a member, and say whether it could be.
@@ -110,6 +111,8 @@ class Draft:
             member["local_y"] = self.vector(local_y)
         if releases and any(releases.values()):
             member["releases"] = dict(releases)
+        if end_springs and any(end_springs.values()):
+            member["end_springs"] = dict(end_springs)
         if groups:
             member["groups"] = list(groups)
         self.members[name] = member

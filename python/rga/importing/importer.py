@@ -20,6 +20,7 @@ def import_model(
     up: Literal["y", "z"] | None = None,
     accept: Collection[Acceptance] = (),
     without: Collection[str] = (),
+    materials: Collection[str] = (),
 ) -> ImportedModel:
     path = Path(source)
     if path.suffix.lower() in (".s2k", ".$2k"):
@@ -28,6 +29,13 @@ def import_model(
         draft = read_sap2000(
             path, None if units is None else Units.read(units, "units"), frozenset(accept)
         )
+        model = draft.model(str(path))
+        return ImportedModel(model, draft.notes.listed(), draft.counts())
+    if path.suffix.lower() == ".xlsx":
+        from rga.importing.materials import read_given
+        from rga.importing.saf import read_saf
+
+        draft = read_saf(path, frozenset(accept), [read_given(m, "material") for m in materials])
         model = draft.model(str(path))
         return ImportedModel(model, draft.notes.listed(), draft.counts())
     if path.suffix.lower() not in (".tcl", ".py"):

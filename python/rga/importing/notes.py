@@ -20,6 +20,7 @@ ACCEPTED: dict[Acceptance, Severity] = {
     "values": "noticed",
 }
 LINE = re.compile(r"line (\d+)")
+ROW = re.compile(r"(?P<sheet>.+), row (?P<row>\d+)(?: \((?P<name>.*)\))?")
 
 
 @dataclass(frozen=True)
@@ -111,18 +112,32 @@ def joined(places: Iterable[str]) -> str:
 
     >>> joined(["line 3", "line 4", "line 5", "line 9"])
     'lines 3-5, 9'
+    >>> joined(["nodes, row 3 (A)", "nodes, row 4 (B)"])
+    'nodes, rows 3-4 (A, B)'
     >>> joined(["line 3", "units.tcl, line 4"])
     'line 3; units.tcl, line 4'
     """
     every = list(dict.fromkeys(places))
-    lines = [LINE.fullmatch(place) for place in every]
-    if len(every) < 2 or not all(lines):
+    if len(every) < 2:
         return "; ".join(every)
-    numbers = sorted(int(line[1]) for line in lines if line)
+    lines = [found for place in every if (found := LINE.fullmatch(place))]
+    if len(lines) == len(every):
+        return f"lines {_ranges([int(line[1]) for line in lines])}"
+    rows = [found for place in every if (found := ROW.fullmatch(place))]
+    if len(rows) == len(every) and len({row["sheet"] for row in rows}) == 1:
+        names = ", ".join(row["name"] for row in rows if row["name"])
+        numbers = _ranges([int(row["row"]) for row in rows])
+        return f"{rows[0]['sheet']}, rows {numbers}" + (f" ({names})" if names else "")
+    return "; ".join(every)
+
+
+def _ranges(numbers: list[int]) -> str:
+    """Numbers in short: neighbours as a range."""
+    numbers = sorted(numbers)
     ranges: list[list[int]] = []
     for number in numbers:
         if ranges and number == ranges[-1][1] + 1:
             ranges[-1][1] = number
         else:
             ranges.append([number, number])
-    return "lines " + ", ".join(f"{a}" if a == b else f"{a}-{b}" for a, b in ranges)
+    return ", ".join(f"{a}" if a == b else f"{a}-{b}" for a, b in ranges)

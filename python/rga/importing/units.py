@@ -117,17 +117,20 @@ def to_si(unit: str, si: str, where: str) -> float:
 def _factor(unit: str, si: str) -> float | None:
     import pint
 
-    text = RUN_TOGETHER.sub(r"\1*\2", unit.translate(SUPERSCRIPTS))
-    text = re.sub(r"(?<=[A-Za-z])(\d)", r"**\1", text)
-    text = re.sub(r"\bkips\b", "kip", text)
+    text = re.sub(r"\bkips\b", "kip", _powers(RUN_TOGETHER.sub(r"\1*\2", unit)))
     for candidate in (text, re.sub(r"\blbs?\b", "lbf", text)):
         try:
             found = _registry().parse_units(candidate) if candidate != "1" else None
             one: Any = _registry().Quantity(1.0, found)
-            return float(f"{one.to(si).magnitude:.15g}")
+            return float(f"{one.to(_powers(si)).magnitude:.15g}")
         except (pint.errors.PintError, ValueError, TypeError, AttributeError, SyntaxError):
             continue
     return None
+
+
+def _powers(unit: str) -> str:
+    """A unit with its powers as Python writes them."""
+    return re.sub(r"(?<=[A-Za-z])(\d)", r"**\1", unit.translate(SUPERSCRIPTS))
 
 
 @cache

@@ -155,7 +155,7 @@ class _Reader:
         if points[0] is not None and points[1] is not None:
             along = np.subtract(points[1], points[0])
             across = local_y(along, angles.get(name, 0.0)) if along.any() else None
-        label, values = self._section(section, material)
+        label = self._section(section, material)
         if self.draft.add_member(
             name, ends, label, self.draft.material(material, **properties), row.where,
             local_y=across, releases=released.get(name),
@@ -184,7 +184,7 @@ class _Reader:
             found["yield_strength"] = self.yields[name] * self.units.stress
         return found
 
-    def _section(self, row: Row, material: str) -> tuple[str, dict[str, float]]:
+    def _section(self, row: Row, material: str) -> str:
         name, shape = row.text("SectionName"), row.get("Shape")
         for word, shapes in SHAPES.items():
             if word in name.lower().replace("(", " ").split() and shape.lower() not in shapes:
@@ -221,7 +221,7 @@ class _Reader:
         }
         if not values.get("A"):
             raise InputError(f"section {name!r} has no area", row.where, "give it one")
-        return self.draft.section(name, **values), values
+        return self.draft.section(name, **values)
 
 
 def _say_tables(tables: Tables, draft: Draft) -> None:
