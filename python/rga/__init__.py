@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
+    from rga.importing import ImportedModel, import_model
     from rga.jobs.batch import diagnose_many
     from rga.jobs.run import run
     from rga.model import Effect, Model, load_model
@@ -27,6 +28,7 @@ _HOMES = {
     "Criteria": "rga.findings.criteria",
     "Effect": "rga.model",
     "Findings": "rga.findings",
+    "ImportedModel": "rga.importing",
     "Model": "rga.model",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
@@ -34,6 +36,7 @@ _HOMES = {
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
+    "import_model": "rga.importing",
     "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
@@ -47,6 +50,7 @@ __all__ = [
     "Criteria",
     "Effect",
     "Findings",
+    "ImportedModel",
     "Model",
     "Plan",
     "Record",
@@ -55,6 +59,7 @@ __all__ = [
     "__version__",
     "diagnose",
     "diagnose_many",
+    "import_model",
     "load_criteria",
     "load_findings",
     "load_model",

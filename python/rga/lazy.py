@@ -14,6 +14,8 @@ EXTRAS = {
     "sqlalchemy": "twin",
     "alembic": "twin",
     "filelock": "twin",
+    "ezdxf": "formats",
+    "openpyxl": "formats",
 }
 
 

@@ -5,10 +5,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.importing.notes import Acceptance, ImportRefused, Notes
 from rga.importing.stability import free_motions
 from rga.model import Model, read_model
+from rga.model.axes import member_axes
 from rga.model.schema import DOFS
 
 #: axes of a source whose y points up, in axes whose z does: a quarter turn about x
@@ -54,6 +56,11 @@ class Draft:
         x, y, z = (float(value) for value in components)
         # A zero has no sign: 0.0 - z.
         return [x, 0.0 - z, y] if self.up == "y" else [x, y, z]
+
+    def unturned(self, components: Sequence[float]) -> list[float]:
+        """A vector of the model in the source's axes."""
+        x, y, z = components
+        return [x, z, 0.0 - y] if self.up == "y" else [x, y, z]
 
     def dof(self, name: str) -> str:
         """A degree of freedom of the source's axes in the model's."""
@@ -215,6 +222,35 @@ class Draft:
             found[f"{case}, settlement {number}"] = {"kind": "support_settlement", **effect}
         return found
 
+    def load_sums(self, model: Model) -> dict[str, tuple[float, float, float]]:
+        """The sum of the forces of each case in the model's axes [N], factors and all."""
+        sums: dict[str, tuple[float, float, float]] = {}
+        for case in dict.fromkeys((*self._forces, *self._on_members)):
+            total = np.zeros(3)
+            for force in self._forces.get(case, {}).values():
+                total += force[:3]
+            for (key, values), members in self._on_members.get(case, {}).items():
+                for member in members:
+                    length, axes = member_axes(model, member)
+                    total += along(key, values, length) @ axes
+            x, y, z = (float(value) for value in self._factors.get(case, 1.0) * total)
+            sums[case] = (x, y, z)
+        return sums
+
+    def make_plane(self, plane: str) -> None:
+        """Make it a model of a plane, which holds what leaves it.
+
+        Raises:
+            InputError: a node lies elsewhere.
+        """
+        across = "xyz".index(next(axis for axis in "xyz" if axis not in plane))
+        for name, place in self.nodes.items():
+            if abs(place[across]) > 1e-9:
+                raise InputError(
+                    f"node {name!r} lies outside of the plane {plane}", "--plane", "leave it out"
+                )
+        self.plane = plane
+
     def counts(self) -> dict[str, int]:
         """How many parts there are, by kind."""
         parts = {
@@ -260,6 +296,16 @@ class Draft:
                 "noticed", nodes, f"no support holds them as a whole: what they join {motion}"
             )
         return model
+
+
+def along(shape: str, values: tuple[float, ...], length: float) -> FloatArray:
+    """The sum of a load along a member in its local axes, float[3] [N]."""
+    if shape == "uniform":
+        return np.array(values) * length
+    if shape == "point":
+        return np.array(values[:3])
+    x1, x2, w1, w2 = values
+    return np.asarray(np.eye(3)["xyz".index(shape[-1])] * (w1 + w2) / 2 * (x2 - x1))
 
 
 def _named(table: dict[str, dict[str, float]], label: str, properties: dict[str, float]) -> str:

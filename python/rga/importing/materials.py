@@ -1,15 +1,7 @@
-"""Materials given by hand, and values of materials that cannot be meant."""
+"""Values of materials that cannot be meant."""
 
-import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
-from rga.errors import InputError
-from rga.importing.units import to_si
-
-#: units of the properties of a material; none: a number without one
-PROPERTIES = {"E": "Pa", "nu": "", "alpha": "1/K", "density": "kg/m3", "yield_strength": "Pa"}
-ALIASES = {"fy": "yield_strength", "rho": "density"}
 #: range of E [GPa] and density [kg/m3] of materials by words in their types: handbook values
 RANGES = {
     "steel": ((150, 250), (7000, 8500)),
@@ -21,49 +13,6 @@ RANGES = {
 }
 #: of all others
 WIDEST = ((0.01, 500), (1, 25000))
-PART = re.compile(r"\s*(\w+)\s*=\s*([-+0-9.eE]+)\s*([^,]*?)\s*$")
-
-
-@dataclass(frozen=True)
-class Given:
-    """Properties given by hand for a material of the file; without a name for all of them."""
-
-    name: str | None
-    values: dict[str, float]
-
-
-def read_given(text: str, where: str) -> Given:
-    """A material as an option gives it: "E=210GPa, nu=0.3" or "MAT1: E=31GPa, nu=0.2".
-
-    Raises:
-        InputError: a property or its unit is unknown, or E is missing.
-
-    >>> read_given("E=210GPa, nu=0.3", "--material").values
-    {'E': 210000000000.0, 'nu': 0.3}
-    """
-    name, colon, rest = text.rpartition(":")
-    values: dict[str, float] = {}
-    for part in rest.split(","):
-        found = PART.match(part)
-        key = ALIASES.get(found[1], found[1]) if found else ""
-        if found is None or key not in PROPERTIES:
-            raise InputError(
-                f"{part.strip()!r} is no property of a material", where,
-                'write --material "E=210GPa, nu=0.3, density=7850kg/m3, alpha=1.2e-5"',
-            )  # fmt: skip
-        unit = PROPERTIES[key]
-        try:
-            number = float(found[2])
-        except ValueError:
-            raise InputError(f"{found[2]!r} is no number", where, "write a number") from None
-        if found[3]:
-            number *= to_si(found[3], unit or "dimensionless", where)
-        elif key in ("E", "yield_strength"):
-            raise InputError(f"{key} has no unit", where, f"write it, as {key}=210GPa")
-        values[key] = number
-    if "E" not in values:
-        raise InputError("the material has no E", where, "give it, as E=210GPa")
-    return Given(name.strip() if colon else None, values)
 
 
 def doubts(values: Mapping[str, float], kind: str) -> Iterator[str]:

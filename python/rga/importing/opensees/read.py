@@ -2,15 +2,14 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
 
 from rga.errors import InputError
 from rga.importing.draft import Draft
-from rga.importing.notes import Acceptance
 from rga.importing.opensees.build import ELASTIC, build
 from rga.importing.opensees.host import Host
 from rga.importing.opensees.script_model import ScriptModel
 from rga.importing.opensees.tcl_host import TclHost, read_tcl
+from rga.importing.options import Chosen
 from rga.importing.units import SI, Units
 
 UNITS_REMEDY = 'give them, as --units "kip, in" or --units "kN, m"'
@@ -18,19 +17,14 @@ UNITS_REMEDY = 'give them, as --units "kip, in" or --units "kN, m"'
 
 def read_opensees(
     path: Path,
-    units: Units | None,
-    accept: frozenset[Acceptance],
-    up: Literal["y", "z"] | None,
-    without: frozenset[str],
+    chosen: Chosen,
 ) -> Draft:
     """A draft of the first model of a script that has members.
 
     Args:
         path: the script.
-        units: of its numbers; None: they are asked for.
-        accept: what the user accepts.
-        up: axis of a model in space that points up; None: z. That of a plane model is y.
-        without: files that the script reads and that are not needed.
+        chosen: its units, which are asked for; the axis of a model in space that points up, which
+            is z where nothing is said; files that it reads and that are not needed.
 
     Raises:
         InputError: it cannot be read.
@@ -38,26 +32,29 @@ def read_opensees(
     host: Host
     assumed: list[tuple[str, str]] = []
     if path.suffix.lower() == ".tcl":
-        tcl = host = TclHost(without)
+        tcl = host = TclHost(chosen.without)
         fault = _fault(lambda: read_tcl(path, tcl))
     else:
         from rga.importing.opensees.python_host import PythonHost, read_python
 
-        python = host = PythonHost(without)
+        python = host = PythonHost(chosen.without)
         fault = _fault(lambda: assumed.extend(read_python(path, python)))
-    chosen = next((one for one in host.models if one.elements or one.refusals), None)
-    if fault is not None and (chosen is None or chosen is host.current):
+    units = chosen.system
+    script = next((one for one in host.models if one.elements or one.refusals), None)
+    if fault is not None and (script is None or script is host.current):
         raise fault
-    if chosen is None:
+    if script is None:
         raise InputError("the script defines no element", str(path), "give one that builds a model")
-    plane = chosen.dimensions == 2
-    draft = Draft(path.stem, accept, "y" if plane else up or "z", "xz" if plane else None)
+    plane = script.dimensions == 2
+    draft = Draft(
+        path.stem, chosen.accept, "y" if plane else chosen.up or "z", "xz" if plane else None
+    )
     _say_units(draft, units, path)
-    build(chosen, units or SI, draft)
-    _say_axes(draft, plane, up)
+    build(script, units or SI, draft)
+    _say_axes(draft, plane, chosen.up)
     for words, where in assumed:
         draft.notes.say("assumed", where, words)
-    _say_others(draft, host, chosen, fault)
+    _say_others(draft, host, script, fault)
     return draft
 
 

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.importing.cut import CutMember, clean
 from rga.importing.draft import Draft
-from rga.importing.saf.members import Members, Part, Placed
+from rga.importing.saf.members import Members
 from rga.importing.saf.unit_table import Table
 from rga.importing.sheets import Row, Sheet, read_number
 
@@ -47,13 +48,13 @@ class _Loads:
                 own = self.draft.members[part.name]
                 density = self.draft.materials[own["material"]].get("density", 0.0)
                 weight = density * self.draft.sections[own["section"]]["A"] * GRAVITY
-                uniform = _clean(placed.axes @ np.array([0.0, 0.0, -weight]))
+                uniform = clean(placed.axes @ np.array([0.0, 0.0, -weight]))
                 if weight:
                     self.draft.load_member(
                         row.needed("name"), part.name, row.where, uniform=uniform
                     )
 
-    def _direction(self, row: Row, axes: FloatArray | None) -> FloatArray | None:
+    def _direction(self, row: Row, placed: CutMember | None) -> FloatArray | None:
         """Direction of a load: in local axes of a member, or in the file's at a node."""
         name = row.text("direction").lower().removeprefix("m")
         local = row.text("coordinate system", "Global").lower() == "local"
@@ -61,12 +62,12 @@ class _Loads:
             self._refuse(row, f"its direction {name!r} is not read")
             return None
         vector = np.array(DIRECTIONS[name])
-        if axes is None:
+        if placed is None:
             if local:
                 self._refuse(row, "a load of a node in local axes")
                 return None
             return vector
-        return vector if local else np.asarray(axes @ np.array(self.draft.vector(vector)))
+        return vector if local else placed.local(vector.tolist())
 
     def _vectors(self, row: Row, columns: tuple[str, str]) -> list[FloatArray] | None:
         """Components of a load by vector, of its beginning and its end."""
@@ -99,9 +100,9 @@ class _Loads:
             local = row.text("coordinate system", "Global").lower() == "local"
             size: FloatArray = vectors[0] * scale
             if placed is not None and not local:
-                size = placed.axes @ np.array(self.draft.vector(size.tolist()))
+                size = placed.local(size.tolist())
         else:
-            direction = self._direction(row, None if placed is None else placed.axes)
+            direction = self._direction(row, placed)
             if direction is None:
                 return
             size = direction * row.number_of("value", "N", self.table.force)
@@ -110,8 +111,7 @@ class _Loads:
             self.draft.add_force(case, row.needed("reference node"), [*size, 0, 0, 0], row.where)
             return
         for place in self._places(row, placed):
-            part, at = _part_at(placed, place)
-            self.draft.load_member(case, part.name, row.where, point=_clean(size), x=at)
+            placed.load_point(case, place, np.asarray(size), row.where)
 
     def moment(self, row: Row) -> None:
         """A `StructuralPointMoment`."""
@@ -146,11 +146,11 @@ class _Loads:
                 return
             local = row.text("coordinate system", "Global").lower() == "local"
             sizes = [
-                (v if local else placed.axes @ np.array(self.draft.vector(v.tolist()))) * scale
+                (v if local else placed.local(v.tolist())) * scale
                 for v in (vectors[0], vectors[0 if uniform else 1])
             ]
         else:
-            direction = self._direction(row, placed.axes)
+            direction = self._direction(row, placed)
             if direction is None:
                 return
             first = row.number_of("value 1", "N/m", self.table.line_load)
@@ -163,7 +163,7 @@ class _Loads:
             sizes = [share * one for one in sizes]
         self._spread(row, placed, sizes)
 
-    def _spread(self, row: Row, placed: Placed, sizes: list[FloatArray]) -> None:
+    def _spread(self, row: Row, placed: CutMember, sizes: list[FloatArray]) -> None:
         """Put a linear load on the parts of a member that it covers."""
         start = self._place(row, "start point", placed, 0.0)
         end = self._place(row, "end point", placed, placed.length)
@@ -175,33 +175,17 @@ class _Loads:
         if end - start <= 0:
             self._refuse(row, "a line load of no length")
             return
-        case = row.needed("load case")
-        near = 1e-9 * placed.length
-        for part in placed.parts:
-            low, high = max(part.start, start), min(part.end, end)
-            if high - low <= near:
-                continue
-            ends = [
-                sizes[0] + (sizes[1] - sizes[0]) * (at - start) / (end - start)
-                for at in (low, high)
-            ]
-            whole = low - part.start <= near and part.end - high <= near
-            if whole and np.allclose(ends[0], ends[1], rtol=1e-12, atol=0):
-                self.draft.load_member(case, part.name, row.where, uniform=_clean(ends[0]))
-                continue
-            for k, axis in enumerate("xyz"):
-                if ends[0][k] or ends[1][k]:
-                    shape = (low - part.start, high - part.start, ends[0][k], ends[1][k])
-                    self.draft.load_member(case, part.name, row.where, trapezoid=shape, axis=axis)
+        ends = (sizes[0], sizes[1])
+        placed.load_line(row.needed("load case"), (start, end), ends, row.where)
 
-    def _placed(self, row: Row, column: str) -> Placed | None:
+    def _placed(self, row: Row, column: str) -> CutMember | None:
         name = row.needed(column)
         if name not in self.members.placed:
             self._refuse(row, "a load of a member that is left out")
             return None
         return self.members.placed[name]
 
-    def _place(self, row: Row, column: str, placed: Placed, default: float) -> float:
+    def _place(self, row: Row, column: str, placed: CutMember, default: float) -> float:
         """A place along a member [m]: a share of its length, or a length."""
         if row.raw(column) is None:
             return default
@@ -210,7 +194,7 @@ class _Loads:
             return read_number(share, column, row.where) * placed.length
         return row.number_of(column, "m", self.table.length)
 
-    def _places(self, row: Row, placed: Placed) -> Iterator[float]:
+    def _places(self, row: Row, placed: CutMember) -> Iterator[float]:
         """Places of a point load, and of those that repeat it."""
         first = self._place(row, "position x", placed, 0.0)
         step = self._place(row, "delta x", placed, 0.0)
@@ -218,16 +202,3 @@ class _Loads:
         for number in range(max(1, min(count, 1000))):
             place = first + number * step
             yield placed.length - place if row.text("origin").lower() == "from end" else place
-
-
-def _part_at(placed: Placed, place: float) -> tuple[Part, float]:
-    """The part of a member at a place, and the place along that part."""
-    place = min(max(place, 0.0), placed.length)
-    part = next((one for one in placed.parts if place <= one.end), placed.parts[-1])
-    return part, min(max(place - part.start, 0.0), part.end - part.start)
-
-
-def _clean(vector: FloatArray) -> tuple[float, ...]:
-    """A vector without what rounding leaves of components that are none."""
-    largest = float(np.abs(vector).max())
-    return tuple(0.0 if abs(v) <= 1e-14 * largest else float(v) for v in vector)

@@ -1,12 +1,10 @@
 """1D members of SAF: straight ones, cut at their internal nodes."""
 
-from dataclasses import dataclass
-from itertools import pairwise
-
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
+from rga.importing.cut import CutMember, add_cut
 from rga.importing.draft import Draft
 from rga.importing.saf.properties import Properties
 from rga.importing.saf.unit_table import Table
@@ -17,46 +15,25 @@ FREEDOMS = {"ux": "ux", "uy": "uy", "uz": "uz", "fix": "rx", "fiy": "ry", "fiz":
 OFF_LINE = 1e-6
 
 
-@dataclass(frozen=True)
-class Part:
-    """A part of a member, which is a member of the model: from where to where along it [m]."""
-
-    name: str
-    start: float
-    end: float
-
-
-@dataclass(frozen=True)
-class Placed:
-    """A member in the model: its parts in order, and local axes as rows, float[3, 3]."""
-
-    parts: tuple[Part, ...]
-    length: float
-    axes: FloatArray
-
-
 class Members:
     """Adds 1D members to a draft.
 
     Attributes:
         placed: what became of each member, by its name.
-        left_out: names of members that the draft has not.
     """
 
     def __init__(
         self, sheets: dict[str, Sheet], table: Table, draft: Draft, properties: Properties
     ) -> None:
         self.sheets, self.table, self.draft, self.properties = sheets, table, draft, properties
-        self.placed: dict[str, Placed] = {}
-        self.left_out: set[str] = set()
+        self.placed: dict[str, CutMember] = {}
 
     def add(self) -> None:
         """Add all of them, with their hinges."""
         released, springs = self._hinges()
         for row in self.sheets.get("StructuralCurveMember", ()):
             name = row.needed("name")
-            if not self._add(name, row, released.get(name, {}), springs.get(name, {})):
-                self.left_out.add(name)
+            self._add(name, row, released.get(name, {}), springs.get(name, {}))
 
     def _refuse(self, row: Row, what: str, remedy: str = "model it otherwise") -> None:
         self.draft.notes.refuse(row.where, what, remedy, "partial")
@@ -67,12 +44,12 @@ class Members:
         row: Row,
         released: dict[str, list[str]],
         springs: dict[str, dict[str, float]],
-    ) -> bool:
+    ) -> None:
         nodes = row.names("nodes") or [row.needed("begin node"), row.needed("end node")]
         curved = [one for one in row.names("segments") if one.lower() != "line"]
         if curved:
             self._refuse(row, f"its segment {curved[0]!r} is not straight", "cut it into lines")
-            return False
+            return
         for node in (*nodes, *row.names("internal nodes")):
             if node not in self.draft.nodes:
                 raise InputError(f"node {node!r} is in no sheet", row.where, "add it")
@@ -89,51 +66,26 @@ class Members:
         self._say_details(row)
         chosen = self.properties.section(row.needed("cross section"), row, axial=axial)
         if chosen is None:
-            return False
+            return
         points = [np.array(self.draft.nodes[node]) for node in nodes]
         straight = self._straight(points)
         order = self._ordered(row, nodes, points) if straight else nodes
         if not straight and row.names("internal nodes"):
             self._refuse(row, "a polyline with internal nodes", "cut it")
-            return False
+            return
         axes = self._axes(row, points)
         if axes is None:
-            return False
-        parts, at = [], 0.0
-        pairs = list(pairwise(order))
-        for number, pair in enumerate(pairs, start=1):
-            part = name if len(pairs) == 1 else f"{name} {number}"
-            first, last = number == 1, number == len(pairs)
-            ends = {"i": released.get("i", []) * first, "j": released.get("j", []) * last}
-            flexible = {
-                end: springs.get(end, {}) for end, own in (("i", first), ("j", last)) if own
-            }
-            size = float(np.linalg.norm(np.subtract(*(self.draft.nodes[n] for n in pair))))
-            if axial and (any(ends.values()) or any(flexible.values())):
-                self.draft.notes.say("dropped", row.where, "hinges of a member of axial force only")
-            added = self.draft.add_member(
-                part, pair, *chosen, row.where,
-                kind="truss" if axial else "frame",
-                local_y=None if axial else self._source(axes[1]),
-                releases=None if axial else ends,
-                end_springs=None if axial else flexible,
-                groups=[row.text("layer")] if row.text("layer") else [],
-            )  # fmt: skip
-            if not added:
-                return False
-            parts.append(Part(part, at, at + size))
-            at += size
-        if len(pairs) > 1:
-            self.draft.notes.say(
-                "assumed", row.where, f"it is {len(pairs)} members, cut at its nodes: {name} 1 ..."
-            )
-        self.placed[name] = Placed(tuple(parts), at, axes)
-        return True
-
-    def _source(self, vector: FloatArray) -> list[float]:
-        """A vector of the model in the axes of the file, which the draft turns."""
-        x, y, z = vector.tolist()
-        return [x, z, -y] if self.draft.up == "y" else [x, y, z]
+            return
+        if axial and (any(released.values()) or any(springs.values())):
+            self.draft.notes.say("dropped", row.where, "hinges of a member of axial force only")
+        layer = row.text("layer")
+        cut = add_cut(
+            self.draft, name, order, *chosen, row.where, axes,
+            kind="truss" if axial else "frame", releases=released, end_springs=springs,
+            groups=[layer] if layer else [],
+        )  # fmt: skip
+        if cut is not None:
+            self.placed[name] = cut
 
     def _say_details(self, row: Row) -> None:
         if row.text("arbitrary definition"):

@@ -1,12 +1,11 @@
 """Materials and sections of SAF, as they are or by their shapes."""
 
-from collections.abc import Sequence
-
 from rga.importing.draft import Draft
-from rga.importing.materials import Given, doubts
-from rga.importing.opensees.build import poisson
+from rga.importing.materials import doubts
+from rga.importing.options import Chosen
 from rga.importing.saf.unit_table import Table
 from rga.importing.section_shapes import area_of, by_shape
+from rga.importing.shear import poisson
 from rga.importing.sheets import Row, Sheet, read_number
 
 
@@ -14,10 +13,10 @@ class Properties:
     """Materials and sections by name, added to a draft when a member uses them."""
 
     def __init__(
-        self, sheets: dict[str, Sheet], table: Table, draft: Draft, given: Sequence[Given]
+        self, sheets: dict[str, Sheet], table: Table, draft: Draft, chosen: Chosen
     ) -> None:
         self.table, self.draft = table, draft
-        self.given = {one.name: one.values for one in given}
+        self.given, self.given_sections = chosen.materials, chosen.sections
         self._materials = {row.needed("name"): row for row in sheets.get("StructuralMaterial", ())}
         self._sections = {
             row.needed("name"): row for row in sheets.get("StructuralCrossSection", ())
@@ -89,7 +88,8 @@ class Properties:
             )
             return None
         material = self.material(own.names("material")[0] if own.names("material") else "", own)
-        values = self._stated(own, axial) or self._shaped(own, axial)
+        by_hand = self.given_sections.get(name) or self.given_sections.get(own.text("profile"))
+        values = by_hand or self._stated(own, axial) or self._shaped(own, axial)
         if material is None or values is None:
             return None
         return self.draft.section(name, **values), material
@@ -120,7 +120,8 @@ class Properties:
             of = " ".join(filter(None, (shape, row.text("profile"), row.text("parameters"))))
             self.draft.notes.refuse(
                 row.where, f"no A, Iy, Iz and It, and none follow from {of!r}",
-                "fill these columns", "partial",
+                f'fill these columns, or give it, as --section "{row.text("name")}: A=..."',
+                "partial",
             )  # fmt: skip
         elif rounded:
             self.draft.notes.say(

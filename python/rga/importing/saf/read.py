@@ -1,17 +1,15 @@
 """Makes a draft of a SAF workbook: nodes, 1D members, supports, hinges."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from rga.importing.draft import Draft
-from rga.importing.materials import Given
-from rga.importing.notes import Acceptance
+from rga.importing.options import Chosen
 from rga.importing.saf.loads import add_loads
 from rga.importing.saf.members import Members
 from rga.importing.saf.properties import Properties
 from rga.importing.saf.unit_table import Table
 from rga.importing.sheets import Sheet
-from rga.importing.workbook import read_properties, read_workbook
+from rga.importing.workbook import read_properties
 
 #: degrees of freedom of SAF, and rga's
 FREEDOMS = {"ux": "ux", "uy": "uy", "uz": "uz", "fix": "rx", "fiy": "ry", "fiz": "rz"}
@@ -53,21 +51,20 @@ def is_saf(sheets: dict[str, Sheet]) -> bool:
     return "StructuralPointConnection" in sheets or "StructuralCurveMember" in sheets
 
 
-def read_saf(path: Path, accept: frozenset[Acceptance], materials: Sequence[Given]) -> Draft:
+def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> Draft:
     """A draft of the 1D part of a SAF workbook.
 
     Args:
         path: the workbook.
-        accept: what the user accepts.
-        materials: given by hand, instead of those of the file.
+        sheets: those of it that are tables.
+        chosen: what the user chose.
 
     Raises:
         InputError: it cannot be read.
     """
-    sheets = read_workbook(path)
     about = read_properties(path, "Model")
     up = "y" if about.get("global coordinate system", "").lower().startswith("y") else "z"
-    draft = Draft(about.get("name") or path.stem, accept, "y" if up == "y" else "z")
+    draft = Draft(about.get("name") or path.stem, chosen.accept, "y" if up == "y" else "z")
     system = about.get("system of units", "")
     if not system:
         draft.notes.say("assumed", "sheet Model", "the system of units is not stated: metric")
@@ -80,7 +77,7 @@ def read_saf(path: Path, accept: frozenset[Acceptance], materials: Sequence[Give
     for row in sheets.get("StructuralPointConnection", ()):
         place = [row.number_of(f"coordinate {axis}", "m", table.length) for axis in ("x", "y", "z")]
         draft.add_node(row.needed("name"), place, row.where)
-    properties = Properties(sheets, table, draft, materials)
+    properties = Properties(sheets, table, draft, chosen)
     members = Members(sheets, table, draft, properties)
     members.add()
     _add_supports(sheets, table, draft)

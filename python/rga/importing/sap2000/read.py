@@ -5,14 +5,15 @@ from pathlib import Path
 import numpy as np
 
 from rga.errors import InputError
+from rga.importing.cut import CutMember, add_cut, nodes_between
 from rga.importing.draft import Draft
-from rga.importing.notes import Acceptance
-from rga.importing.opensees.build import poisson
+from rga.importing.options import Chosen
 from rga.importing.reading import read_text
 from rga.importing.sap2000.axes import local_y
 from rga.importing.sap2000.loads import add_loads
 from rga.importing.sap2000.names import MATTERS, QUIET, READ
 from rga.importing.sap2000.tables import Row, Tables, read_tables
+from rga.importing.shear import poisson
 from rga.importing.units import Units
 
 #: fields of a restraint, and degrees of freedom that they hold
@@ -29,23 +30,22 @@ SHAPES = {
 }  # fmt: skip
 
 
-def read_sap2000(path: Path, units: Units | None, accept: frozenset[Acceptance]) -> Draft:
+def read_sap2000(path: Path, chosen: Chosen) -> Draft:
     """A draft of a model of SAP2000.
 
     Args:
         path: its text tables.
-        units: instead of those that the file states.
-        accept: what the user accepts.
+        chosen: units instead of those that the file states, and what the user accepts.
 
     Raises:
         InputError: it cannot be read.
     """
     tables = read_tables(read_text(path), path.name)
-    draft = Draft(path.stem, accept)
-    system = units or _units(tables, path.name)
+    draft = Draft(path.stem, chosen.accept)
+    system = chosen.system or _units(tables, path.name)
     reader = _Reader(tables, system, draft)
     reader.read()
-    add_loads(tables, system, draft, reader.weights)
+    add_loads(tables, system, draft, reader.frames, reader.weights)
     _say_tables(tables, draft)
     return draft
 
@@ -66,11 +66,19 @@ class _Reader:
 
     Attributes:
         weights: self-weight of each frame [N/m].
+        frames: what became of each.
+        meshed: names of frames that joints on them cut.
     """
 
     def __init__(self, tables: Tables, units: Units, draft: Draft) -> None:
         self.tables, self.units, self.draft = tables, units, draft
         self.weights: dict[str, float] = {}
+        self.frames: dict[str, CutMember] = {}
+        self.meshed = {
+            row.text("Frame")
+            for row in tables.of("FRAME AUTO MESH ASSIGNMENTS")
+            if row.yes("AutoMesh") and row.yes("AtJoints")
+        }
         self.materials = {
             row.text("Material"): row
             for row in tables.of("MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES")
@@ -150,16 +158,23 @@ class _Reader:
         properties = self._material(material, given)
         if properties is None:
             return
-        points = [self.draft.nodes.get(end) for end in ends]
-        across = None
-        if points[0] is not None and points[1] is not None:
-            along = np.subtract(points[1], points[0])
-            across = local_y(along, angles.get(name, 0.0)) if along.any() else None
-        label = self._section(section, material)
-        if self.draft.add_member(
-            name, ends, label, self.draft.material(material, **properties), row.where,
-            local_y=across, releases=released.get(name),
-        ):  # fmt: skip
+        for end in ends:
+            if end not in self.draft.nodes:
+                raise InputError(f"joint {end!r} is not there", row.where, "define it")
+        along = np.subtract(self.draft.nodes[ends[1]], self.draft.nodes[ends[0]])
+        if not along.any():
+            self.draft.notes.refuse(row.where, "a frame of no length", "take it out", "partial")
+            return
+        y = local_y(along, angles.get(name, 0.0))
+        x = along / np.linalg.norm(along)
+        nodes = nodes_between(self.draft, *ends) if name in self.meshed else ends
+        frame = add_cut(
+            self.draft, name, nodes, self._section(section, material),
+            self.draft.material(material, **properties), row.where,
+            np.stack([x, y, np.cross(x, y)]), releases=released.get(name),
+        )  # fmt: skip
+        if frame is not None:
+            self.frames[name] = frame
             weight = self.materials[material].number("UnitWeight", 0.0)
             scale = self.units.force / self.units.length
             self.weights[name] = section.number("Area") * weight * scale

@@ -177,8 +177,10 @@ class Interpreter(Evaluation):
                 if isinstance(module, Table):
                     self.names |= module.names
             else:
-                inner = self.modules.get(f"{name}.{one.name}")
-                self.names[one.asname or one.name] = inner or module.attribute(one.name)
+                found = module.attribute(one.name)
+                if isinstance(found, Anything):
+                    found = self.modules.get(f"{name}.{one.name}", found)
+                self.names[one.asname or one.name] = found
 
     def _module(self, name: str, node: ast.AST) -> Opened:
         return self.modules.get(name) or Anything(name)
