@@ -12,6 +12,7 @@ from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
+from rga.cli.import_model import import_model
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
 from rga.cli.run import run
@@ -33,6 +34,7 @@ for command in (
     doctor,
 ):  # fmt: skip
     app.command()(command)
+app.command("import")(import_model)
 # Other packages, as the benchmarks in this wheel, add commands of their own.
 for plugin in entry_points(group="rga.commands"):
     app.add_typer(plugin.load(), name=plugin.name)
