@@ -1,5 +1,7 @@
 """Materials and sections of SAF, as they are or by their shapes."""
 
+from collections.abc import Mapping
+
 from rga.importing.draft import Draft
 from rga.importing.materials import doubts
 from rga.importing.options import Chosen
@@ -88,11 +90,16 @@ class Properties:
             )
             return None
         material = self.material(own.names("material")[0] if own.names("material") else "", own)
-        by_hand = self.given_sections.get(name) or self.given_sections.get(own.text("profile"))
-        values = by_hand or self._stated(own, axial) or self._shaped(own, axial)
+        values = self._by_hand(name, own) or self._stated(own, axial)
+        if values is None:
+            values = self.given_sections.get(None) or self._shaped(own, axial)
         if material is None or values is None:
             return None
         return self.draft.section(name, **values), material
+
+    def _by_hand(self, name: str, row: Row) -> Mapping[str, float] | None:
+        """Properties given by hand for a section or for its profile."""
+        return self.given_sections.get(name) or self.given_sections.get(row.text("profile") or name)
 
     def _stated(self, row: Row, axial: bool) -> dict[str, float] | None:
         """Properties that the file states; None where one that is needed is missing."""

@@ -124,6 +124,10 @@ class _Reader:
     def _releases(self) -> dict[str, dict[str, list[str]]]:
         found: dict[str, dict[str, list[str]]] = {}
         for row in self.tables.of("FRAME RELEASE ASSIGNMENTS 1 - GENERAL"):
+            if row.yes("PartialFix"):
+                self.draft.notes.refuse(
+                    row.where, "a partial release", "make it whole or none", "partial"
+                )
             ends = {
                 end: [dof for name, dof in RELEASES.items() if row.yes(f"{name}{end.upper()}")]
                 for end in "ij"
@@ -273,8 +277,12 @@ def _idle(name: str, row: Row) -> bool:
     if name.startswith("FRAME OFFSET"):
         return not (row.number("LengthI", 0.0) or row.number("LengthJ", 0.0))
     if name.startswith("FRAME INSERTION POINT"):
+        kept = any(
+            row.get(field).lower() == "no"
+            for field in ("StiffTransform", "StiffTrans", "Transform")
+        )
         moved = any(row.number(f"Offset{axis}{end}", 0.0) for axis in "XYZ123" for end in "IJ")
-        return row.get("CardinalPt", "10").split(" ")[0] in ("10", "11") and not moved
+        return kept or (row.get("CardinalPt", "10").split(" ")[0] in ("10", "11") and not moved)
     return False
 
 

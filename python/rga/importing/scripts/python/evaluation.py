@@ -126,6 +126,8 @@ class Evaluation:
         if not callable(function):
             return self.tried(node, lambda: function())
         for given in (*values, *named.values()):
+            if isinstance(given, Function | Opened):
+                return not_known(ast.unparse(node.func)[:40])
             if isinstance(given, Unknown) and getattr(function, "__name__", "") not in ("append",):
                 return given
         return self.tried(node, function, *values, **named)

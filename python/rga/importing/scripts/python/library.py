@@ -47,7 +47,7 @@ def _array(values: Any, dtype: Any = None) -> Any:
 
 
 def _listed(function: Callable[..., Any]) -> Callable[..., list[Any]]:
-    return lambda *values: list(function(*values))
+    return lambda *values, **named: list(function(*values, **named))
 
 
 #: functions of Python itself
