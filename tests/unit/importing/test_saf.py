@@ -19,7 +19,9 @@ STATES = ["ux", "uy", "uz", "fix", "fiy", "fiz"]
 def frame() -> Sheets:
     """A column and a beam with a node on it, hinged at the column; loads of all sorts."""
     return {
-        "Model": [["Name", "corner"], ["System of units", "Metric"], ["LCS of cross-section", "ZYX"]],
+        "Model": [
+            ["Name", "corner"], ["System of units", "Metric"], ["LCS of cross-section", "ZYX"],
+        ],
         "StructuralMaterial": [
             ["Name", "Type", "Unit mass [kg/m3]", "E modulus [MPa]", "G modulus [MPa]",
              "Poisson coefficient", "Thermal expansion [1/K]"],
@@ -36,7 +38,8 @@ def frame() -> Sheets:
             ["A", 0, 0, 0], ["B", 0, 0, 3], ["C", 4, 0, 3], ["D", 1, 0, 3],
         ],
         "StructuralCurveMember": [
-            ["Name", "Cross section", "Nodes", "Segments", "Internal nodes", "LCS", "LCS Rotation [deg]",
+            ["Name", "Cross section", "Nodes", "Segments", "Internal nodes", "LCS",
+             "LCS Rotation [deg]",
              "Coordinate X [m]", "Coordinate Y [m]", "Coordinate Z [m]", "Behaviour in analysis"],
             ["col", "R", "A;B", "Line", None, "Y by vector", 30, 0, 1, 0, "Standard"],
             ["beam", "P", "B; C", "Line", "D", "z by vector", 0, 0, 0, 1, "Standard"],
@@ -52,8 +55,9 @@ def frame() -> Sheets:
         ],
         "StructuralLoadCase": [["Name", "Load type"], ["LC1", "Others"], ["G", "Self weight"]],
         "StructuralPointAction": [
-            ["Name", "Direction", "Force action", "Reference node", "Reference member", "Value [kN]",
-             "Load case", "Coordinate system", "Origin", "Coordinate definition", "Position x [m]"],
+            ["Name", "Direction", "Force action", "Reference node", "Reference member",
+             "Value [kN]", "Load case", "Coordinate system", "Origin", "Coordinate definition",
+             "Position x [m]"],
             ["F1", "X", "In node", "B", None, 5, "LC1", "Global"],
             ["F2", "Z", "On beam", None, "beam", -3, "LC1", "Global", "From end", "Relative", 0.25],
         ],
@@ -63,9 +67,9 @@ def frame() -> Sheets:
             ["M1", "My", "In node", "C", 2, "LC1", "Global"],
         ],
         "StructuralCurveAction": [
-            ["Name", "Force action", "Distribution", "Direction", "Value 1 [kN/m]", "Value 2 [kN/m]",
-             "Member", "Load case", "Coordinate system", "Location", "Coordinate definition", "Origin",
-             "Extent", "Start point [m]", "End point [m]"],
+            ["Name", "Force action", "Distribution", "Direction", "Value 1 [kN/m]",
+             "Value 2 [kN/m]", "Member", "Load case", "Coordinate system", "Location",
+             "Coordinate definition", "Origin", "Extent", "Start point [m]", "End point [m]"],
             ["L1", "On beam", "Trapez", "Z", -2, -4, "beam", "LC1", "Local", "Length", "Absolute",
              "From start", "Span", 0.5, 3.5],
             ["L2", "On beam", "Uniform", "Y", 1, None, "col", "LC1", "Global", "Length", "Relative",
@@ -101,12 +105,14 @@ class TestSafWorkbook:
         found = import_model(book(sheets))
         half, turn = 3**0.5 / 2, 0.5
         steel = {"type": "beam", "E": 210e9, "G": 80e9}
-        rod = {**steel, "A": 0.004, "Iy": 2e-5, "Iz": 1e-5, "J": 3e-5, "local_y": [0, -1, 0]}
+        rod = {**steel, "A": 0.004, "Iy": 2e-5, "Iz": 1e-5, "J": 3e-5, "local_y": [0, 1, 0]}
         section = found.model.sections["R"]
         # A node of its own behind the hinge, tied to the column by all but what it lets go.
         case = {
             "dim": 3,
-            "nodes": {"A": [0, 0, 0], "B": [0, 0, 3], "b": [0, 0, 3], "D": [1, 0, 3], "C": [4, 0, 3]},
+            "nodes": {
+                "A": [0, 0, 0], "B": [0, 0, 3], "b": [0, 0, 3], "D": [1, 0, 3], "C": [4, 0, 3],
+            },
             "elements": [
                 {"id": "col", "nodes": ["A", "B"], **steel, "A": 0.06, "J": section.J,
                  "Iy": 0.2 * 0.3**3 / 12, "Iz": 0.3 * 0.2**3 / 12, "local_y": [-turn, half, 0]},
@@ -165,7 +171,7 @@ class TestSafWorkbook:
             ("StructuralMaterial", 3, 1_000_000, "E of 1000 GPa for steel"),
             ("StructuralMaterial", 5, 4, "Poisson's ratio of 4"),
             ("StructuralMaterial", 6, 5, "thermal expansion of 5 1/K"),
-            ("StructuralMaterial", 1, "Timber", "for timber"),
+            ("StructuralMaterial", 1, "Timber", "E of 210 GPa for timber"),
         ],
     )
     def test_values_that_cannot_be_meant_are_named(

@@ -48,17 +48,11 @@ class Properties:
         values = {
             "E": row.number_of("e modulus", "Pa", table.modulus),
             "G": row.number_of("g modulus", "Pa", table.modulus, 0.0),
-            "density": self._density(row),
+            "density": row.number_of("unit mass", "kg/m3", table.density, 0.0),
             "alpha": row.number_of("thermal expansion", "1/K", table.expansion, 0.0),
         }
         values["nu"] = row.number_of("poisson coefficient", default=0.3)
         return values
-
-    def _density(self, row: Row) -> float:
-        # The pound of imperial workbooks is one of mass here.
-        cell = row.raw("unit mass")
-        scale = 16.018463373960142 if self.table.imperial else 1.0
-        return 0.0 if cell is None else read_number(cell, "unit mass", row.where) * scale
 
     def material(self, name: str, row: Row) -> str | None:
         """The name of a material in the draft; None where the file has none of this name."""
