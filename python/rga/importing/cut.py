@@ -109,7 +109,8 @@ def add_cut(
     for number, pair in enumerate(pairs, start=1):
         ends = [end for end, own in (("i", number == 1), ("j", number == len(pairs))) if own]
         part = name if len(pairs) == 1 else f"{name} {number}"
-        size = float(np.linalg.norm(np.subtract(*(draft.nodes[node] for node in pair))))
+        first, last = (np.array(draft.nodes[node]) for node in pair)
+        size = float(np.linalg.norm(last - first))
         more: dict[str, Any] = {"local_y": draft.unturned(axes[1].tolist())}
         if kind == "frame":
             more["releases"] = {end: (releases or {}).get(end, []) for end in ends}

@@ -1,6 +1,6 @@
 """A model in the making, in SI units."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence, Sized
 from typing import Any, Literal
 
 import numpy as np
@@ -253,7 +253,7 @@ class Draft:
 
     def counts(self) -> dict[str, int]:
         """How many parts there are, by kind."""
-        parts = {
+        parts: dict[str, Sized] = {
             "nodes": self.nodes, "members": self.members, "supports": self.supports,
             "springs": self.springs, "ties": self.ties, "masses": self.masses,
             "materials": self.materials, "sections": self.sections,

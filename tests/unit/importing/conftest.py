@@ -24,7 +24,7 @@ def moves() -> Callable[[Model], dict[str, list[float]]]:
             for kind, unit in (("displacement", "m"), ("rotation", "rad")):
                 for k, axis in enumerate(AXES):
                     sensors[f"{node} {kind} {axis}"] = Sensor(
-                        kind=kind,  # type: ignore[arg-type]
+                        kind=kind,
                         unit=unit,
                         node=node,
                         direction=tuple(np.eye(3)[k].tolist()),

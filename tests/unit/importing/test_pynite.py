@@ -57,8 +57,10 @@ class TestPyniteObject:
         model.add_node("mid", *map(float, (points[0] + points[1]) / 2))
         model.add_material("steel", 2.1e8, 8e7, 0.3, 77.0)
         model.add_section("tube", 0.01, 2e-4, 3e-4, 1e-4)
-        ends = ["base top", "N0 N1", "N1 N2", "N2 N3", "N3 N4", "N4 N5", "N0 N4", "N1 N3", "top mid",
-                "top N3"]  # fmt: skip
+        ends = [
+            "base top", "N0 N1", "N1 N2", "N2 N3", "N3 N4", "N4 N5", "N0 N4", "N1 N3", "top mid",
+            "top N3",
+        ]  # fmt: skip
         for k, pair in enumerate(ends):
             first, second = pair.split()
             model.add_member(f"m{k}", first, second, "steel", "tube", rotation=15.0 * (k % 3))

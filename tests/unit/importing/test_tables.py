@@ -76,7 +76,7 @@ class TestTables:
         for name, text in TABLES.items():
             sheet = book.create_sheet(name)
             for line in text.splitlines():
-                sheet.append([None if not cell else cell for cell in line.split(",")])
+                sheet.append([cell or None for cell in line.split(",")])
         place = folder()
         book.save(place / "model.xlsx")
         first, second = import_model(place).model, import_model(place / "model.xlsx").model
@@ -97,7 +97,11 @@ class TestTables:
         [
             ("nodes", "name,x,z [m]\nA,0,0\n", "'x' states no unit"),
             ("nodes", "name,x [kg],z [m]\nA,0,0\n", "'kg' is no unit that becomes m"),
-            ("nodes", "name,x [m],z [m]\nA,0,none\n", "nodes.csv, row 2.*'none', no number"),
+            (
+                "nodes",
+                "name,x [m],z [m]\nA,0,none\n",
+                r"'z' is 'none', no number \(nodes.csv, row 2 \(A\)\)",
+            ),
             ("nodes", "name,x [m],z [m]\nA,0,0\nA,1,0\n", "node 'A' is there already"),
             ("members", "name,start,end,section,material\nAB,A,B,beam,oak\n", "no material 'oak'"),
             ("members", "name,start,end,section,material\nAB,A,Z,beam,steel\n", "names node 'Z'"),

@@ -51,7 +51,7 @@ def read_drawing(path: Path) -> Drawing:
         InputError: it is none, damaged, or has more lines than any structure.
     """
     with needing_extras():
-        import ezdxf
+        from ezdxf.filemanagement import readfile
     if len(read_bytes(path)) > LARGEST:
         raise InputError(
             f"the drawing has more than {LARGEST // 2**20} MiB",
@@ -59,7 +59,7 @@ def read_drawing(path: Path) -> Drawing:
             "give the structure only",
         )
     try:
-        document = ezdxf.readfile(path)
+        document = readfile(path)
         drawing = Drawing(int(document.header.get("$INSUNITS", 0)))
         for entity in document.modelspace():
             _add(drawing, entity)

@@ -76,8 +76,8 @@ def add_element_load(model: ScriptModel, given: Arguments) -> None:
     pattern = _pattern(model, given)
     elements = [str(int(tag)) for tag in given.option("-ele", None, "elements") or ()]
     if (ends := given.option("-range", 2, "elements")) is not None:
-        numbers = range(int(ends[0]), int(ends[1]) + 1)
-        elements += [tag for tag in model.elements if int(tag) in numbers]
+        between = range(int(ends[0]), int(ends[1]) + 1)
+        elements += [tag for tag in model.elements if int(tag) in between]
     for tag in elements:
         if tag not in model.elements:
             raise given.error(f"there is no element {tag} before it")

@@ -98,14 +98,15 @@ def _say_others(draft: Draft, host: Host, chosen: ScriptModel, fault: InputError
     names = ", ".join(host.passed)
     for where in sorted({where for places in host.passed.values() for where in places}, key=_line):
         draft.notes.say("dropped", where, f"analysis and output, which no model needs: {names}")
-    used = {tag for one in chosen.elements.values() for tag, _ in one.materials}
-    used_sections = {one.section for one in chosen.elements.values()}
-    for what, table, names, kinds in (
+    elements = chosen.elements.values()
+    used: set[str | None] = {tag for one in elements for tag, _ in one.materials}
+    used_sections = {one.section for one in elements}
+    for what, table, needed, kinds in (
         ("material", chosen.materials, used, ("Elastic",)),
         ("section", chosen.sections, used_sections, ELASTIC),
     ):
         for tag, defined in table.items():
-            if tag not in names and defined.kind not in kinds:
+            if tag not in needed and defined.kind not in kinds:
                 draft.notes.say(
                     "dropped",
                     defined.where,

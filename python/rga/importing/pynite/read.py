@@ -135,7 +135,7 @@ class _Reader:
             )  # fmt: skip
         points = [np.array([node.X, node.Y, node.Z], dtype=float) for node in
                   (member.i_node, member.j_node)]  # fmt: skip
-        if np.array_equal(*points):
+        if np.array_equal(points[0], points[1]):
             self.draft.notes.refuse(where, "a member of no length", "take it out", "partial")
             return
         source_axes = local_axes(points[0], points[1], float(member.rotation))
@@ -202,7 +202,8 @@ class _Reader:
                 where, "a spring that acts one way only", "let it act both ways", "linear"
             )
         ends = (spring.i_node.name, spring.j_node.name)
-        size = float(np.linalg.norm(np.subtract(*(self.draft.nodes[node] for node in ends))))
+        first, last = (np.array(self.draft.nodes[node]) for node in ends)
+        size = float(np.linalg.norm(last - first))
         area = float(spring.ks) * self.units.line_load * size / SPRING
         self.draft.add_member(
             f"spring {name}", ends, self.draft.section(f"spring {name}", A=area),
@@ -212,7 +213,7 @@ class _Reader:
     def _direction(self, direction: str, cut: CutMember) -> FloatArray | None:
         """The direction of a load in local axes; None of a moment."""
         if direction in LOCAL:
-            return np.eye(3)[LOCAL.index(direction)]
+            return np.asarray(np.eye(3)[LOCAL.index(direction)])
         if direction in NODAL[:3]:
             return cut.local(np.eye(3)[NODAL.index(direction)].tolist())
         return None

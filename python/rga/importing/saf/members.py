@@ -131,7 +131,7 @@ class Members:
             given = given - points[0]
         y = given if rule.startswith("y") else np.cross(given, x)
         y = y - (y @ x) * x
-        if np.linalg.norm(y) <= 1e-9 * max(np.linalg.norm(given), 1e-300):
+        if np.linalg.norm(y) <= 1e-9 * max(float(np.linalg.norm(given)), 1e-300):
             self.draft.notes.say(
                 "assumed", row.where, "the vector of its local axes lies along it: y is horizontal"
             )

@@ -23,7 +23,7 @@ class Properties:
         self._sections = {
             row.needed("name"): row for row in sheets.get("StructuralCrossSection", ())
         }
-        self._known: dict[str, dict[str, float]] = {}
+        self._known: dict[str, Mapping[str, float]] = {}
         self._doubted()
 
     def _doubted(self) -> None:

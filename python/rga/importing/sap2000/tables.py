@@ -8,8 +8,8 @@ from rga.errors import InputError
 
 FIELD = re.compile(r'([A-Za-z0-9_/.\-() ]+?)\s*=\s*("(?:[^"]|"")*"|\S*)')
 HEAD = re.compile(r'TABLE:\s*"([^"]*)"')
-#: lines of the longest row
-LONGEST_ROW = 200
+#: lines of the longest row, and rows of the longest file
+LONGEST_ROW, MOST_ROWS = 200, 300_000
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,11 @@ def read_tables(text: str, file: str) -> Tables:
     """
     tables = Tables()
     current: list[Row] | None = None
-    for line, row in _rows(text, file):
+    for number, (line, row) in enumerate(_rows(text, file)):
+        if number > MOST_ROWS:
+            raise InputError(
+                f"the file has more than {MOST_ROWS} rows", f"line {line}", "give fewer tables"
+            )
         head = HEAD.match(row)
         if head:
             name = head[1].upper()

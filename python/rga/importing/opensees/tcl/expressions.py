@@ -231,11 +231,11 @@ def _divided(left: Number, right: Number) -> Number:
 def _power(base: Number, power: Number) -> Number:
     if isinstance(base, int) and isinstance(power, int):
         if power < 0:
-            return 0 if abs(base) > 1 else base ** (-power)
+            return 0 if abs(base) > 1 else int(base ** (-power))
         if abs(base) > 1 and power > 63:
             raise OverflowError("the number is too large")
-        return base**power
-    return float(base) ** float(power)
+        return int(base**power)
+    return float(base) ** power
 
 
 def _shifted(value: Number, by: Number, left: bool) -> int:

@@ -8,11 +8,13 @@ from rga.errors import InputError
 from rga.importing.opensees.tcl.expressions import Expression, truth
 from rga.importing.opensees.tcl.numbers import written
 from rga.importing.opensees.tcl.variables import Variables
-from rga.importing.opensees.tcl.words import Command, Part, Word, commands, parts_of
+from rga.importing.opensees.tcl.words import Command, Cutter, Part, Word, commands, parts_of
 from rga.importing.scripts.values import Steps, Unknown, checked_size
 
 #: procedures within procedures, and files within files
 DEEPEST = 40
+#: characters up to which a script is remembered as it is cut, since it may be a loop's
+REPEATED = 20_000
 
 
 class Text(str):
@@ -80,7 +82,8 @@ class Interpreter:
             InputError: it cannot be read, takes too many steps, or a command is wrong.
         """
         result: Any = ""
-        for one in commands(text, line, file):
+        short = len(text) < REPEATED
+        for one in commands(text, line, file) if short else Cutter(text, line, file).commands():
             result = self._command(one, file)
         return result
 
@@ -180,7 +183,8 @@ class Interpreter:
         if isinstance(text, Unknown):
             return text
         line, file = (text.line, text.file) if isinstance(text, Text) else (1, self.main)
-        shown, values = [], []
+        shown: list[str] = []
+        values: list[Any] = []
         for part in parts_of(str(text), line, file):
             if part.kind == "text":
                 shown.append(part.text)

@@ -1,5 +1,6 @@
 """Tcl text cut into commands and words; Ousterhout's rules, `man n Tcl`."""
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,6 +10,12 @@ from rga.errors import InputError
 
 #: what a backslash makes of a letter
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "a": "\a", "b": "\b", "f": "\f", "v": "\v"}
+#: signs that mean nothing in a word, wherever it ends; blanks; what ends a comment
+PLAIN = re.compile(r'[^\\\[$ \t\n;")]+')
+BLANK = re.compile(r"(?:[ \t\n;]|\\\n)*")
+BETWEEN = re.compile(r"(?:[ \t]|\\\n)*")
+COMMENT = re.compile(r"(?:[^\\\n]|\\.)*", re.DOTALL)
+BRACES = re.compile(r"[^\\{}]+")
 CLOSING = {"{": "}", "[": "]", '"': '"'}
 
 
@@ -90,28 +97,24 @@ class Cutter:
     def commands(self) -> Iterator[Command]:
         """The commands from the place to the end."""
         while self.place < len(self.text):
-            self._skip(" \t\n;")
+            self._skip(BLANK)
             if self.sign == "#":
-                self._skip_comment()
+                self._skip(COMMENT)
                 continue
             line, words = self.line, []
             while self.sign and self.sign not in "\n;":
                 words.append(self._word())
-                self._skip(" \t")
+                self._skip(BETWEEN)
             if words:
                 yield Command(tuple(words), line)
 
-    def _skip(self, signs: str) -> None:
-        while self.sign and (self.sign in signs or self._continued()):
-            self.place += 2 if self.sign == "\\" else 1
+    def _skip(self, what: re.Pattern[str]) -> None:
+        found = what.match(self.text, self.place)
+        self.place = found.end() if found else self.place
 
     def _continued(self) -> bool:
         """Whether a line goes on behind a backslash at the place."""
         return self.text.startswith("\\\n", self.place)
-
-    def _skip_comment(self) -> None:
-        while self.sign and self.sign != "\n":
-            self.place += 2 if self.sign == "\\" else 1
 
     def _word(self) -> Word:
         spread = self.text.startswith("{*}", self.place) and not self._ends(self.place + 3)
@@ -143,12 +146,16 @@ class Cutter:
     def braced(self) -> str:
         """What stands between the brace at the place and the one that closes it."""
         line, start, depth = self.line, self.place + 1, 0
-        while self.sign:
-            if self.sign == "\\":
+        while self.place < len(self.text):
+            if run := BRACES.match(self.text, self.place):
+                self.place = run.end()
+                continue
+            sign = self.text[self.place]
+            if sign == "\\":
                 self.place += 1
-            elif self.sign == "{":
+            elif sign == "{":
                 depth += 1
-            elif self.sign == "}":
+            else:
                 depth -= 1
                 if depth == 0:
                     self.place += 1
@@ -161,8 +168,14 @@ class Cutter:
         """Parts up to a sign that ends them, or to the end."""
         plain: list[str] = []
         line = self.line
-        while self.sign and not stops(self.sign):
-            sign = self.sign
+        while self.place < len(self.text):
+            if run := PLAIN.match(self.text, self.place):
+                plain.append(run[0])
+                self.place = run.end()
+                continue
+            sign = self.text[self.place]
+            if stops(sign):
+                break
             part: Part | None = None
             if sign == "\\":
                 if self._continued() and stops(" "):
