@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rga.importing import ImportedModel, Note
 
 
-class Kind(StrEnum):
+class MemberKinds(StrEnum):
     """Kinds of members."""
 
     truss = "truss"
@@ -75,7 +75,9 @@ Sections = Annotated[
         "--section", metavar="TEXT", help='As "A=10cm2" or "CS1: A=10cm2, Iy=9cm4"; repeatable.'
     ),
 ]
-MemberKind = Annotated[Kind | None, typer.Option("--kind", help="Of the members of a drawing.")]
+MemberKind = Annotated[
+    MemberKinds | None, typer.Option("--kind", help="Of the members of a drawing.")
+]
 Tolerance = Annotated[
     float | None,
     typer.Option(

@@ -8,14 +8,14 @@ from typing import Any, Literal
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 
 #: share of a member's length by which a node may lie off its line, or a load short of an end
 NEAR = 1e-9
 
 
 @dataclass(frozen=True)
-class Part:
+class CutPart:
     """A member of the model: from where to where it goes along the whole [m]."""
 
     name: str
@@ -32,9 +32,9 @@ class CutMember:
         parts: the members; none where they could not be added.
     """
 
-    draft: Draft
+    draft: ModelDraft
     axes: FloatArray
-    parts: list[Part] = field(default_factory=list)
+    parts: list[CutPart] = field(default_factory=list)
 
     @property
     def length(self) -> float:
@@ -78,7 +78,7 @@ class CutMember:
 
 
 def add_cut(
-    draft: Draft,
+    draft: ModelDraft,
     name: str,
     nodes: Sequence[str],
     section: str,
@@ -119,7 +119,7 @@ def add_cut(
             part, pair, section, material, where, kind=kind, groups=list(groups), **more
         ):
             return None
-        cut.parts.append(Part(part, at, at + size))
+        cut.parts.append(CutPart(part, at, at + size))
         at += size
     if len(pairs) > 1:
         between = ", ".join(nodes[1:-1][:10]) + (" ..." if len(nodes) > 12 else "")
@@ -128,7 +128,7 @@ def add_cut(
     return cut
 
 
-def nodes_between(draft: Draft, first: str, last: str) -> list[str]:
+def nodes_between(draft: ModelDraft, first: str, last: str) -> list[str]:
     """Nodes on the line between two, from the first to the last, these among them."""
     names = list(draft.nodes)
     points = np.array(list(draft.nodes.values()))

@@ -18,7 +18,7 @@ TURNED = {"ux": "ux", "uy": "uz", "uz": "uy", "rx": "rx", "ry": "rz", "rz": "ry"
 Shape = tuple[str, tuple[float, ...]]
 
 
-class Draft:
+class ModelDraft:
     """Parts of a model as a reader finds them; it turns their axes and knows no unit but SI.
 
     Args:

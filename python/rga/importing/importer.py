@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rga.errors import InputError
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.given import read_materials, read_sections
 from rga.importing.imported import ImportedModel
 from rga.importing.notes import Acceptance
@@ -63,7 +63,7 @@ def import_model(
     return ImportedModel(model, draft.notes.listed(), draft.counts(), draft.load_sums(model))
 
 
-def _read(source: Any, chosen: Chosen) -> tuple[Draft, str]:
+def _read(source: Any, chosen: Chosen) -> tuple[ModelDraft, str]:
     """The draft of a source, and where it is from."""
     if isinstance(source, str | Path):
         path = Path(source)
@@ -81,7 +81,7 @@ def _read(source: Any, chosen: Chosen) -> tuple[Draft, str]:
     )  # fmt: skip
 
 
-def _read_file(path: Path, chosen: Chosen) -> Draft:
+def _read_file(path: Path, chosen: Chosen) -> ModelDraft:
     suffix = path.suffix.lower()
     if suffix in (".tcl", ".py"):
         from rga.importing.pynite import read_pynite, read_pynite_script, says_pynite
@@ -110,7 +110,7 @@ def _read_file(path: Path, chosen: Chosen) -> Draft:
     raise InputError(f"no reader knows {suffix or 'a file without suffix'}", str(path), KINDS)
 
 
-def _read_workbook(path: Path, chosen: Chosen) -> Draft:
+def _read_workbook(path: Path, chosen: Chosen) -> ModelDraft:
     from rga.importing.saf import is_saf, read_saf
     from rga.importing.tables import is_tables, read_tables
     from rga.importing.workbook import read_workbook
@@ -126,7 +126,7 @@ def _read_workbook(path: Path, chosen: Chosen) -> Draft:
     )  # fmt: skip
 
 
-def _read_csv(places: list[Path], chosen: Chosen) -> Draft:
+def _read_csv(places: list[Path], chosen: Chosen) -> ModelDraft:
     from rga.importing.tables import read_tables
     from rga.importing.workbook import read_csv_folder
 

@@ -39,7 +39,7 @@ def solid_torsion(one: float, other: float) -> float:
     and Strain, 8th edition, table 10.7, case 4.
 
     >>> round(solid_torsion(2.0, 2.0), 3)
-    2.249
+    2.253
     """
     a, b = max(one, other) / 2, min(one, other) / 2
     return a * b**3 * (16 / 3 - 3.36 * b / a * (1 - b**4 / (12 * a**4)))

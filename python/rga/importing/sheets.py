@@ -29,9 +29,9 @@ class Sheet:
     units: dict[str, str]
     cells: list[tuple[int, Sequence[Any]]]
 
-    def __iter__(self) -> "Iterator[Row]":
+    def __iter__(self) -> "Iterator[SheetRow]":
         for number, cells in self.cells:
-            yield Row(self, number, cells)
+            yield SheetRow(self, number, cells)
 
     def has(self, name: str) -> bool:
         """Whether there is a column."""
@@ -39,7 +39,7 @@ class Sheet:
 
 
 @dataclass(frozen=True)
-class Row:
+class SheetRow:
     """A row of a sheet."""
 
     sheet: Sheet

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from rga.errors import InputError
-from rga.importing.opensees.tcl import Interpreter
+from rga.importing.opensees.tcl import TclInterpreter
 from rga.importing.scripts.values import Unknown
 
 Written = Callable[[str, str], Path]
@@ -36,7 +36,7 @@ class Listener:
 def evaluated(text: str, folder: Path = Path()) -> list[list[Any]]:
     """Words of every `node` of a script."""
     host = Listener()
-    interpreter = Interpreter(host, folder)
+    interpreter = TclInterpreter(host, folder)
     interpreter.main = "script.tcl"
     interpreter.run(text, 1, "script.tcl")
     return host.taken

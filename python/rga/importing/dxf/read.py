@@ -6,7 +6,7 @@ import numpy as np
 
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.dxf.lines import Drawing, Line, read_drawing
 from rga.importing.options import Chosen
 from rga.importing.units import LENGTHS
@@ -25,7 +25,7 @@ SECTION_REMEDY = (
 )
 
 
-def read_dxf(path: Path, chosen: Chosen) -> Draft:
+def read_dxf(path: Path, chosen: Chosen) -> ModelDraft:
     """A draft of the lines of a drawing.
 
     Args:
@@ -41,7 +41,7 @@ def read_dxf(path: Path, chosen: Chosen) -> Draft:
     points = np.array([[line.start, line.end] for line in drawing.lines])
     flat = bool(np.ptp(points[:, :, 2]) == 0)
     up = chosen.up or ("y" if flat else "z")
-    draft = Draft(path.stem, chosen.accept, up, "xz" if flat and up == "y" else None)
+    draft = ModelDraft(path.stem, chosen.accept, up, "xz" if flat and up == "y" else None)
     scale = _scale(drawing, points, chosen, draft)
     if flat:
         points = points - np.array([0.0, 0.0, points[0, 0, 2]])
@@ -58,7 +58,7 @@ def read_dxf(path: Path, chosen: Chosen) -> Draft:
     return draft
 
 
-def _scale(drawing: Drawing, points: FloatArray, chosen: Chosen, draft: Draft) -> float:
+def _scale(drawing: Drawing, points: FloatArray, chosen: Chosen, draft: ModelDraft) -> float:
     """Metres per unit of the drawing."""
     if chosen.units is not None:
         words = [word for word in chosen.units.lower().replace(",", " ").split() if word in LENGTHS]
@@ -86,7 +86,7 @@ def _scale(drawing: Drawing, points: FloatArray, chosen: Chosen, draft: Draft) -
     return scale
 
 
-def _add_nodes(points: FloatArray, scale: float, chosen: Chosen, draft: Draft) -> IntArray:
+def _add_nodes(points: FloatArray, scale: float, chosen: Chosen, draft: ModelDraft) -> IntArray:
     """Add a node for all ends that lie together; numbers of the nodes of lines, int[lines, 2]."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -114,7 +114,7 @@ def _add_nodes(points: FloatArray, scale: float, chosen: Chosen, draft: Draft) -
     return np.array([numbers[label] for label in labels.tolist()]).reshape(-1, 2)
 
 
-def _add_members(drawing: Drawing, nodes: IntArray, chosen: Chosen, draft: Draft) -> None:
+def _add_members(drawing: Drawing, nodes: IntArray, chosen: Chosen, draft: ModelDraft) -> None:
     section = chosen.sections.get(None)
     material = chosen.materials.get(None)
     names = {
@@ -150,7 +150,7 @@ def _add_members(drawing: Drawing, nodes: IntArray, chosen: Chosen, draft: Draft
         )  # fmt: skip
 
 
-def _say_near(draft: Draft) -> None:
+def _say_near(draft: ModelDraft) -> None:
     """Name nodes that lie on a member and do not part it."""
     names = list(draft.nodes)
     points = np.array(list(draft.nodes.values()))
@@ -169,7 +169,7 @@ def _say_near(draft: Draft) -> None:
                 )  # fmt: skip
 
 
-def _say_rest(drawing: Drawing, draft: Draft) -> None:
+def _say_rest(drawing: Drawing, draft: ModelDraft) -> None:
     for where in drawing.curved:
         draft.notes.refuse(where, "a polyline with an arc", "draw it as lines", "partial")
     for words, where in drawing.texts:

@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.opensees.script_model import Defined, Element, ScriptModel
 from rga.importing.shear import poisson
 from rga.importing.units import Units
@@ -16,7 +16,7 @@ ELASTIC = ("Elastic", "ElasticSection")
 REMEDY = "write it as rga has it, or take it out where it does not matter"
 
 
-def build(script: ScriptModel, units: Units, draft: Draft) -> None:
+def build(script: ScriptModel, units: Units, draft: ModelDraft) -> None:
     """Put what a script defines into a draft.
 
     Raises:
@@ -38,7 +38,7 @@ def build(script: ScriptModel, units: Units, draft: Draft) -> None:
 class _Members:
     """Elements as members and springs."""
 
-    def __init__(self, script: ScriptModel, units: Units, draft: Draft) -> None:
+    def __init__(self, script: ScriptModel, units: Units, draft: ModelDraft) -> None:
         self.script, self.units, self.draft = script, units, draft
 
     def add(self) -> None:
@@ -180,7 +180,7 @@ class _Members:
         )
 
 
-def _add_supports(script: ScriptModel, draft: Draft) -> None:
+def _add_supports(script: ScriptModel, draft: ModelDraft) -> None:
     for tag, held, where in script.fixes:
         draft.support(tag, held, where)
         if not held:
@@ -190,7 +190,7 @@ def _add_supports(script: ScriptModel, draft: Draft) -> None:
         draft.add_tie((first, second), [names[k - 1] for k in freedoms], where)
 
 
-def _add_masses(script: ScriptModel, units: Units, draft: Draft) -> None:
+def _add_masses(script: ScriptModel, units: Units, draft: ModelDraft) -> None:
     for tag, (masses, where) in script.masses.items():
         by_dof = dict(zip(script.nodes[tag].freedoms, masses, strict=False))
         along = [mass for dof, mass in by_dof.items() if dof[0] == "u"]
@@ -204,7 +204,7 @@ def _add_masses(script: ScriptModel, units: Units, draft: Draft) -> None:
         draft.add_mass(tag, max(along, default=0.0) * units.mass, inertia, where)
 
 
-def _add_loads(script: ScriptModel, units: Units, draft: Draft) -> None:
+def _add_loads(script: ScriptModel, units: Units, draft: ModelDraft) -> None:
     factors: dict[str, float] = {}
     for tag, pattern in script.patterns.items():
         series = script.series.get(pattern.series)
@@ -249,7 +249,13 @@ def _add_loads(script: ScriptModel, units: Units, draft: Draft) -> None:
 
 
 def _load_element(
-    script: ScriptModel, units: Units, draft: Draft, load: Any, tag: str, case: str, factor: float
+    script: ScriptModel,
+    units: Units,
+    draft: ModelDraft,
+    load: Any,
+    tag: str,
+    case: str,
+    factor: float,
 ) -> None:
     element = script.elements[tag]
     if tag not in draft.members:

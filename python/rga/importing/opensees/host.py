@@ -10,7 +10,7 @@ from rga.importing.opensees.script_model import ScriptModel
 from rga.importing.scripts.values import Arguments, Unknown
 
 
-class Host:
+class OpenSeesHost:
     """Collects the models of a script, and what it says beside them.
 
     Args:

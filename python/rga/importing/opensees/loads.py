@@ -4,7 +4,7 @@ from rga.importing.opensees.script_model import (
     ElementLoad,
     Moved,
     NodalForces,
-    Pattern,
+    PatternCommand,
     ScriptModel,
 )
 from rga.importing.scripts.values import Arguments, Unknown
@@ -17,7 +17,7 @@ def add_pattern(model: ScriptModel, given: Arguments) -> None:
     """Take a `pattern` command; loads given with it by name are its own."""
     kind, tag = given.word("type"), given.tag("tag")
     if kind != PLAIN:
-        model.patterns[tag] = Pattern(kind, "", 0.0, given.where)
+        model.patterns[tag] = PatternCommand(kind, "", 0.0, given.where)
         given.left.clear()
         given.named.clear()
         return
@@ -29,7 +29,7 @@ def add_pattern(model: ScriptModel, given: Arguments) -> None:
         series = words[0]
     for option in ("-fact", "-factor"):
         factor *= (given.option(option, 1, "factor") or [1.0])[0]
-    model.patterns[tag] = Pattern(kind, str(series), factor, given.where)
+    model.patterns[tag] = PatternCommand(kind, str(series), factor, given.where)
     loads = given.named.pop("load", {})
     if isinstance(loads, Unknown) or not isinstance(loads, dict) or given.named:
         raise given.error("loads given by name are a table of nodes and their components")

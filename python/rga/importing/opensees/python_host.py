@@ -8,9 +8,9 @@ import numpy as np
 
 from rga.importing.opensees.command_names import NOT_DONE, PASSED_OVER
 from rga.importing.opensees.commands import DEFINING
-from rga.importing.opensees.host import Host
+from rga.importing.opensees.host import OpenSeesHost
 from rga.importing.reading import read_text
-from rga.importing.scripts.python import Interpreter, Opened
+from rga.importing.scripts.python import Opened, PythonInterpreter
 from rga.importing.scripts.python.opened import Anything
 from rga.importing.scripts.values import Unknown
 
@@ -23,7 +23,7 @@ MODULES = (
 MAKING = ("Model", "BasicBuilder")
 
 
-class PythonHost(Host):
+class PythonHost(OpenSeesHost):
     """Takes commands as functions of a module, or of an object made by `Model`."""
 
     def shapes(self, name: str) -> bool:
@@ -100,6 +100,6 @@ def read_python(path: Path, host: PythonHost) -> list[tuple[str, str]]:
         InputError: it cannot be read.
     """
     commands = Commands(host)
-    interpreter = Interpreter(path.name, dict.fromkeys(MODULES, commands), host.shapes)
+    interpreter = PythonInterpreter(path.name, dict.fromkeys(MODULES, commands), host.shapes)
     interpreter.run(read_text(path))
     return interpreter.assumed

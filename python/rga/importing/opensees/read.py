@@ -4,9 +4,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rga.errors import InputError
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.opensees.build import ELASTIC, build
-from rga.importing.opensees.host import Host
+from rga.importing.opensees.host import OpenSeesHost
 from rga.importing.opensees.script_model import ScriptModel
 from rga.importing.opensees.tcl_host import TclHost, read_tcl
 from rga.importing.options import Chosen
@@ -18,7 +18,7 @@ UNITS_REMEDY = 'give them, as --units "kip, in" or --units "kN, m"'
 def read_opensees(
     path: Path,
     chosen: Chosen,
-) -> Draft:
+) -> ModelDraft:
     """A draft of the first model of a script that has members.
 
     Args:
@@ -29,7 +29,7 @@ def read_opensees(
     Raises:
         InputError: it cannot be read.
     """
-    host: Host
+    host: OpenSeesHost
     assumed: list[tuple[str, str]] = []
     if path.suffix.lower() == ".tcl":
         tcl = host = TclHost(chosen.without)
@@ -46,7 +46,7 @@ def read_opensees(
     if script is None:
         raise InputError("the script defines no element", str(path), "give one that builds a model")
     plane = script.dimensions == 2
-    draft = Draft(
+    draft = ModelDraft(
         path.stem, chosen.accept, "y" if plane else chosen.up or "z", "xz" if plane else None
     )
     _say_units(draft, units, path)
@@ -67,14 +67,14 @@ def _fault(read: Callable[[], None]) -> InputError | None:
     return None
 
 
-def _say_units(draft: Draft, units: Units | None, path: Path) -> None:
+def _say_units(draft: ModelDraft, units: Units | None, path: Path) -> None:
     if units is None:
         draft.notes.say(
             "question", path.name, "an OpenSees script never states its units", UNITS_REMEDY
         )
 
 
-def _say_axes(draft: Draft, plane: bool, up: str | None) -> None:
+def _say_axes(draft: ModelDraft, plane: bool, up: str | None) -> None:
     if plane:
         said = "the plane x, y of the script is the plane x, z of the model, whose z points up"
     elif up == "y":
@@ -84,7 +84,9 @@ def _say_axes(draft: Draft, plane: bool, up: str | None) -> None:
     draft.notes.say("assumed", "axes", said)
 
 
-def _say_others(draft: Draft, host: Host, chosen: ScriptModel, fault: InputError | None) -> None:
+def _say_others(
+    draft: ModelDraft, host: OpenSeesHost, chosen: ScriptModel, fault: InputError | None
+) -> None:
     """What is said of the rest of the script."""
     for words, where in host.unread:
         draft.notes.refuse(
@@ -124,7 +126,9 @@ def _line(where: str) -> int:
     return int(number) if number.isdigit() else 0
 
 
-def _say_other_model(draft: Draft, host: Host, chosen: ScriptModel, other: ScriptModel) -> None:
+def _say_other_model(
+    draft: ModelDraft, host: OpenSeesHost, chosen: ScriptModel, other: ScriptModel
+) -> None:
     order = "follows" if host.models.index(other) > host.models.index(chosen) else "comes before"
     draft.notes.say("dropped", other.where, f"another model {order}, which is not read")
     for table, kinds in ((other.materials, ("Elastic",)), (other.sections, ELASTIC)):

@@ -87,7 +87,7 @@ class Moved:
 
 
 @dataclass(frozen=True)
-class Pattern:
+class PatternCommand:
     """A load pattern: its kind, the tag or kind of its series, and its factor."""
 
     kind: str
@@ -114,7 +114,7 @@ class ScriptModel:
     transformations: dict[str, Defined] = field(default_factory=dict)
     integrations: dict[str, tuple[str, int]] = field(default_factory=dict)
     series: dict[str, Defined] = field(default_factory=dict)
-    patterns: dict[str, Pattern] = field(default_factory=dict)
+    patterns: dict[str, PatternCommand] = field(default_factory=dict)
     fixes: list[tuple[str, tuple[str, ...], str]] = field(default_factory=list)
     masses: dict[str, tuple[tuple[float, ...], str]] = field(default_factory=dict)
     ties: list[tuple[str, str, tuple[int, ...], str]] = field(default_factory=list)

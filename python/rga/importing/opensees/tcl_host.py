@@ -3,21 +3,21 @@
 from pathlib import Path
 from typing import Any
 
-from rga.importing.opensees.host import Host
-from rga.importing.opensees.tcl import Interpreter
-from rga.importing.opensees.tcl.interpreter import Leaving, Text
+from rga.importing.opensees.host import OpenSeesHost
+from rga.importing.opensees.tcl import TclInterpreter
+from rga.importing.opensees.tcl.interpreter import LeavingTcl, TclText
 from rga.importing.reading import read_text
 
 
-class TclHost(Host):
+class TclHost(OpenSeesHost):
     """Evaluates the loads in braces behind a `pattern`."""
 
-    interpreter: Interpreter
+    interpreter: TclInterpreter
 
     def take(
         self, name: str, values: list[Any], where: str, named: dict[str, Any] | None = None
     ) -> tuple[bool, Any]:
-        if name != "pattern" or not values or not isinstance(values[-1], Text):
+        if name != "pattern" or not values or not isinstance(values[-1], TclText):
             return super().take(name, values, where, named)
         known = super().take(name, values[:-1], where)
         self.interpreter.run_body(values[-1], where)
@@ -30,9 +30,9 @@ def read_tcl(path: Path, host: TclHost) -> None:
     Raises:
         InputError: it cannot be read.
     """
-    interpreter = Interpreter(host, path.parent, host.without)
+    interpreter = TclInterpreter(host, path.parent, host.without)
     host.interpreter, interpreter.main = interpreter, path.name
     try:
         interpreter.run(read_text(path), 1, path.name)
-    except Leaving:
+    except LeavingTcl:
         return  # the script ends here: `return` or `exit`

@@ -15,8 +15,8 @@ def local_axes(start: FloatArray, end: FloatArray, rotation: float) -> FloatArra
         end: second end, float[3].
         rotation: by which y and z are turned about x [degrees].
 
-    >>> local_axes(np.zeros(3), np.array([0.0, 3.0, 0.0]), 0.0).tolist()
-    [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    >>> local_axes(np.zeros(3), np.array([0.0, 3.0, 0.0]), 0.0)[1].tolist()
+    [-1.0, 0.0, 0.0]
     """
     along = end - start
     x = along / np.linalg.norm(along)

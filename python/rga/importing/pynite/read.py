@@ -7,7 +7,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.importing.cut import CutMember, add_cut, nodes_between
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.options import Chosen
 from rga.importing.pynite.axes import local_axes
 from rga.importing.shear import poisson
@@ -33,7 +33,7 @@ def read_pynite(
     source: Any,
     name: str,
     chosen: Chosen,
-) -> Draft:
+) -> ModelDraft:
     """A draft of a PyNite model.
 
     Args:
@@ -45,7 +45,7 @@ def read_pynite(
     Raises:
         InputError: a part names another that is not there, or there is no such combination.
     """
-    draft = Draft(name, chosen.accept, chosen.up or "y")
+    draft = ModelDraft(name, chosen.accept, chosen.up or "y")
     units = chosen.system
     if units is None:
         draft.notes.say(
@@ -64,7 +64,7 @@ def read_pynite(
     return draft
 
 
-def _factors(source: Any, draft: Draft, cases: set[str], combination: str | None) -> None:
+def _factors(source: Any, draft: ModelDraft, cases: set[str], combination: str | None) -> None:
     combos = {name: combo.factors for name, combo in source.load_combos.items()}
     if combination is not None:
         if combination not in combos:
@@ -89,7 +89,7 @@ def _factors(source: Any, draft: Draft, cases: set[str], combination: str | None
 class _Reader:
     """Parts of a PyNite model."""
 
-    def __init__(self, source: Any, units: Units, draft: Draft) -> None:
+    def __init__(self, source: Any, units: Units, draft: ModelDraft) -> None:
         self.source, self.units, self.draft = source, units, draft
         self.members: dict[str, CutMember] = {}
         self.cases: set[str] = set()

@@ -7,8 +7,8 @@ from typing import Any
 
 from rga.errors import InputError
 from rga.importing.reading import read_text
-from rga.importing.scripts.python import Interpreter, Opened
-from rga.importing.scripts.python.opened import Anything, Table
+from rga.importing.scripts.python import Opened, PythonInterpreter
+from rga.importing.scripts.python.opened import Anything, OpenedNames
 from rga.importing.scripts.values import Arguments, Unknown
 
 IMPORT = re.compile(r"^\s*(?:from|import)\s+py[nN]ite\b", re.MULTILINE | re.IGNORECASE)
@@ -56,10 +56,10 @@ def read_pynite_script(path: Path) -> tuple["Recorded", list[tuple[str, str]]]:
         InputError: it cannot be read, or makes no model.
     """
     made: list[Recorded] = []
-    module = Table("Pynite", {"FEModel3D": _Making(made)})
+    module = OpenedNames("Pynite", {"FEModel3D": _Making(made)})
     names = ("Pynite", "PyNite", "Pynite.FEModel3D", "PyNite.FEModel3D")
     shaping = {*METHODS, *OTHERS, *OLD, "FEModel3D"}
-    interpreter = Interpreter(path.name, dict.fromkeys(names, module), shaping.__contains__)
+    interpreter = PythonInterpreter(path.name, dict.fromkeys(names, module), shaping.__contains__)
     interpreter.run(read_text(path))
     chosen = next((one for one in made if one.members), None)
     if chosen is None:

@@ -6,16 +6,18 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.importing.cut import CutMember, clean
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.saf.members import Members
-from rga.importing.saf.unit_table import Table
-from rga.importing.sheets import Row, Sheet, read_number
+from rga.importing.saf.units import SafUnits
+from rga.importing.sheets import Sheet, SheetRow, read_number
 
 GRAVITY = 9.81
 DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def add_loads(sheets: dict[str, Sheet], table: Table, draft: Draft, members: Members) -> None:
+def add_loads(
+    sheets: dict[str, Sheet], table: SafUnits, draft: ModelDraft, members: Members
+) -> None:
     """Add loads on nodes and members to a draft."""
     loads = _Loads(table, draft, members)
     for row in sheets.get("StructuralLoadCase", ()):
@@ -30,15 +32,15 @@ def add_loads(sheets: dict[str, Sheet], table: Table, draft: Draft, members: Mem
 
 
 class _Loads:
-    def __init__(self, table: Table, draft: Draft, members: Members) -> None:
+    def __init__(self, table: SafUnits, draft: ModelDraft, members: Members) -> None:
         self.table, self.draft, self.members = table, draft, members
 
-    def _refuse(self, row: Row, what: str) -> None:
+    def _refuse(self, row: SheetRow, what: str) -> None:
         self.draft.notes.refuse(
             row.where, what, "write it as a load of a member or node", "partial"
         )
 
-    def self_weight(self, row: Row) -> None:
+    def self_weight(self, row: SheetRow) -> None:
         """The weight of all members, downward in the model's axes."""
         self.draft.notes.say(
             "assumed", row.where, f"the weight of members by their density, g = {GRAVITY} m/s2"
@@ -54,7 +56,7 @@ class _Loads:
                         row.needed("name"), part.name, row.where, uniform=uniform
                     )
 
-    def _direction(self, row: Row, placed: CutMember | None) -> FloatArray | None:
+    def _direction(self, row: SheetRow, placed: CutMember | None) -> FloatArray | None:
         """Direction of a load: in local axes of a member, or in the file's at a node."""
         name = row.text("direction").lower().removeprefix("m")
         local = row.text("coordinate system", "Global").lower() == "local"
@@ -69,7 +71,7 @@ class _Loads:
             return vector
         return vector if local else placed.local(vector.tolist())
 
-    def _vectors(self, row: Row, columns: tuple[str, str]) -> list[FloatArray] | None:
+    def _vectors(self, row: SheetRow, columns: tuple[str, str]) -> list[FloatArray] | None:
         """Components of a load by vector, of its beginning and its end."""
         found = []
         for column in columns:
@@ -79,7 +81,7 @@ class _Loads:
                 found.append(np.array(values))
         return found or None
 
-    def force(self, row: Row) -> None:
+    def force(self, row: SheetRow) -> None:
         """A `StructuralPointAction`."""
         scale = row.scale("value", "N", self.table.force)
         by_vector = row.text("direction").lower() == "vector"
@@ -113,7 +115,7 @@ class _Loads:
         for place in self._places(row, placed):
             placed.load_point(case, place, np.asarray(size), row.where)
 
-    def moment(self, row: Row) -> None:
+    def moment(self, row: SheetRow) -> None:
         """A `StructuralPointMoment`."""
         if not row.text("force action").lower().endswith("node"):
             self._refuse(row, "a moment on a member")
@@ -124,7 +126,7 @@ class _Loads:
             node, case = row.needed("reference node"), row.needed("load case")
             self.draft.add_force(case, node, [0, 0, 0, *size], row.where)
 
-    def along(self, row: Row) -> None:
+    def along(self, row: SheetRow) -> None:
         """A `StructuralCurveAction`."""
         where = row.text("force action").lower()
         if not where.endswith("beam"):
@@ -163,7 +165,7 @@ class _Loads:
             sizes = [share * one for one in sizes]
         self._spread(row, placed, sizes)
 
-    def _spread(self, row: Row, placed: CutMember, sizes: list[FloatArray]) -> None:
+    def _spread(self, row: SheetRow, placed: CutMember, sizes: list[FloatArray]) -> None:
         """Put a linear load on the parts of a member that it covers."""
         start = self._place(row, "start point", placed, 0.0)
         end = self._place(row, "end point", placed, placed.length)
@@ -178,14 +180,14 @@ class _Loads:
         ends = (sizes[0], sizes[1])
         placed.load_line(row.needed("load case"), (start, end), ends, row.where)
 
-    def _placed(self, row: Row, column: str) -> CutMember | None:
+    def _placed(self, row: SheetRow, column: str) -> CutMember | None:
         name = row.needed(column)
         if name not in self.members.placed:
             self._refuse(row, "a load of a member that is left out")
             return None
         return self.members.placed[name]
 
-    def _place(self, row: Row, column: str, placed: CutMember, default: float) -> float:
+    def _place(self, row: SheetRow, column: str, placed: CutMember, default: float) -> float:
         """A place along a member [m]: a share of its length, or a length."""
         if row.raw(column) is None:
             return default
@@ -194,7 +196,7 @@ class _Loads:
             return read_number(share, column, row.where) * placed.length
         return row.number_of(column, "m", self.table.length)
 
-    def _places(self, row: Row, placed: CutMember) -> Iterator[float]:
+    def _places(self, row: SheetRow, placed: CutMember) -> Iterator[float]:
         """Places of a point load, and of those that repeat it."""
         first = self._place(row, "position x", placed, 0.0)
         step = self._place(row, "delta x", placed, 0.0)

@@ -5,10 +5,10 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.importing.cut import CutMember, add_cut
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.saf.properties import Properties
-from rga.importing.saf.unit_table import Table
-from rga.importing.sheets import Row, Sheet
+from rga.importing.saf.units import SafUnits
+from rga.importing.sheets import Sheet, SheetRow
 
 FREEDOMS = {"ux": "ux", "uy": "uy", "uz": "uz", "fix": "rx", "fiy": "ry", "fiz": "rz"}
 #: share of a member's length by which a node may lie off its line
@@ -23,7 +23,7 @@ class Members:
     """
 
     def __init__(
-        self, sheets: dict[str, Sheet], table: Table, draft: Draft, properties: Properties
+        self, sheets: dict[str, Sheet], table: SafUnits, draft: ModelDraft, properties: Properties
     ) -> None:
         self.sheets, self.table, self.draft, self.properties = sheets, table, draft, properties
         self.placed: dict[str, CutMember] = {}
@@ -35,13 +35,13 @@ class Members:
             name = row.needed("name")
             self._add(name, row, released.get(name, {}), springs.get(name, {}))
 
-    def _refuse(self, row: Row, what: str, remedy: str = "model it otherwise") -> None:
+    def _refuse(self, row: SheetRow, what: str, remedy: str = "model it otherwise") -> None:
         self.draft.notes.refuse(row.where, what, remedy, "partial")
 
     def _add(
         self,
         name: str,
-        row: Row,
+        row: SheetRow,
         released: dict[str, list[str]],
         springs: dict[str, dict[str, float]],
     ) -> None:
@@ -87,7 +87,7 @@ class Members:
         if cut is not None:
             self.placed[name] = cut
 
-    def _say_details(self, row: Row) -> None:
+    def _say_details(self, row: SheetRow) -> None:
         if row.text("arbitrary definition"):
             self._refuse(
                 row, f"it varies ({row.text('arbitrary definition')}): its section is taken "
@@ -107,7 +107,7 @@ class Members:
             for point in points[1:-1]
         )
 
-    def _ordered(self, row: Row, nodes: list[str], points: list[FloatArray]) -> list[str]:
+    def _ordered(self, row: SheetRow, nodes: list[str], points: list[FloatArray]) -> list[str]:
         """All nodes on a straight member, from its beginning to its end."""
         along = points[-1] - points[0]
         on_line = {
@@ -116,7 +116,7 @@ class Members:
         }
         return sorted(on_line, key=lambda node: on_line[node])
 
-    def _axes(self, row: Row, points: list[FloatArray]) -> FloatArray | None:
+    def _axes(self, row: SheetRow, points: list[FloatArray]) -> FloatArray | None:
         """Local axes as rows, in the model's axes: SAF, "Coordinate systems"."""
         along = points[1] - points[0]
         size = float(np.linalg.norm(along))
@@ -165,7 +165,7 @@ class Members:
                     self._refuse(row, f"{column} is {state}: not linear", "make it rigid or free")
         return released, springs
 
-    def _stiffness(self, row: Row, column: str, dof: str) -> float:
+    def _stiffness(self, row: SheetRow, column: str, dof: str) -> float:
         turns = dof[0] == "r"
         name = f"stiffness {column if turns else column[-1]}"
         si, unit = ("N*m/rad", self.table.rotational) if turns else ("N/m", self.table.stiffness)

@@ -2,20 +2,20 @@
 
 from collections.abc import Mapping
 
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.materials import doubts
 from rga.importing.options import Chosen
-from rga.importing.saf.unit_table import Table
+from rga.importing.saf.units import SafUnits
 from rga.importing.section_shapes import area_of, by_shape
 from rga.importing.shear import poisson
-from rga.importing.sheets import Row, Sheet, read_number
+from rga.importing.sheets import Sheet, SheetRow, read_number
 
 
 class Properties:
     """Materials and sections by name, added to a draft when a member uses them."""
 
     def __init__(
-        self, sheets: dict[str, Sheet], table: Table, draft: Draft, chosen: Chosen
+        self, sheets: dict[str, Sheet], table: SafUnits, draft: ModelDraft, chosen: Chosen
     ) -> None:
         self.table, self.draft = table, draft
         self.given, self.given_sections = chosen.materials, chosen.sections
@@ -43,7 +43,7 @@ class Properties:
                     'give the material, as --material "E=210GPa, nu=0.3"', "values",
                 )  # fmt: skip
 
-    def _values(self, row: Row) -> dict[str, float]:
+    def _values(self, row: SheetRow) -> dict[str, float]:
         table = self.table
         values = {
             "E": row.number_of("e modulus", "Pa", table.modulus),
@@ -54,7 +54,7 @@ class Properties:
         values["nu"] = row.number_of("poisson coefficient", default=0.3)
         return values
 
-    def material(self, name: str, row: Row) -> str | None:
+    def material(self, name: str, row: SheetRow) -> str | None:
         """The name of a material in the draft; None where the file has none of this name."""
         values = self._known.get(name)
         if values is None:
@@ -69,7 +69,7 @@ class Properties:
         sound = -1 < nu < 0.5
         return self.draft.material(name, **plain, nu=nu if sound else 0.3)
 
-    def section(self, name: str, row: Row, *, axial: bool) -> tuple[str, str] | None:
+    def section(self, name: str, row: SheetRow, *, axial: bool) -> tuple[str, str] | None:
         """Names of a section and its material in the draft; None where they are not known.
 
         Args:
@@ -91,11 +91,11 @@ class Properties:
             return None
         return self.draft.section(name, **values), material
 
-    def _by_hand(self, name: str, row: Row) -> Mapping[str, float] | None:
+    def _by_hand(self, name: str, row: SheetRow) -> Mapping[str, float] | None:
         """Properties given by hand for a section or for its profile."""
         return self.given_sections.get(name) or self.given_sections.get(row.text("profile") or name)
 
-    def _stated(self, row: Row, axial: bool) -> dict[str, float] | None:
+    def _stated(self, row: SheetRow, axial: bool) -> dict[str, float] | None:
         """Properties that the file states; None where one that is needed is missing."""
         columns = {"A": ("a", 2), "Iy": ("iy", 4), "Iz": ("iz", 4), "J": ("it", 4)}
         found = {
@@ -107,7 +107,7 @@ class Properties:
             return None
         return {key: value for key, value in found.items() if value > 0}
 
-    def _shaped(self, row: Row, axial: bool) -> dict[str, float] | None:
+    def _shaped(self, row: SheetRow, axial: bool) -> dict[str, float] | None:
         shape = row.text("shape")
         scale = row.scale("parameters", "m", self.table.small_length)
         dimensions = [

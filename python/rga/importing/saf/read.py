@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.options import Chosen
 from rga.importing.saf.loads import add_loads
 from rga.importing.saf.members import Members
 from rga.importing.saf.properties import Properties
-from rga.importing.saf.unit_table import Table
+from rga.importing.saf.units import SafUnits
 from rga.importing.sheets import Sheet
 from rga.importing.workbook import read_properties
 
@@ -51,7 +51,7 @@ def is_saf(sheets: dict[str, Sheet]) -> bool:
     return "StructuralPointConnection" in sheets or "StructuralCurveMember" in sheets
 
 
-def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> Draft:
+def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> ModelDraft:
     """A draft of the 1D part of a SAF workbook.
 
     Args:
@@ -64,11 +64,11 @@ def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> Draft:
     """
     about = read_properties(path, "Model")
     up = "y" if about.get("global coordinate system", "").lower().startswith("y") else "z"
-    draft = Draft(about.get("name") or path.stem, chosen.accept, "y" if up == "y" else "z")
+    draft = ModelDraft(about.get("name") or path.stem, chosen.accept, "y" if up == "y" else "z")
     system = about.get("system of units", "")
     if not system:
         draft.notes.say("assumed", "sheet Model", "the system of units is not stated: metric")
-    table = Table(imperial=system.lower().startswith("imp"))
+    table = SafUnits(imperial=system.lower().startswith("imp"))
     axes = about.get("lcs of cross-section", "ZYX").upper()
     if axes != "ZYX":
         draft.notes.refuse(
@@ -86,7 +86,7 @@ def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> Draft:
     return draft
 
 
-def _add_supports(sheets: dict[str, Sheet], table: Table, draft: Draft) -> None:
+def _add_supports(sheets: dict[str, Sheet], table: SafUnits, draft: ModelDraft) -> None:
     for row in sheets.get("StructuralPointSupport", ()):
         node = row.needed("node")
         held: list[str] = []
@@ -113,7 +113,7 @@ def _add_supports(sheets: dict[str, Sheet], table: Table, draft: Draft) -> None:
         draft.support(node, held, row.where)
 
 
-def _say_sheets(sheets: dict[str, Sheet], draft: Draft) -> None:
+def _say_sheets(sheets: dict[str, Sheet], draft: ModelDraft) -> None:
     found = ", ".join(
         f"{name} {len(sheet.cells)}" for name, sheet in sheets.items() if name in READ
     )

@@ -4,8 +4,8 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.importing.cut import CutMember
-from rga.importing.draft import Draft
-from rga.importing.sap2000.tables import Row, Tables
+from rga.importing.draft import ModelDraft
+from rga.importing.sap2000.tables import TableRow, Tables
 from rga.importing.units import Units
 
 COMPONENTS = ("F1", "F2", "F3", "M1", "M2", "M3")
@@ -22,7 +22,7 @@ MOVED = {"U1": "ux", "U2": "uy", "U3": "uz", "R1": "rx", "R2": "ry", "R3": "rz"}
 def add_loads(
     tables: Tables,
     units: Units,
-    draft: Draft,
+    draft: ModelDraft,
     frames: dict[str, CutMember],
     weights: dict[str, float],
 ) -> None:
@@ -61,12 +61,12 @@ def add_loads(
         _point(row, units, draft, frames)
 
 
-def _refuse(row: Row, draft: Draft, what: str) -> None:
+def _refuse(row: TableRow, draft: ModelDraft, what: str) -> None:
     draft.notes.refuse(row.where, what, "write it as a load along X, Y or Z", "partial")
 
 
 def _loaded(
-    row: Row, draft: Draft, frames: dict[str, CutMember]
+    row: TableRow, draft: ModelDraft, frames: dict[str, CutMember]
 ) -> tuple[CutMember, FloatArray] | None:
     """The frame of a load, and its direction in local axes; None where it cannot be read."""
     frame = frames.get(row.text("Frame"))
@@ -84,14 +84,16 @@ def _loaded(
     return None
 
 
-def _place(row: Row, end: str, length: float, units: Units) -> float:
+def _place(row: TableRow, end: str, length: float, units: Units) -> float:
     """A place along a frame [m]: by its share of the length where that is given."""
     if row.get(f"RelDist{end}"):
         return row.number(f"RelDist{end}") * length
     return row.number(f"AbsDist{end}", 0.0) * units.length
 
 
-def _distributed(row: Row, units: Units, draft: Draft, frames: dict[str, CutMember]) -> None:
+def _distributed(
+    row: TableRow, units: Units, draft: ModelDraft, frames: dict[str, CutMember]
+) -> None:
     found = _loaded(row, draft, frames)
     if found is not None:
         frame, direction = found
@@ -101,7 +103,7 @@ def _distributed(row: Row, units: Units, draft: Draft, frames: dict[str, CutMemb
         frame.load_line(case, (start, min(end, frame.length)), (first, last), row.where)
 
 
-def _point(row: Row, units: Units, draft: Draft, frames: dict[str, CutMember]) -> None:
+def _point(row: TableRow, units: Units, draft: ModelDraft, frames: dict[str, CutMember]) -> None:
     found = _loaded(row, draft, frames)
     if found is not None:
         frame, direction = found

@@ -6,13 +6,13 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.importing.cut import CutMember, add_cut, nodes_between
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.options import Chosen
 from rga.importing.reading import read_text
 from rga.importing.sap2000.axes import local_y
 from rga.importing.sap2000.loads import add_loads
 from rga.importing.sap2000.names import MATTERS, QUIET, READ
-from rga.importing.sap2000.tables import Row, Tables, read_tables
+from rga.importing.sap2000.tables import TableRow, Tables, read_tables
 from rga.importing.shear import poisson
 from rga.importing.units import Units
 
@@ -30,7 +30,7 @@ SHAPES = {
 }  # fmt: skip
 
 
-def read_sap2000(path: Path, chosen: Chosen) -> Draft:
+def read_sap2000(path: Path, chosen: Chosen) -> ModelDraft:
     """A draft of a model of SAP2000.
 
     Args:
@@ -41,7 +41,7 @@ def read_sap2000(path: Path, chosen: Chosen) -> Draft:
         InputError: it cannot be read.
     """
     tables = read_tables(read_text(path), path.name)
-    draft = Draft(path.stem, chosen.accept)
+    draft = ModelDraft(path.stem, chosen.accept)
     system = chosen.system or _units(tables, path.name)
     reader = _Reader(tables, system, draft)
     reader.read()
@@ -70,7 +70,7 @@ class _Reader:
         meshed: names of frames that joints on them cut.
     """
 
-    def __init__(self, tables: Tables, units: Units, draft: Draft) -> None:
+    def __init__(self, tables: Tables, units: Units, draft: ModelDraft) -> None:
         self.tables, self.units, self.draft = tables, units, draft
         self.weights: dict[str, float] = {}
         self.frames: dict[str, CutMember] = {}
@@ -137,8 +137,8 @@ class _Reader:
 
     def _add_frame(
         self,
-        row: Row,
-        assigned: dict[str, Row],
+        row: TableRow,
+        assigned: dict[str, TableRow],
         angles: dict[str, float],
         released: dict[str, dict[str, list[str]]],
     ) -> None:
@@ -183,7 +183,7 @@ class _Reader:
             scale = self.units.force / self.units.length
             self.weights[name] = section.number("Area") * weight * scale
 
-    def _material(self, name: str, given: Row) -> dict[str, float] | None:
+    def _material(self, name: str, given: TableRow) -> dict[str, float] | None:
         row = self.materials.get(name)
         if row is None:
             self.draft.notes.refuse(
@@ -203,7 +203,7 @@ class _Reader:
             found["yield_strength"] = self.yields[name] * self.units.stress
         return found
 
-    def _section(self, row: Row, material: str) -> str:
+    def _section(self, row: TableRow, material: str) -> str:
         name, shape = row.text("SectionName"), row.get("Shape")
         for word, shapes in SHAPES.items():
             if word in name.lower().replace("(", " ").split() and shape.lower() not in shapes:
@@ -243,7 +243,7 @@ class _Reader:
         return self.draft.section(name, **values)
 
 
-def _say_tables(tables: Tables, draft: Draft) -> None:
+def _say_tables(tables: Tables, draft: ModelDraft) -> None:
     for words, where in tables.others:
         draft.notes.say("dropped", where, f"a line outside of all tables: {words!r}")
     quiet = []
@@ -270,7 +270,7 @@ def _say_tables(tables: Tables, draft: Draft) -> None:
         )
 
 
-def _idle(name: str, row: Row) -> bool:
+def _idle(name: str, row: TableRow) -> bool:
     """Whether a row of a table that matters changes nothing."""
     if name.startswith("FRAME PROPERTY MODIFIERS"):
         return all(row.number(field, 1.0) == 1 for field in row.values if field.endswith("mod"))
@@ -286,7 +286,7 @@ def _idle(name: str, row: Row) -> bool:
     return False
 
 
-def joined_rows(rows: list[Row]) -> str:
+def joined_rows(rows: list[TableRow]) -> str:
     """The lines of rows in words."""
     first, last = rows[0].line, rows[-1].line
     return f"line {first}" if first == last else f"lines {first}-{last}"

@@ -13,7 +13,7 @@ LONGEST_ROW, MOST_ROWS = 200, 300_000
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """A row: its fields by name, and the line that it begins in."""
 
     values: dict[str, str]
@@ -67,11 +67,11 @@ class Row:
 class Tables:
     """Rows of each table, by its name in capitals, and the lines that are of none."""
 
-    rows: dict[str, list[Row]] = field(default_factory=dict)
+    rows: dict[str, list[TableRow]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     others: list[tuple[str, str]] = field(default_factory=list)
 
-    def of(self, name: str) -> list[Row]:
+    def of(self, name: str) -> list[TableRow]:
         """The rows of a table; none where it is not in the file."""
         return self.rows.get(name, [])
 
@@ -83,7 +83,7 @@ def read_tables(text: str, file: str) -> Tables:
         InputError: there is none, or the file ends within a row.
     """
     tables = Tables()
-    current: list[Row] | None = None
+    current: list[TableRow] | None = None
     for number, (line, row) in enumerate(_rows(text, file)):
         if number > MOST_ROWS:
             raise InputError(
@@ -97,7 +97,7 @@ def read_tables(text: str, file: str) -> Tables:
         elif row.upper().startswith("END TABLE DATA"):
             current = None
         elif current is not None:
-            current.append(Row(_fields(row), line))
+            current.append(TableRow(_fields(row), line))
         elif not row.startswith("File "):
             tables.others.append((row[:60], f"line {line}"))
     if not tables.rows:

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from rga.errors import InputError
-from rga.importing.draft import Draft
+from rga.importing.draft import ModelDraft
 from rga.importing.options import Chosen
-from rga.importing.sheets import Row, Sheet
+from rga.importing.sheets import Sheet, SheetRow
 from rga.model.schema import DOFS
 
 #: columns of each table: their SI units; nothing: text, or a number without one
@@ -46,7 +46,7 @@ def is_tables(sheets: dict[str, Sheet]) -> bool:
     return {"nodes", "members"} <= {name.lower() for name in sheets}
 
 
-def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> Draft:
+def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> ModelDraft:
     """A draft of plain tables.
 
     Args:
@@ -65,7 +65,7 @@ def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> Draft:
     for axis, plane in (("y", "xz"), ("z", "xy"), ("x", "yz")):
         if not tables["nodes"].has(axis):
             flat = plane
-    draft = Draft(path.stem, chosen.accept, chosen.up or "z", flat)
+    draft = ModelDraft(path.stem, chosen.accept, chosen.up or "z", flat)
     if flat:
         draft.notes.say("assumed", tables["nodes"].name, f"a model of the plane {flat}")
     for row in tables["nodes"]:
@@ -98,7 +98,7 @@ def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> Draft:
     return draft
 
 
-def _member(row: Row, draft: Draft) -> None:
+def _member(row: SheetRow, draft: ModelDraft) -> None:
     kind = row.text("kind", "frame").lower()
     if kind not in ("truss", "frame"):
         raise InputError(f"the kind {kind!r} is not known", row.where, "write truss or frame")
@@ -124,14 +124,14 @@ def _member(row: Row, draft: Draft) -> None:
     )  # fmt: skip
 
 
-def _yes(row: Row, column: str) -> bool:
+def _yes(row: SheetRow, column: str) -> bool:
     word = row.text(column).lower()
     if word not in YES | NO:
         raise InputError(f"{column} is {word!r}", row.where, "write fixed or free")
     return word in YES
 
 
-def _load(row: Row, draft: Draft) -> None:
+def _load(row: SheetRow, draft: ModelDraft) -> None:
     case, units = row.text("case", "loads"), COLUMNS["loads"]
 
     def three(prefix: str) -> list[float]:
@@ -152,7 +152,7 @@ def _load(row: Row, draft: Draft) -> None:
         draft.load_member(case, member, row.where, point=point, x=place)
 
 
-def _say_rest(tables: dict[str, Sheet], draft: Draft) -> None:
+def _say_rest(tables: dict[str, Sheet], draft: ModelDraft) -> None:
     for name, sheet in tables.items():
         if name not in COLUMNS:
             draft.notes.say("dropped", sheet.name, "a table that is not read")

@@ -6,30 +6,30 @@ from typing import Any
 
 from rga.errors import InputError
 from rga.importing.opensees.tcl import lists, strings
-from rga.importing.opensees.tcl.interpreter import Interpreter, Leaving, Procedure, Text
+from rga.importing.opensees.tcl.interpreter import LeavingTcl, Procedure, TclInterpreter, TclText
 from rga.importing.opensees.tcl.numbers import number, written
 from rga.importing.opensees.tcl.skipping import skip
 from rga.importing.scripts.values import Unknown, checked_size
 
-Builtin = Callable[[Interpreter, list[Any], str], Any]
+Builtin = Callable[[TclInterpreter, list[Any], str], Any]
 
 
 def _text(value: Any) -> Any:
     return value if isinstance(value, str | Unknown) else written(value)
 
 
-def _set(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _set(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     return tcl.variables.set(words[0], words[1]) if len(words) > 1 else tcl.variables.read(words[0])
 
 
-def _expr(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _expr(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     for word in words:
         if isinstance(word, Unknown):
             return word
     return _text(tcl.expression(words[0] if len(words) == 1 else " ".join(words), where))
 
 
-def _incr(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _incr(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     value = tcl.variables.read(words[0]) if tcl.variables.exists(words[0]) else "0"
     by = words[1] if len(words) > 1 else "1"
     for one in (value, by):
@@ -39,7 +39,7 @@ def _incr(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return tcl.variables.set(words[0], written(total))
 
 
-def _append(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _append(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     value = tcl.variables.read(words[0]) if tcl.variables.exists(words[0]) else ""
     for one in (value, *words[1:]):
         if isinstance(one, Unknown):
@@ -47,7 +47,7 @@ def _append(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return tcl.variables.set(words[0], checked_size("".join([value, *words[1:]]), where))
 
 
-def _lappend(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _lappend(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     value = tcl.variables.read(words[0]) if tcl.variables.exists(words[0]) else ""
     for one in (value, *words[1:]):
         if isinstance(one, Unknown):
@@ -57,7 +57,7 @@ def _lappend(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return tcl.variables.set(words[0], checked_size(joined, where))
 
 
-def _lassign(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _lassign(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     if isinstance(words[0], Unknown):
         for name in words[1:]:
             tcl.variables.set(name, words[0])
@@ -68,7 +68,7 @@ def _lassign(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return lists.write_list(items[len(words) - 1 :])
 
 
-def _array(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _array(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     what, name, *rest = words
     if what == "set":
         if isinstance(rest[0], Unknown):
@@ -93,7 +93,7 @@ def _array(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return str(len(array)) if what == "size" else Unknown(f"array {what}")
 
 
-def _if(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _if(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     left = list(words)
     while left:
         condition = tcl.condition(left.pop(0), where)
@@ -101,7 +101,7 @@ def _if(tcl: Interpreter, words: list[Any], where: str) -> Any:
             left.pop(0)
         body = left.pop(0)
         if isinstance(condition, Unknown):
-            others = [word for word in left if isinstance(word, Text)]
+            others = [word for word in left if isinstance(word, TclText)]
             return skip(tcl, [body, *others], condition, where)
         if condition:
             return tcl.run_body(body, where)
@@ -114,7 +114,7 @@ def _if(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return ""
 
 
-def _loop(tcl: Interpreter, test: Any, body: Any, then: Any, where: str) -> Any:
+def _loop(tcl: TclInterpreter, test: Any, body: Any, then: Any, where: str) -> Any:
     """A loop while a test holds; `then` is evaluated after each turn."""
     while True:
         tcl.steps.take(where)
@@ -127,24 +127,24 @@ def _loop(tcl: Interpreter, test: Any, body: Any, then: Any, where: str) -> Any:
             tcl.run_body(then, where)
 
 
-def _turn(tcl: Interpreter, body: Any, where: str) -> bool:
+def _turn(tcl: TclInterpreter, body: Any, where: str) -> bool:
     """One turn of a loop; whether there may be another."""
     try:
         tcl.run_body(body, where)
-    except Leaving as leaving:
+    except LeavingTcl as leaving:
         if leaving.kind not in ("break", "continue"):
             raise
         return leaving.kind == "continue"
     return True
 
 
-def _for(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _for(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     begin, test, then, body = words
     tcl.run_body(begin, where)
     return _loop(tcl, test, body, then, where)
 
 
-def _foreach(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _foreach(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     *pairs, body = words
     named, columns = [], []
     for names, items in zip(pairs[::2], pairs[1::2], strict=True):
@@ -167,7 +167,7 @@ def _foreach(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return ""
 
 
-def _switch(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _switch(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     options = [word for word in words if str(word).startswith("-") and word is not words[-1]]
     left = [word for word in words if word not in options]
     value, *rest = left
@@ -183,27 +183,27 @@ def _switch(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return ""
 
 
-def _proc(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _proc(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     name, parameters, body = words
     each = [lists.split_list(one, where) for one in lists.split_list(parameters, where)]
     tcl.procedures[name.removeprefix("::")] = Procedure(each, body)
     return ""
 
 
-def _global(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _global(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     if tcl.variables.here is not tcl.variables.everywhere:
         tcl.variables.shared.update(words)
     return ""
 
 
-def _variable(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _variable(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     _global(tcl, words[::2], where)
     for name, value in zip(words[::2], words[1::2], strict=False):
         tcl.variables.set(name, value)
     return ""
 
 
-def _info(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _info(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     if words[0] == "exists":
         return str(int(tcl.variables.exists(words[1])))
     if words[0] == "script":
@@ -213,32 +213,32 @@ def _info(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return Unknown(f"info {words[0]}")
 
 
-def _eval(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _eval(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     for word in words:
         if isinstance(word, Unknown):
             raise InputError(f"a command cannot be known: it is {word.reason}", where, "write it")
     return tcl.run_body(words[0] if len(words) == 1 else " ".join(words), where)
 
 
-def _catch(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _catch(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     result = tcl.run_body(words[0], where)
     if len(words) > 1:
         tcl.variables.set(words[1], result)
     return Unknown("whether a command fails") if isinstance(result, Unknown) else "0"
 
 
-def _namespace(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _namespace(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     return tcl.run_body(words[2], where) if words[0] == "eval" else ""
 
 
 def _leave(kind: str) -> Builtin:
-    def leave(tcl: Interpreter, words: list[Any], where: str) -> Any:
-        raise Leaving(kind, words[-1] if words else "")
+    def leave(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
+        raise LeavingTcl(kind, words[-1] if words else "")
 
     return leave
 
 
-def _source(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _source(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     if isinstance(words[-1], Unknown):
         raise InputError(
             f"which file the script reads cannot be known: it is {words[-1].reason}",
@@ -248,13 +248,13 @@ def _source(tcl: Interpreter, words: list[Any], where: str) -> Any:
     return tcl.source(words[-1], where)
 
 
-def _error(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _error(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     raise InputError(
         f"the script ends with an error: {' '.join(map(str, words))}", where, "mend it"
     )
 
 
-def _unset(tcl: Interpreter, words: list[Any], where: str) -> Any:
+def _unset(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
     for name in words:
         tcl.variables.unset(name)
     return ""
@@ -263,7 +263,7 @@ def _unset(tcl: Interpreter, words: list[Any], where: str) -> Any:
 def _of_texts(function: Callable[..., Any]) -> Builtin:
     """A command whose result is not known where one of its words is not."""
 
-    def command(tcl: Interpreter, words: list[Any], where: str) -> Any:
+    def command(tcl: TclInterpreter, words: list[Any], where: str) -> Any:
         for word in words:
             if isinstance(word, Unknown):
                 return word

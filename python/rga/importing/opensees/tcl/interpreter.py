@@ -7,8 +7,8 @@ from typing import Any, Protocol
 from rga.errors import InputError
 from rga.importing.opensees.tcl.expressions import Expression, truth
 from rga.importing.opensees.tcl.numbers import written
-from rga.importing.opensees.tcl.variables import Variables
-from rga.importing.opensees.tcl.words import Command, Cutter, Part, Word, commands, parts_of
+from rga.importing.opensees.tcl.variables import TclVariables
+from rga.importing.opensees.tcl.words import Command, Cutter, Word, WordPart, commands, parts_of
 from rga.importing.scripts.values import Steps, Unknown, checked_size
 
 #: procedures within procedures, and files within files
@@ -17,14 +17,14 @@ DEEPEST = 40
 REPEATED = 20_000
 
 
-class Text(str):
+class TclText(str):
     """A text in braces, which knows where it stands."""
 
     line: int
     file: str
 
 
-class Host(Protocol):
+class CommandTaker(Protocol):
     """What takes the commands that are not Tcl's."""
 
     def skips(self, name: str) -> bool:
@@ -47,14 +47,14 @@ class Procedure:
         self.parameters, self.body = parameters, body
 
 
-class Leaving(Exception):
+class LeavingTcl(Exception):
     """`break`, `continue`, `return` or `exit` on its way out."""
 
     def __init__(self, kind: str, value: Any = "") -> None:
         self.kind, self.value = kind, value
 
 
-class Interpreter:
+class TclInterpreter:
     """An interpreter of one script.
 
     Args:
@@ -63,17 +63,17 @@ class Interpreter:
         without: files that it leaves out, since they are not needed.
     """
 
-    def __init__(self, host: Host, folder: Path, without: Collection[str] = ()) -> None:
+    def __init__(self, host: CommandTaker, folder: Path, without: Collection[str] = ()) -> None:
         self.host, self.folder, self.without = host, folder.resolve(), frozenset(without)
         self.steps = Steps()
-        self.variables = Variables()
+        self.variables = TclVariables()
         self.procedures: dict[str, Procedure] = {}
         self.depth = 0
         self.main = ""
         # Here, since these modules build on this one.
         from rga.importing.opensees.tcl.builtins import BUILTINS
 
-        self.builtins: dict[str, Callable[[Interpreter, list[Any], str], Any]] = BUILTINS
+        self.builtins: dict[str, Callable[[TclInterpreter, list[Any], str], Any]] = BUILTINS
 
     def run(self, text: str, line: int, file: str) -> Any:
         """Evaluate a script; the result of its last command.
@@ -93,7 +93,7 @@ class Interpreter:
             raise InputError(
                 f"a script cannot be known: it is {body.reason}", where, "write it out"
             )
-        if isinstance(body, Text):
+        if isinstance(body, TclText):
             return self.run(body, body.line, body.file)
         line = where.rpartition("line ")[2]
         file = where.rpartition(", line ")[0] or self.main
@@ -134,7 +134,7 @@ class Interpreter:
             if isinstance(result, str):
                 self.steps.take(where, len(result))
             return result
-        except (TypeError, ValueError, IndexError) as error:
+        except (TypeError, ValueError, IndexError, AttributeError) as error:
             if isinstance(error, InputError):
                 raise
             raise InputError(
@@ -155,12 +155,12 @@ class Interpreter:
 
     def _word(self, word: Word, file: str) -> Any:
         if word.braced:
-            text = Text(word.parts[0].text)
+            text = TclText(word.parts[0].text)
             text.line, text.file = word.parts[0].line, file
             return text
         return self.substituted(word.parts, file)
 
-    def substituted(self, parts: tuple[Part, ...], file: str) -> Any:
+    def substituted(self, parts: tuple[WordPart, ...], file: str) -> Any:
         """The value of parts put together; not known where one is not."""
         values = [self._part(part, file) for part in parts]
         if len(values) == 1:
@@ -170,7 +170,7 @@ class Interpreter:
                 return value
         return "".join(map(str, values))
 
-    def _part(self, part: Part, file: str) -> Any:
+    def _part(self, part: WordPart, file: str) -> Any:
         if part.kind == "text":
             return part.text
         if part.kind == "script":
@@ -182,7 +182,7 @@ class Interpreter:
         """The value of an expression: a number, a text, or not known."""
         if isinstance(text, Unknown):
             return text
-        line, file = (text.line, text.file) if isinstance(text, Text) else (1, self.main)
+        line, file = (text.line, text.file) if isinstance(text, TclText) else (1, self.main)
         shown: list[str] = []
         values: list[Any] = []
         for part in parts_of(str(text), line, file):
@@ -226,7 +226,7 @@ class Interpreter:
         with self.deeper(), self.variables.inside(frame):
             try:
                 return self.run_body(procedure.body, where)
-            except Leaving as leaving:
+            except LeavingTcl as leaving:
                 if leaving.kind != "return":
                     raise
                 return leaving.value
@@ -261,7 +261,7 @@ class Interpreter:
         with self.deeper():
             try:
                 return self.run(read_text(path), 1, name)
-            except Leaving as leaving:
+            except LeavingTcl as leaving:
                 if leaving.kind != "return":
                     raise
                 return leaving.value
@@ -270,7 +270,7 @@ class Interpreter:
 class Deeper:
     """One level of procedures or files."""
 
-    def __init__(self, interpreter: Interpreter) -> None:
+    def __init__(self, interpreter: TclInterpreter) -> None:
         self.interpreter = interpreter
 
     def __enter__(self) -> None:
@@ -289,4 +289,4 @@ def _shown(one: Command) -> str:
     return " ".join(" ".join(words).split())[:60]
 
 
-__all__ = ["Host", "Interpreter", "Leaving", "Procedure", "Text", "written"]
+__all__ = ["CommandTaker", "LeavingTcl", "Procedure", "TclInterpreter", "TclText", "written"]

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from rga.errors import InputError
-from rga.importing.opensees.tcl.interpreter import Interpreter, Text
+from rga.importing.opensees.tcl.interpreter import TclInterpreter, TclText
 from rga.importing.opensees.tcl.words import Command, commands
 from rga.importing.scripts.values import Unknown
 
@@ -12,7 +12,7 @@ from rga.importing.scripts.values import Unknown
 SETTING = frozenset(("set", "incr", "append", "lappend", "gets", "catch", "scan", "regexp"))
 
 
-def skip(tcl: Interpreter, bodies: list[Any], why: Unknown, where: str) -> Any:
+def skip(tcl: TclInterpreter, bodies: list[Any], why: Unknown, where: str) -> Any:
     """Pass over scripts that may or may not be evaluated; what they set is then not known.
 
     Raises:
@@ -31,10 +31,10 @@ def skip(tcl: Interpreter, bodies: list[Any], why: Unknown, where: str) -> Any:
     return Unknown(why.reason)
 
 
-def _within(tcl: Interpreter, body: Any, seen: set[str]) -> Iterator[tuple[str, Command]]:
+def _within(tcl: TclInterpreter, body: Any, seen: set[str]) -> Iterator[tuple[str, Command]]:
     """Commands in a script by name, with those in its own scripts and procedures."""
     try:
-        line, file = (body.line, body.file) if isinstance(body, Text) else (1, tcl.main)
+        line, file = (body.line, body.file) if isinstance(body, TclText) else (1, tcl.main)
         found = commands(str(body), line, file)
     except InputError:
         return  # no script, but a list or an expression
@@ -45,7 +45,7 @@ def _within(tcl: Interpreter, body: Any, seen: set[str]) -> Iterator[tuple[str, 
         for word in command.words:
             for part in word.parts:
                 if word.braced or part.kind == "script":
-                    inner = Text(part.text)
+                    inner = TclText(part.text)
                     inner.line, inner.file = part.line, file
                     yield from _within(tcl, inner, seen)
         if name in tcl.procedures and name not in seen:

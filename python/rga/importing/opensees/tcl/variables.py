@@ -1,4 +1,4 @@
-"""Variables of a Tcl script: of the whole, and of the procedure at work."""
+"""TclVariables of a Tcl script: of the whole, and of the procedure at work."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from rga.errors import InputError
 from rga.importing.scripts.values import Unknown
 
 
-class Variables:
+class TclVariables:
     """Values by name; an array is a table of values."""
 
     def __init__(self) -> None:
@@ -18,7 +18,7 @@ class Variables:
 
     @contextmanager
     def inside(self, frame: dict[str, Any]) -> Iterator[None]:
-        """Variables of a procedure, until it is left."""
+        """TclVariables of a procedure, until it is left."""
         here, shared = self.here, self.shared
         self.here, self.shared = frame, set()
         try:

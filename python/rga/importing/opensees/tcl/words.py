@@ -20,8 +20,8 @@ CLOSING = {"{": "}", "[": "]", '"': '"'}
 
 
 @dataclass(frozen=True)
-class Part:
-    """Part of a word: text as it is, the value of a variable, or the result of a script.
+class WordPart:
+    """WordPart of a word: text as it is, the value of a variable, or the result of a script.
 
     Attributes:
         index: of an array's element: parts of its name; None for a plain variable.
@@ -30,14 +30,14 @@ class Part:
     kind: Literal["text", "variable", "script"]
     text: str
     line: int
-    index: tuple["Part", ...] | None = None
+    index: tuple["WordPart", ...] | None = None
 
 
 @dataclass(frozen=True)
 class Word:
     """A word: its parts, and whether it stood in braces or is to be spread into several."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[WordPart, ...]
     braced: bool = False
     spread: bool = False
 
@@ -66,8 +66,8 @@ def commands(text: str, first: int, file: str) -> tuple[Command, ...]:
 
 
 @lru_cache(maxsize=4096)
-def parts_of(text: str, first: int, file: str) -> tuple[Part, ...]:
-    """Text with substitutions, as of an expression in braces."""
+def parts_of(text: str, first: int, file: str) -> tuple[WordPart, ...]:
+    """TclText with substitutions, as of an expression in braces."""
     cutter = Cutter(text, first, file)
     return tuple(cutter.parts(lambda sign: False))
 
@@ -124,7 +124,7 @@ class Cutter:
         if self.sign == "{":
             inner = self.braced()
             self._must_end(line)
-            return Word((Part("text", inner, line),), True, spread)
+            return Word((WordPart("text", inner, line),), True, spread)
         if self.sign == '"':
             self.place += 1
             parts = tuple(self.parts(lambda sign: sign == '"'))
@@ -164,7 +164,7 @@ class Cutter:
             self.place += 1
         raise self.error("a brace ({) is not closed", line)
 
-    def parts(self, stops: Callable[[str], bool]) -> Iterator[Part]:
+    def parts(self, stops: Callable[[str], bool]) -> Iterator[WordPart]:
         """Parts up to a sign that ends them, or to the end."""
         plain: list[str] = []
         line = self.line
@@ -176,14 +176,14 @@ class Cutter:
             sign = self.text[self.place]
             if stops(sign):
                 break
-            part: Part | None = None
+            part: WordPart | None = None
             if sign == "\\":
                 if self._continued() and stops(" "):
                     break
                 plain.append(self._escape())
                 continue
             if sign == "[":
-                part = Part("script", self._bracketed(), self.line)
+                part = WordPart("script", self._bracketed(), self.line)
             elif sign == "$":
                 part = self._variable()
             if part is None:
@@ -191,11 +191,11 @@ class Cutter:
                 self.place += 1
                 continue
             if plain:
-                yield Part("text", "".join(plain), line)
+                yield WordPart("text", "".join(plain), line)
                 plain = []
             yield part
         if plain:
-            yield Part("text", "".join(plain), line)
+            yield WordPart("text", "".join(plain), line)
 
     def _escape(self) -> str:
         following = self.text[self.place + 1 : self.place + 2]
@@ -235,7 +235,7 @@ class Cutter:
             raise self.error('a quote (") is not closed', line)
         self.place += 1
 
-    def _variable(self) -> Part | None:
+    def _variable(self) -> WordPart | None:
         line = self.line
         if self.text.startswith("${", self.place):
             end = self.text.find("}", self.place)
@@ -243,7 +243,7 @@ class Cutter:
                 raise self.error("a brace ({) is not closed", line)
             name = self.text[self.place + 2 : end]
             self.place = end + 1
-            return Part("variable", name, line)
+            return WordPart("variable", name, line)
         end = self.place + 1
         while end < len(self.text) and (self.text[end].isalnum() or self.text[end] in "_:"):
             end += 1
@@ -252,13 +252,13 @@ class Cutter:
         name = self.text[self.place + 1 : end]
         self.place = end
         if self.sign != "(":
-            return Part("variable", name, line)
+            return WordPart("variable", name, line)
         self.place += 1
         index = tuple(self.parts(lambda sign: sign == ")"))
         if not self.sign:
             raise self.error("a parenthesis of an array's index is not closed", line)
         self.place += 1
-        return Part("variable", name, line, index)
+        return WordPart("variable", name, line, index)
 
     def error(self, what: str, line: int) -> InputError:
         """An error at a line."""

@@ -9,7 +9,7 @@ from rga.errors import InputError
 from rga.importing.scripts.python.evaluation import DEEPEST, Evaluation, Function
 from rga.importing.scripts.python.library import MODULES, not_known
 from rga.importing.scripts.python.names import assigned, called, required
-from rga.importing.scripts.python.opened import Anything, Opened, Table
+from rga.importing.scripts.python.opened import Anything, Opened, OpenedNames
 from rga.importing.scripts.python.operators import two
 from rga.importing.scripts.values import Unknown
 
@@ -17,14 +17,14 @@ from rga.importing.scripts.values import Unknown
 LONGEST_SCRIPT = 4 * 2**20
 
 
-class Leaving(Exception):
+class LeavingPython(Exception):
     """`break`, `continue` or `return` on its way out."""
 
     def __init__(self, kind: str, value: Any = None) -> None:
         self.kind, self.value = kind, value
 
 
-class Interpreter(Evaluation):
+class PythonInterpreter(Evaluation):
     """An interpreter of one script.
 
     Args:
@@ -124,7 +124,7 @@ class Interpreter(Evaluation):
             if isinstance(node, ast.Lambda):
                 return self.value(node.body)
             self._each(node.body)
-        except Leaving as leaving:
+        except LeavingPython as leaving:
             return leaving.value
         finally:
             self.names, self.depth = here, self.depth - 1
@@ -165,7 +165,7 @@ class Interpreter(Evaluation):
             found = self._module(one.name, node)
             if one.asname is None and "." in one.name:
                 root, _, rest = one.name.partition(".")
-                found = Table(root, {rest: found})
+                found = OpenedNames(root, {rest: found})
             self.names[one.asname or one.name.partition(".")[0]] = found
 
     def imports_from(self, node: ast.ImportFrom) -> None:
@@ -174,7 +174,7 @@ class Interpreter(Evaluation):
         for one in node.names:
             if one.name == "*":
                 self.libraries.append(module)
-                if isinstance(module, Table):
+                if isinstance(module, OpenedNames):
                     self.names |= module.names
             else:
                 found = module.attribute(one.name)
@@ -236,7 +236,7 @@ class Interpreter(Evaluation):
         """One turn of a loop; whether there may be another."""
         try:
             self._each(body)
-        except Leaving as leaving:
+        except LeavingPython as leaving:
             if leaving.kind == "return":
                 raise
             return leaving.kind == "continue"
@@ -260,45 +260,45 @@ class Interpreter(Evaluation):
         raise InputError("the script ends with an error of its own", self.where(node), "mend it")
 
     def leave(self, node: ast.Return) -> None:
-        raise Leaving("return", None if node.value is None else self.value(node.value))
+        raise LeavingPython("return", None if node.value is None else self.value(node.value))
 
 
-def _leave(kind: str) -> Callable[[Interpreter, Any], None]:
-    def leave(interpreter: Interpreter, node: Any) -> None:
-        raise Leaving(kind)
+def _leave(kind: str) -> Callable[[PythonInterpreter, Any], None]:
+    def leave(interpreter: PythonInterpreter, node: Any) -> None:
+        raise LeavingPython(kind)
 
     return leave
 
 
-def _class(interpreter: Interpreter, node: ast.ClassDef) -> None:
+def _class(interpreter: PythonInterpreter, node: ast.ClassDef) -> None:
     interpreter.names[node.name] = Unknown(f"the class {node.name}")
 
 
-def _global(interpreter: Interpreter, node: ast.Global) -> None:
+def _global(interpreter: PythonInterpreter, node: ast.Global) -> None:
     """Names of the whole script in a function: what it sets afterwards is not known outside."""
     for name in node.names:
         if interpreter.names is not interpreter.everywhere:
             interpreter.names.setdefault(name, interpreter.everywhere.get(name))
 
 
-def _nothing(interpreter: Interpreter, node: Any) -> None:
+def _nothing(interpreter: PythonInterpreter, node: Any) -> None:
     pass
 
 
-DOING: dict[type[ast.stmt], Callable[[Interpreter, Any], None]] = {
-    ast.Import: Interpreter.imports,
-    ast.ImportFrom: Interpreter.imports_from,
+DOING: dict[type[ast.stmt], Callable[[PythonInterpreter, Any], None]] = {
+    ast.Import: PythonInterpreter.imports,
+    ast.ImportFrom: PythonInterpreter.imports_from,
     ast.Expr: lambda interpreter, node: interpreter.value(node.value),
-    ast.Assign: Interpreter.assign,
-    ast.AnnAssign: Interpreter.assign_typed,
-    ast.AugAssign: Interpreter.add_to,
-    ast.If: Interpreter.choose,
-    ast.For: Interpreter.go_through,
-    ast.While: Interpreter.repeat,
-    ast.FunctionDef: Interpreter.define,
-    ast.Try: Interpreter.attempt,
-    ast.Raise: Interpreter.fail,
-    ast.Return: Interpreter.leave,
+    ast.Assign: PythonInterpreter.assign,
+    ast.AnnAssign: PythonInterpreter.assign_typed,
+    ast.AugAssign: PythonInterpreter.add_to,
+    ast.If: PythonInterpreter.choose,
+    ast.For: PythonInterpreter.go_through,
+    ast.While: PythonInterpreter.repeat,
+    ast.FunctionDef: PythonInterpreter.define,
+    ast.Try: PythonInterpreter.attempt,
+    ast.Raise: PythonInterpreter.fail,
+    ast.Return: PythonInterpreter.leave,
     ast.Break: _leave("break"),
     ast.Continue: _leave("continue"),
     ast.ClassDef: _class,

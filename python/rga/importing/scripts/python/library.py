@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rga.importing.scripts.python.opened import Opened, Table
+from rga.importing.scripts.python.opened import Opened, OpenedNames
 from rga.importing.scripts.values import LONGEST, Unknown
 
 
@@ -77,7 +77,7 @@ NUMPY: dict[str, Any] = {
     },
     "arange": _arange, "linspace": _linspace, "array": _array, "asarray": _array,
     "zeros": _filled(0.0), "ones": _filled(1.0),
-    "linalg": Table("numpy.linalg", {"norm": np.linalg.norm}),
+    "linalg": OpenedNames("numpy.linalg", {"norm": np.linalg.norm}),
     "float64": float, "int64": int,
 }  # fmt: skip
 #: methods of plain values
@@ -91,8 +91,8 @@ METHODS: dict[type, frozenset[str]] = {
     np.ndarray: frozenset(("tolist", "copy", "sum", "min", "max", "mean", "flatten", "ravel")),
 }  # fmt: skip
 MODULES: dict[str, Opened] = {
-    "math": Table("math", MATH),
-    "numpy": Table("numpy", NUMPY),
+    "math": OpenedNames("math", MATH),
+    "numpy": OpenedNames("numpy", NUMPY),
 }
 
 

@@ -39,7 +39,7 @@ class Anything(Opened):
         return Unknown(f"the result of {self.name}")
 
 
-class Table(Opened):
+class OpenedNames(Opened):
     """A module as a table of its names."""
 
     def __init__(self, name: str, names: dict[str, Any]) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Table:
+class SafUnits:
     """The units of metric or imperial workbooks."""
 
     imperial: bool = False
