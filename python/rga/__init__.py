@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
+    from rga.importing import ImportedModel, import_model
     from rga.jobs.batch import diagnose_many
     from rga.jobs.run import run
     from rga.model import Effect, Model, load_model
@@ -31,6 +32,7 @@ _HOMES = {
     "Criteria": "rga.findings.criteria",
     "Effect": "rga.model",
     "Findings": "rga.findings",
+    "ImportedModel": "rga.importing",
     "Model": "rga.model",
     "ModelBuilder": "rga.building",
     "Plan": "rga.planning.result",
@@ -42,6 +44,7 @@ _HOMES = {
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
     "draw": "rga.drawing",
+    "import_model": "rga.importing",
     "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
@@ -59,6 +62,7 @@ __all__ = [
     "Criteria",
     "Effect",
     "Findings",
+    "ImportedModel",
     "Model",
     "ModelBuilder",
     "Plan",
@@ -71,6 +75,7 @@ __all__ = [
     "diagnose",
     "diagnose_many",
     "draw",
+    "import_model",
     "load_criteria",
     "load_findings",
     "load_model",

@@ -17,6 +17,8 @@ EXTRAS = {
     "alembic": "twin",
     "filelock": "twin",
     "weasyprint": "pdf",
+    "ezdxf": "formats",
+    "openpyxl": "formats",
 }
 
 

@@ -15,6 +15,7 @@ from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
 from rga.cli.draw import draw
 from rga.cli.example import example
+from rga.cli.import_model import import_model
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
 from rga.cli.results import results
@@ -37,6 +38,7 @@ for command in (
     dataset, verify, schema, example, doctor,
 ):  # fmt: skip
     app.command()(command)
+app.command("import")(import_model)
 # Other packages, as the benchmarks in this wheel, add commands of their own.
 for plugin in entry_points(group="rga.commands"):
     app.add_typer(plugin.load(), name=plugin.name)
