@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from rga.building.loads import Force, load_effects
-from rga.building.mistakes import check_whole
+from rga.building.mistakes import read_settled
 from rga.building.parts import checked
 from rga.building.quantities import Amount, amount, amounts, difference
 from rga.building.sensors import SensorKind, sensor_name, sensor_part
 from rga.building.structure_builder import StructureBuilder
 from rga.errors import InputError
-from rga.model.io import model_content, read_model, write_model
+from rga.model.io import model_content, write_model
 from rga.model.schema import ContextVariable, Model, Sensor
 
 
@@ -205,8 +205,7 @@ class ModelBuilder(StructureBuilder):
         content = {**self._content}
         content["members"] = {name: self._made(one) for name, one in content["members"].items()}
         content["effects"] = {name: self._warmed(one) for name, one in content["effects"].items()}
-        check_whole(content, self._where)
-        return read_model(content, self._where)
+        return read_settled(content, self._where)
 
     def write(self, path: str | Path) -> Model:
         """Write the model file, whole or not at all, as JSON.

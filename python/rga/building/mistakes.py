@@ -1,95 +1,52 @@
-"""What does not fit together in a model that is being built: all of it at once."""
+"""What is wrong with a model that is being built, and what it leaves open: all of it at once."""
 
 from collections.abc import Iterator
 from typing import Any
 
-from pydantic import ValidationError
+from rga.errors import InputError, SeveralMistakes
+from rga.model.io import read_model
+from rga.model.schema import Model
 
-from rga.errors import InputError
-from rga.model.schema import Model, read_effect
-
-#: mistakes that are told one by one; of more the number is told
-MOST = 20
+REMEDY = "correct the names, or add what is missing"
 
 
-def check_whole(content: dict[str, Any], where: str) -> None:
-    """InputError that lists what the parts of a model name and what there is not.
+def read_settled(content: dict[str, Any], where: str) -> Model:
+    """The model of what was built.
 
     Args:
-        content: of a model file; each part is right by itself.
+        content: of a model file.
+        where: it stands.
+
+    Raises:
+        InputError: names that stand for nothing, parts that do not fit each other, members without
+            a material, nodes at which nothing ends: all of it.
     """
-    found = list(_dangling(content))
+    found = [*_without_material(content), *_idle_nodes(content)]
+    try:
+        model = read_model(content, where)
+    except InputError as error:
+        told = error.mistakes if isinstance(error, SeveralMistakes) else [error.what]
+        found = [one for one in told if "there is no '' in materials" not in one] + found
     if not found:
-        found = list(_unfitting_effects(content))
-    if not found:
-        return
-    told = "; ".join(found[:MOST])
-    more = f"; and {len(found) - MOST} more" if len(found) > MOST else ""
-    what = told if len(found) == 1 else f"{len(found)} mistakes: {told}{more}"
-    raise InputError(what, where, "correct the names, or add what is missing")
+        return model
+    if len(found) == 1:
+        raise InputError(found[0], where, REMEDY)
+    raise SeveralMistakes(found, where, REMEDY)
 
 
-def _dangling(content: dict[str, Any]) -> Iterator[str]:
-    nodes, members = content["nodes"], content["members"]
+def _without_material(content: dict[str, Any]) -> Iterator[str]:
+    for name, member in content["members"].items():
+        if not member["material"]:
+            yield f"members.{name}: it names no material, of which there are " + str(
+                len(content["materials"])
+            )
 
-    def missing(table: str, named: Any, by: str) -> Iterator[str]:
-        if named is not None and named not in content[table]:
-            yield f"{by}: there is no {named!r} in {table}"
 
-    touched: set[str] = set()
-    for name, member in members.items():
-        by = f"member {name!r}"
-        for node in member["nodes"]:
-            touched.add(node)
-            yield from missing("nodes", node, by)
-        first, last = member["nodes"]
-        if first == last or (first in nodes and nodes[first] == nodes.get(last)):
-            yield f"{by}: it has no length"
-        yield from missing("sections", member["section"], by)
-        if member["material"]:
-            yield from missing("materials", member["material"], by)
-        else:
-            yield f"{by}: it names no material, of which there are {len(content['materials'])}"
-    for name, support in content["supports"].items():
-        yield from missing("nodes", support["node"], f"support {name!r}")
-    for spring in content["springs"]:
-        for node in (spring["node"], spring.get("to")):
-            touched.add(node)
-            yield from missing("nodes", node, "spring")
-    for tie in content["ties"]:
-        for node in tie["nodes"]:
-            touched.add(node)
-            yield from missing("nodes", node, "tie")
-    for name, mass in content["masses"].items():
-        yield from missing("nodes", mass["node"], f"mass {name!r}")
-    for name, sensor in content["sensors"].items():
-        by = f"sensor {name!r}"
-        yield from missing("members", sensor.get("member"), by)
-        yield from missing("nodes", sensor.get("node"), by)
-        yield from missing("nodes", sensor.get("relative_to"), by)
-    for name in sorted(content["sensors"].keys() & content["context"].keys()):
-        yield f"sensor {name!r}: a context variable has the same name"
-    for name in nodes:
+def _idle_nodes(content: dict[str, Any]) -> Iterator[str]:
+    ends = [member["nodes"] for member in content["members"].values()]
+    ends += [(spring["node"], spring.get("to")) for spring in content["springs"]]
+    ends += [tie["nodes"] for tie in content["ties"]]
+    touched = {node for pair in ends for node in pair}
+    for name in content["nodes"]:
         if name not in touched:
-            yield f"node {name!r}: no member ends there"
-
-
-def _unfitting_effects(content: dict[str, Any]) -> Iterator[str]:
-    bare = Model.model_validate({**content, "effects": {}})
-    effects = {}
-    for name, keys in content["effects"].items():
-        try:
-            effects[name] = read_effect(keys, name)
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            key = ".".join(str(part) for part in first["loc"])
-            yield f"effect {name!r}: {key} {first['msg'].removeprefix('Value error, ')}"
-        except ValueError as error:
-            yield f"effect {name!r}: {str(error).removeprefix(f'effects.{name}.')}"
-    # Effects may act on one another, so that each is held against the model with all of them.
-    whole = bare.model_copy(update={"effects": effects})
-    for name, effect in effects.items():
-        try:
-            whole.check_effect(effect, name)
-        except ValueError as error:
-            yield f"effect {name!r}: {str(error).removeprefix(name).lstrip('.: ')}"
+            yield f"nodes.{name}: no member ends there"

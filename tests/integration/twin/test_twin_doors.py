@@ -5,6 +5,7 @@ import json
 import shutil
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ import rga
 from rga.errors import InputError
 from rga.twin import Settings, rollback
 from rga.twin.repository import Repository
+from rga.twin.restore import station_of
 
 LINUX = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="open files are in /proc")
 
@@ -105,3 +107,18 @@ def test_what_rollback_returns_can_be_asked(place: Path) -> None:
     assert twin.version == 1
     assert twin.history().events[-1].kind == "rollback"
     writes(place)
+
+
+def test_it_stands_as_it_did_at_a_date_of_its_record(
+    ended: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with rga.Twin.open(ended) as twin:
+        with pytest.raises(InputError, match="counts seconds, and '2026-03-01' is a date"):
+            twin.as_of(time="2026-03-01")
+        station = replace(station_of(twin._view), start="2026-03-01T00:00:00", time_format="iso")
+        monkeypatch.setattr("rga.twin.twin.station_of", lambda view: station)
+        assert twin.as_of(time="2026-03-01T09:50").state.row == 59
+        with pytest.raises(InputError, match="the time 2026-02-28 is none of the record"):
+            twin.as_of(time="2026-02-28")
+        with pytest.raises(InputError, match="'yesterday' is no date"):
+            twin.as_of(time="yesterday")

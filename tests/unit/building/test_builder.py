@@ -199,20 +199,20 @@ class TestMistakes:
         with pytest.raises(InputError) as error:
             builder.build()
         for part in (
-            "15 mistakes:",
-            "member 'A-B': it names no material, of which there are 2",
-            "member 'A-X': there is no 'X' in nodes",
-            "member 'A-X': there is no 'tube' in sections",
-            "member 'A-X': there is no 'brass' in materials",
-            "member 'A-A': it has no length",
-            "support 'Y': there is no 'Y' in nodes",
-            "spring: there is no 'Q' in nodes",
-            "tie: there is no 'W' in nodes",
-            "mass 'M': there is no 'M' in nodes",
-            "sensor 'S': there is no 'A-X2' in members",
-            "sensor 'D': there is no 'Z' in nodes",
-            "sensor 'D': a context variable has the same name",
-            "node 'lone': no member ends there",
+            "15 mistakes (model 'beam'): correct the names",
+            "members.A-B: it names no material, of which there are 2",
+            "members.A-X.nodes: there is no 'X' in nodes",
+            "members.A-X.section: there is no 'tube' in sections",
+            "members.A-X.material: there is no 'brass' in materials",
+            "members.A-A.nodes: both ends are node 'A'",
+            "supports.Y.node: there is no 'Y' in nodes",
+            "springs[0]: there is no 'Q' in nodes",
+            "ties[0]: there is no 'W' in nodes",
+            "masses.M.node: there is no 'M' in nodes",
+            "sensors.S.member: there is no 'A-X2' in members",
+            "sensors.D: there is no 'Z' in nodes",
+            "sensors.D: a context variable has the same name",
+            "nodes.lone: no member ends there",
         ):
             assert part in str(error.value)
 
@@ -224,12 +224,12 @@ class TestMistakes:
         with pytest.raises(InputError) as error:
             builder.build()
         for part in (
-            "5 mistakes:",
-            "effect 'snow': there is no 'X' in nodes",
-            "effect 'warmth': groups: there is no group 'roof'",
-            "effect 'odd': kind: 'member_stifness' is no kind of effect",
-            "effect 'weak': factr Extra inputs",
-            "effect 'scaled': effect: there is no effect 'wind'",
+            "6 mistakes",
+            "effects.snow: there is no 'X' in nodes",
+            "effects.warmth: there is no context 'air' in the model",
+            "effects.odd.kind: 'member_stifness' is no kind of effect",
+            "effects.weak.factr: this key is unknown",
+            "effects.scaled.effect: there is no effect 'wind'",
         ):
             assert part in str(error.value)
 
@@ -243,7 +243,7 @@ class TestMistakes:
         builder = beam()
         for number in range(30):
             builder.add_node(f"N{number}", number)
-        with pytest.raises(InputError, match=r"30 mistakes: .*; and 10 more"):
+        with pytest.raises(InputError, match=r"(?s)30 mistakes .* and 10 more"):
             builder.build()
 
     def test_a_file_is_written_whole_or_not_at_all(self, tmp_path: Path) -> None:

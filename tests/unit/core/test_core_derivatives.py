@@ -28,7 +28,7 @@ def every_kind(case: Case) -> Any:
     for member in range(case.members):
         rows += [
             (2, member, -1, [0.3, 0.01 * case.structure["frame"][member], 0.0]),
-            (3, member, -1, [0.6, 0.0, 0.0]),
+            *((3, member, part, [0.6, 0.0, 0.0]) for part in range(6)),
             (6, member, 4, np.zeros(3)),
         ]
     kind, index, other, vector = zip(*rows, strict=True)

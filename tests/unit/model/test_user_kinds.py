@@ -48,9 +48,7 @@ def painted_joint() -> Iterator[type[Effect]]:
 
         kind: Literal["painted_joint"] = "painted_joint"
         title = "paint in the joint"
-        action = Action(
-            inspect="the expansion joint beside {place}", test="{vehicle}, on a warm day"
-        )
+        action = Action(inspect="the expansion joint beside {place}", test="{load}, on a warm day")
         usual = f"factor {USUAL}: seen on three bridges"
         structural = True
         member: Annotated[str, Place("member")]

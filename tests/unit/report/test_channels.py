@@ -13,12 +13,12 @@ import pytest
 from rga.arrays import FloatArray
 from rga.findings import Findings
 from rga.records import Record
-from rga.report.figures.channels import MOST_NUMBERS, POINTS, Channels, all_channels
+from rga.report.figures.channels import MOST_NUMBERS, POINTS, ShownChannels, all_channels
 
 NAME = '<script>"D" & 1'
 
 
-def channels(readings: FloatArray) -> Channels:
+def channels(readings: FloatArray) -> ShownChannels:
     """Of one sensor, simulated as zero before and as read after."""
     rows = len(readings)
     record = Record(
@@ -33,7 +33,7 @@ def channels(readings: FloatArray) -> Channels:
     return all_channels(cast(Findings, SimpleNamespace(account=account)))
 
 
-def table(found: Channels) -> pl.DataFrame:
+def table(found: ShownChannels) -> pl.DataFrame:
     _, _, content = found.each[0].table.partition(",")
     return pl.read_csv(BytesIO(base64.b64decode(content)))
 

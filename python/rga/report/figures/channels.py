@@ -22,7 +22,7 @@ LOOKS = (("#8c959f", 2.2), ("#c8641e", 1.0), ("#0072b2", 1.0))
 
 
 @dataclass(frozen=True)
-class Channel:
+class ShownChannel:
     """One channel.
 
     Attributes:
@@ -39,7 +39,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Channels:
+class ShownChannels:
     """All channels.
 
     Attributes:
@@ -47,11 +47,11 @@ class Channels:
         every: of the rows, every so many stand in the tables.
     """
 
-    each: list[Channel]
+    each: list[ShownChannel]
     every: int
 
 
-def all_channels(findings: Findings) -> Channels:
+def all_channels(findings: Findings) -> ShownChannels:
     """What was measured, simulated by the model as given and with the causes, by channel."""
     account = findings.account
     record = account.record
@@ -63,9 +63,11 @@ def all_channels(findings: Findings) -> Channels:
         unit = account.model.sensors[name].unit
         lines = [values[:, column] for values in (record.readings, account.before, account.after)]
         found.append(
-            Channel(name, unit, _figure(name, unit, lines, labels), _table(labels, lines, every))
+            ShownChannel(
+                name, unit, _figure(name, unit, lines, labels), _table(labels, lines, every)
+            )
         )
-    return Channels(found, every)
+    return ShownChannels(found, every)
 
 
 def _figure(name: str, unit: str, lines: list[FloatArray], labels: list[str]) -> Markup:
