@@ -10,9 +10,9 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.model.effect import seconds
-from rga.records.clock import read_clock
 from rga.records.mapping import TimeColumns
 from rga.records.read import read_table
+from rga.records.times import read_clock
 
 
 @dataclass(frozen=True)
