@@ -14,6 +14,7 @@ EXTRAS = {
     "sqlalchemy": "twin",
     "alembic": "twin",
     "filelock": "twin",
+    "nptdms": "formats",
 }
 
 

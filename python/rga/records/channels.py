@@ -116,8 +116,9 @@ def told_of(
         told.append("units are converted: " + "; ".join(changed))
     words: dict[str, list[str]] = {}
     for name, source in sources.items():
-        stated = (*mapping.missing, *source.channel.missing)
-        for word, rows in missing_words(table.frame[source.column], stated).items():
+        stated = (*table.missing, *mapping.missing, *source.channel.missing)
+        series = table.frame[source.column]
+        for word, rows in missing_words(series, table.notation, stated).items():
             words.setdefault(word, []).append(f"{name} ({rows} rows)")
     for word, places in words.items():
         more = f" and {len(places) - 5} more channels" if len(places) > 5 else ""

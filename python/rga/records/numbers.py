@@ -66,17 +66,23 @@ def numbers_of(
     return _without(read, missing), bad
 
 
-def missing_words(series: pl.Series, missing: tuple[str, ...] = ()) -> dict[str, int]:
+def missing_words(
+    series: pl.Series, notation: Notation, missing: tuple[str, ...] = ()
+) -> dict[str, int]:
     """What stands in a column for missing values, and in how many rows.
 
-    >>> missing_words(pl.Series(["1", "NAN", None, "NAN"]))
-    {'NAN': 2}
+    >>> missing_words(pl.Series(["1", "NAN", "-9999,0", "NAN"]), Notation(","), ("-9999",))
+    {'NAN': 2, '-9999': 1}
     """
-    wanted = {*MISSING_WORDS, *missing}
-    if series.dtype != pl.String:
-        return {}
-    found = series.filter(series.is_in(sorted(wanted))).value_counts(sort=True)
-    return dict(found.iter_rows())
+    found: dict[str, int] = {}
+    codes = {code: number for code in missing if (number := _code(code)) is not None}
+    if series.dtype == pl.String:
+        words = sorted({*MISSING_WORDS, *missing} - codes.keys())
+        found = dict(series.filter(series.is_in(words)).value_counts(sort=True).iter_rows())
+    if codes:
+        read, _ = numbers_of(series, notation)
+        found |= {code: int((read == number).sum()) for code, number in codes.items()}
+    return {word: rows for word, rows in found.items() if rows}
 
 
 def notation_of(cells: Iterable[str], decimal: str | None, thousands: str | None) -> Notation:
@@ -164,9 +170,14 @@ def _meaning(cell: str, notation: Notation, missing: tuple[str, ...]) -> float |
 def _without(read: FloatArray, missing: tuple[str, ...]) -> FloatArray:
     """Numbers without those that are stated to stand for a missing value."""
     for code in missing:
-        try:
-            stated = float(code.replace(",", "."))
-        except ValueError:
-            continue
-        read = np.where(read == stated, np.nan, read)
+        if (stated := _code(code)) is not None:
+            read = np.where(read == stated, np.nan, read)
     return read
+
+
+def _code(word: str) -> float | None:
+    """The number that is stated to stand for a missing value; None: it is a word."""
+    try:
+        return float(word.replace(",", "."))
+    except ValueError:
+        return None

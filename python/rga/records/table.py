@@ -48,6 +48,7 @@ class Table:
         names: by column, what the file calls a channel whose column has its unit in the name.
         time: as the format states it; None: it does not.
         bookkeeping: columns of the format's own, such as the number of a record: no channels.
+        missing: what stands for a missing value by the format, beside what always does.
         notation: how numbers are written.
         notes: what was understood of the file, in words.
         warnings: what a reader should know of the file, in words.
@@ -63,6 +64,7 @@ class Table:
     names: Mapping[str, str] = field(default_factory=dict)
     time: StatedTime | None = None
     bookkeeping: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
     notation: Notation = field(default_factory=Notation)
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
@@ -89,7 +91,7 @@ class Table:
                 str(self.path),
                 "write numbers, or list the column under [unused] in import.toml",
             )
-        read, bad = numbers_of(series, self.notation, missing)
+        read, bad = numbers_of(series, self.notation, (*self.missing, *missing))
         if bad.any():
             row = int(np.argmax(bad))
             raise InputError(

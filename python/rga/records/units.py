@@ -82,7 +82,7 @@ _WORDS = {
     "sek": "s", "msec": "ms", "usec": "us", "minutes": "min", "minute": "min", "hour": "h",
     "hours": "h", "hr": "h", "hrs": "h", "day": "d", "days": "d", "tage": "d",
     "volt": "V", "volts": "V", "ampere": "A", "amps": "A", "ohms": "Ohm", "hertz": "Hz",
-    "none": "-", "1": "-", "": "-", "adim": "-", "[-]": "-", "promille": "permille",
+    "none": "-", "1": "-", "/": "-", "cel": "degC", "": "-", "adim": "-", "[-]": "-", "promille": "permille",
     "percent rh": "%rh", "% rh": "%rh", "%r.h.": "%rh", "% r.h.": "%rh", "meters/second": "m/s",
 }  # fmt: skip
 _SIGNS = {

@@ -57,6 +57,15 @@ class Text:
         lines = data.decode("utf-8", "replace").split("\n")
         return lines[:-1] if lines[-1] == "" else lines
 
+    def below(self, line: int) -> bytes:
+        """The text from a line on, counted from 0."""
+        place = 0
+        for _ in range(line):
+            place = self.data.find(b"\n", place) + 1
+            if place == 0:
+                return b""
+        return self.data[place:]
+
 
 def decoded(data: bytes, path: Path, encoding: str | None = None) -> Text:
     r"""The text of a file.

@@ -60,6 +60,7 @@ def table_of(
     mapping: FileMapping,
     format_name: str,
     *,
+    body: bytes | None = None,
     ragged: bool = False,
 ) -> Table:
     """The table of a text whose shape is known.
@@ -71,10 +72,12 @@ def table_of(
         names: of its columns.
         mapping: what is stated of the file.
         format_name: as a reader is told.
+        body: the rows, where they are not all that is below the head.
         ragged: rows may leave out cells at their end.
     """
+    body = text.below(shape.data) if body is None else body
     frame = read_rows(
-        text.data, shape.data, shape.delimiter, names, text.path, shape.header, ragged=ragged
+        body, shape.delimiter, names, text.path, shape.data, shape.header, ragged=ragged
     )
     units = _units(lines, shape, names)
     bare = {name: name_and_unit(name) for name in frame.columns}
@@ -125,17 +128,26 @@ def checked_names(names: list[str], text: Text, line: int, units: Sequence[str] 
     where = f"{text.path}, line {line + 1}"
     if not any(names):
         raise InputError("the line of the names is empty", where, "name the columns there")
-    twice = [name for name, times in Counter(filter(None, names)).items() if times > 1]
-    if twice:
-        places = [number for number, name in enumerate(names) if name == twice[0]]
+    if double := twice(names):
+        places = [number for number, name in enumerate(names) if name == double]
         said = [units[place] for place in places if place < len(units)]
         as_units = f", in {' and in '.join(said)}" if len(set(said)) > 1 else ""
         raise InputError(
-            f"the column {twice[0]!r} stands twice{as_units}",
+            f"the column {double!r} stands twice{as_units}",
             where,
             "give every column a name of its own",
         )
     return names
+
+
+def twice(names: Sequence[str]) -> str | None:
+    """The first name that stands twice, if one does.
+
+    >>> twice(["a", "b", "", "", "b"])
+    'b'
+    """
+    times = Counter(filter(None, names))
+    return next((name for name in times if times[name] > 1), None)
 
 
 def _units(lines: Sequence[str], shape: Shape, names: Sequence[str]) -> dict[str, str]:

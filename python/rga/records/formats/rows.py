@@ -10,30 +10,30 @@ from rga.errors import InputError
 
 
 def read_rows(
-    data: bytes,
-    first: int,
+    body: bytes,
     delimiter: str,
     names: Sequence[str],
     path: Path,
+    first: int,
     header: int | None = None,
     *,
     ragged: bool = False,
 ) -> pl.DataFrame:
-    """The rows from a line on, as text, null where a cell is empty.
+    """Rows as columns of text, null where a cell is empty.
 
     Args:
-        data: UTF-8 text with line feeds.
-        first: line of the first row, counted from 0.
+        body: the rows, UTF-8 with line feeds.
         delimiter: between cells; a blank: runs of white space.
         names: of the columns; an empty one for a column that must be empty.
         path: the file, for an error.
+        first: line of the file at which the rows begin, counted from 0.
         header: line of the names, counted from 0.
         ragged: rows may leave out cells at their end.
 
     Raises:
         InputError: a row has more or fewer cells than there are names.
     """
-    body = data[_offset(data, first) :].rstrip(b"\n\x1a\x00 ")
+    body = body.rstrip(b"\n\x1a\x00 ")
     if not body:
         return pl.DataFrame(schema=dict.fromkeys(filter(None, names), pl.String))
     if delimiter == " ":
@@ -70,23 +70,13 @@ def read_rows(
     return frame.head(int(filled[-1]) + 1 if len(filled) else 0)
 
 
-def _offset(data: bytes, line: int) -> int:
-    """Where a line begins."""
-    place = 0
-    for _ in range(line):
-        place = data.find(b"\n", place) + 1
-        if place == 0:
-            return len(data)
-    return place
-
-
 def _lengths(body: bytes, delimiter: str, quoted: bool) -> pl.Series:
     """How many cells every line has, int[lines]; none where quotes hold line feeds; 0 if blank."""
     lines = pl.read_csv(b"line\n" + body, separator="\x01", quote_char=None, infer_schema=False)[
         "line"
     ].fill_null("")
     if quoted:
-        if (lines.str.count_matches('"', literal=True) % 2).any():
+        if (lines.str.count_matches('"', literal=True) % 2 != 0).any():
             return pl.Series([], dtype=pl.Int64)
         lines = lines.str.replace_all('"[^"]*"', "q")
     counts = lines.str.count_matches(delimiter, literal=True).cast(pl.Int64) + 1

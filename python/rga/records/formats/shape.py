@@ -177,7 +177,7 @@ def _headed(
             break
     if not above:
         return Shape(delimiter, None, None, rows[0][0], fields)
-    units = next((k for k in above[1:] if _is_units(rows[k][1])), None)
+    units = next((k for k in above[1:] if is_units(rows[k][1])), None)
     names = _names_row(rows, above, units, kinds, known, mapping.missing)
     if units is not None and units <= names:
         units = None
@@ -232,10 +232,10 @@ def rows_above(lines: Sequence[str], shape: Shape) -> int:
     return count
 
 
-def _is_units(cells: list[str]) -> bool:
+def is_units(cells: list[str]) -> bool:
     """Whether a line states units: all in brackets, or most of them known.
 
-    >>> _is_units(["(s)", "(m)"]), _is_units(["d", "s", "kN", "kImp"]), _is_units(["time", "D1"])
+    >>> is_units(["(s)", "(m)"]), is_units(["d", "s", "kN", "kImp"]), is_units(["time", "D1"])
     (True, True, False)
     """
     said = [cell for cell in cells if cell]
@@ -253,7 +253,7 @@ def _stated(
     units = mapping.units_line - 1 if mapping.units_line else None
     if units is None and mapping.data_line is None:
         below = next(((n, cells) for n, cells in rows if n > header), None)
-        units = below[0] if below and _is_units(below[1]) else None
+        units = below[0] if below and is_units(below[1]) else None
     first = max(header, -1 if units is None else units) + 1
     data = first if mapping.data_line is None else mapping.data_line - 1
     return Shape(delimiter, header, units, data, fields)
