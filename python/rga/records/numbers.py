@@ -124,6 +124,8 @@ def notation_of(cells: Iterable[str], decimal: str | None, thousands: str | None
             maybe += bool(re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", cell))
     if thousands:
         return Notation("." if thousands == "," else ("," if marked[","] else "."), thousands)
+    if grouped["."] and not marked["."]:
+        return Notation(",", ".")
     if marked[","] > marked["."] and not grouped[","]:
         doubtful = maybe == marked[","] and not grouped["."]
         return Notation(",", "." if grouped["."] else "", doubtful)

@@ -25,6 +25,7 @@ class StatedTime:
         start: ISO 8601 time stamp at which the elapsed time is 0; None: it is not said.
         step: between rows that are counted [s].
         unit: of columns that hold elapsed time [s].
+        zone: of stamps that have none.
     """
 
     columns: tuple[str, ...] = ()
@@ -32,6 +33,7 @@ class StatedTime:
     start: str | None = None
     step: float | None = None
     unit: float = 1.0
+    zone: str | None = None
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,8 @@ _WORDS = {
     "sek": "s", "msec": "ms", "usec": "us", "minutes": "min", "minute": "min", "hour": "h",
     "hours": "h", "hr": "h", "hrs": "h", "day": "d", "days": "d", "tage": "d",
     "volt": "V", "volts": "V", "ampere": "A", "amps": "A", "ohms": "Ohm", "hertz": "Hz",
-    "none": "-", "1": "-", "/": "-", "cel": "degC", "": "-", "adim": "-", "[-]": "-", "promille": "permille",
+    "none": "-", "1": "-", "/": "-", "cel": "degC", "": "-", "adim": "-", "[-]": "-",
+    "promille": "permille",
     "percent rh": "%rh", "% rh": "%rh", "%r.h.": "%rh", "% r.h.": "%rh", "meters/second": "m/s",
 }  # fmt: skip
 _SIGNS = {
@@ -149,6 +150,11 @@ def name_and_unit(column: str) -> tuple[str, str | None]:
     """
     found = re.fullmatch(r"(?P<name>.*?\S)\s*(\[(?P<unit>[^]]+)\]|\((?P<round>[^)]+)\))"
                          r"(\s+CH=\S+)?", column.strip())  # fmt: skip
+    if found is None or "," in column:
+        # HOBO loggers write "Temp, °C (LGR S/N: 123)".
+        parts = re.fullmatch(r"(?P<name>[^,]+), (?P<unit>[^,(]+?)( \(.*\))?", column.strip())
+        if parts is not None and unit_of(parts["unit"]) is not None:
+            return parts["name"], parts["unit"]
     if found is None:
         return column, None
     if found["unit"] is not None:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from rga.errors import InputError
 from rga.records.formats.encoding import Text
 from rga.records.formats.rows import read_rows
-from rga.records.formats.shape import Shape, find_shape, rows_above, split
+from rga.records.formats.shape import Shape, find_shape, rows_above, split, uncommented
 from rga.records.mapping import FileMapping
 from rga.records.numbers import notation_of
 from rga.records.table import Table
@@ -40,7 +40,7 @@ def read_plain(text: Text, mapping: FileMapping, known: Collection[str]) -> Tabl
             raise InputError(
                 f"{key} = {stated}, but the file has {len(lines)} lines", str(text.path), "mend it"
             )
-    shape = find_shape(lines, mapping, known)
+    shape = find_shape(lines, mapping, {"time", *known})
     above = rows_above(lines, shape) if mapping.header_line is None else 0
     if above > FEW:
         raise InputError(
@@ -113,7 +113,7 @@ def _names(lines: Sequence[str], shape: Shape, text: Text) -> list[str]:
     """Names of the columns; those of a file without names are `column 1` and so on."""
     if shape.header is None:
         return [f"column {number + 1}" for number in range(shape.fields)]
-    names = split(lines[shape.header].lstrip("#%"), shape.delimiter)
+    names = split(uncommented(lines[shape.header]), shape.delimiter)
     while names and not names[-1] and len(names) > shape.fields:
         names.pop()
     return checked_names(names, text, shape.header)

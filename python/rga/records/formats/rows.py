@@ -60,8 +60,9 @@ def read_rows(
     except pl.exceptions.PolarsError as error:
         problem = next(iter(str(error).splitlines()), type(error).__name__)
         raise InputError(f"the table cannot be read: {problem}", str(path), "mend it") from None
-    stripped = pl.all().str.strip_chars(" \t\u00a0")
-    frame = frame.select(pl.when(stripped != "").then(stripped).name.keep())
+    for column in frame.columns:  # one by one, so that there are never two of all
+        cells = pl.col(column).str.strip_chars(" \t\u00a0")
+        frame = frame.with_columns(pl.when(cells != "").then(cells).alias(column))
     _check(frame, lengths, names, path, first, header, ragged=ragged)
     kept = [one for one, name in zip(ids, names, strict=False) if name]
     frame = frame.select(kept).rename(dict(zip(kept, [n for n in names if n], strict=True)))

@@ -59,6 +59,15 @@ def split(line: str, delimiter: str) -> list[str]:
     return [cell.strip() for cell in cells]
 
 
+def uncommented(line: str) -> str:
+    """A line without a sign of comment before its first name.
+
+    >>> uncommented("# time D1"), uncommented("#;time;D1")
+    ('time D1', '#;time;D1')
+    """
+    return re.sub(r"^[#%]+\s*(?=\w)", "", line)
+
+
 def is_value(cell: str, missing: Collection[str] = ()) -> bool:
     """Whether a cell is a number, a time, or says that a value is missing.
 
@@ -80,7 +89,7 @@ def find_shape(lines: Sequence[str], mapping: FileMapping, known: Collection[str
         mapping: what is stated of it.
         known: names that columns may have, such as those of sensors.
     """
-    numbered = [(n, line) for n, line in enumerate(lines) if line.strip()]
+    numbered = [(n, uncommented(line)) for n, line in enumerate(lines) if line.strip()]
     if mapping.data_line is not None or mapping.header_line is not None:
         first = (mapping.header_line or mapping.data_line or 1) - 1
         numbered = [one for one in numbered if one[0] >= first]
@@ -98,8 +107,9 @@ def find_shape(lines: Sequence[str], mapping: FileMapping, known: Collection[str
 def _delimiter(lines: list[str], missing: Collection[str]) -> str:
     """What parts the most lines of the tail alike into cells that are values."""
     best, chosen = 0.0, ","
+    lower = lines[-max(len(lines) // 2, 1) :][-TAIL:]
     for delimiter in DELIMITERS:
-        tail = [split(line, delimiter) for line in lines[-TAIL:]]
+        tail = [split(line, delimiter) for line in lower]
         fields = _usual([len(cells) for cells in tail])
         if fields < 2:
             continue

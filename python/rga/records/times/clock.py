@@ -1,5 +1,6 @@
 """The time axis of a file: time stamps or seconds, checked to increase."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
@@ -67,7 +68,7 @@ def read_clock(table: Table, time: TimeColumns) -> Clock:
                 f"{table.path}, columns {_listed(table.frame.columns)}",
                 "name it 'time', or give [time] columns (and the delimiter) in import.toml",
             )
-    clock = _Reading(table, stated, time.zone, notes).clock()
+    clock = _Reading(table, stated, time.zone or stated.zone, notes).clock()
     rows = np.arange(table.frame.height, dtype=float)
     if time.sampling_rate_hz is not None:
         return replace(clock, seconds=np.asarray(rows / time.sampling_rate_hz))
@@ -131,6 +132,12 @@ class _Reading:
             self.notes.append(f"times are read as {found}")
             return self._written(joined, found)
         wanted = "ISO 8601 like the first row, or seconds throughout"
+        if not _is_iso(joined[0]) and re.match(r"\d+[-/]\d+[-/]\d", joined[0]):
+            raise InputError(
+                f"day and month of {joined[0]!r} cannot be told apart",
+                self.table.where(0, self.where),
+                'state [time] format in import.toml, such as "%d/%m/%Y %H:%M:%S"',
+            )
         clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted))
         return clock if self.zone else replace(clock, start=joined[0])
 

@@ -22,6 +22,7 @@ _STAMPS = {
 _DATES = {"date", "datum", "fecha", "data", "day", "tag"}
 _CLOCKS = {"time", "zeit", "uhrzeit", "heure", "hora", "ora", "clock", "tijd"}
 _DATE = r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}|\d{1,2}[-. ]?[A-Za-z]{3}[-. ]?\d{2,4}"
+_ZONE = re.compile(r"(?P<name>[^,(]+?),? \(?(?P<zone>(UTC|GMT)[+-]\d{1,2}:\d{2})\)?")
 _CLOCK = r"\d{1,2}:\d{2}.*"
 
 
@@ -37,10 +38,13 @@ def time_of(frame: pl.DataFrame, units: Mapping[str, str]) -> StatedTime | None:
 
     >>> frame = pl.DataFrame({"F": ["1"], "Zeit [s]": ["0,5"]})
     >>> time_of(frame, {"Zeit [s]": "s"})
-    StatedTime(columns=('Zeit [s]',), format=None, start=None, step=None, unit=1.0)
+    StatedTime(columns=('Zeit [s]',), format=None, start=None, step=None, unit=1.0, zone=None)
     """
     first = {column: _first(frame[column]) for column in frame.columns}
     plain = {column: " ".join(name_and_unit(column)[0].lower().split()) for column in first}
+    # HOBO loggers write the zone into the name: "Date Time, GMT+02:00".
+    zones = {column: _ZONE.fullmatch(column) for column in first}
+    plain |= {column: found["name"].lower() for column, found in zones.items() if found}
     date = next((c for c in first if plain[c] in _DATES and _is(_DATE, first[c])), None)
     clock = next((c for c in first if plain[c] in _CLOCKS and _is(_CLOCK, first[c])), None)
     if date is not None and clock is not None:
@@ -49,7 +53,8 @@ def time_of(frame: pl.DataFrame, units: Mapping[str, str]) -> StatedTime | None:
         return None
     for column, cell in first.items():
         if plain[column] in _STAMPS | _TIMES | _DATES and _is(f"({_DATE})[T ]+{_CLOCK}", cell):
-            return StatedTime((column,))
+            zone = zones[column]
+            return StatedTime((column,), zone=zone["zone"] if zone else None)
     for column in first:
         unit = unit_of(units[column]) if column in units else None
         named = plain[column] in _TIMES or re.match(r"(time|zeit) ", plain[column])
