@@ -12,6 +12,7 @@ from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
+from rga.cli.import_record import import_record
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
 from rga.cli.run import run
@@ -30,7 +31,7 @@ app = typer.Typer(
 )
 for command in (
     run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify, schema,
-    doctor,
+    import_record, doctor,
 ):  # fmt: skip
     app.command()(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

@@ -226,16 +226,32 @@ def read_mapping(path: str | Path) -> RecordMapping:
     """
     path = Path(path)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        mapping = RecordMapping.model_validate(content)
+        content = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         reason = error.strerror or "unreadable"
         raise InputError(
             f"the mapping cannot be read, {reason.lower()}", str(path), "check the path"
         ) from None
+    except ValueError:
+        raise InputError("the mapping is no UTF-8", str(path), "save it as UTF-8") from None
+    return mapping_of(content, path)
+
+
+def mapping_of(content: str, path: Path) -> RecordMapping:
+    """The mapping that a text says.
+
+    Args:
+        content: TOML.
+        path: where it stands, or is to stand: files are named from there.
+
+    Raises:
+        InputError: it is no TOML, or has an unknown key or a wrong value.
+    """
+    try:
+        mapping = RecordMapping.model_validate(tomllib.loads(content))
     except ValidationError as error:
         raise _explained(error, str(path)) from None
-    except (ValueError, RecursionError) as error:  # no TOML, or no UTF-8
+    except (ValueError, RecursionError) as error:
         raise InputError(
             f"the mapping is no TOML: {' '.join(str(error).split())}", str(path), "mend the syntax"
         ) from None

@@ -158,7 +158,7 @@ def _units(lines: Sequence[str], shape: Shape, names: Sequence[str]) -> dict[str
 
 
 def _notes(shape: Shape, mapping: FileMapping, decimal: str, thousands: str) -> list[str]:
-    """What was found that differs from a CSV file with names in its first line."""
+    """What was found that differs from a CSV file with names in its first line, in one sentence."""
     found = []
     if shape.delimiter != "," and mapping.delimiter is None:
         found.append(f"columns are parted by {SAID.get(shape.delimiter, repr(shape.delimiter))}")
@@ -167,9 +167,9 @@ def _notes(shape: Shape, mapping: FileMapping, decimal: str, thousands: str) -> 
     if thousands and mapping.thousands is None:
         found.append(f"{thousands!r} parts thousands")
     if shape.header is None:
-        found.append("columns have no names: they are called 'column 1', 'column 2', ...")
+        found.append("columns have no names and are called 'column 1', 'column 2', ...")
     elif mapping.header_line is None and shape.header > 0:
         found.append(f"names of columns are in line {shape.header + 1}, remarks above")
     if shape.units is not None and mapping.units_line is None:
         found.append(f"units are in line {shape.units + 1}")
-    return found
+    return ["; ".join(found)] if found else []

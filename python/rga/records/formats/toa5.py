@@ -68,7 +68,7 @@ def read_toa5(text: Text, mapping: FileMapping) -> Table:
 def _notes(station: Sequence[str], timed: Sequence[str], table: Table) -> list[str]:
     notes = []
     if len(station) > 2:
-        notes.append(f"logger {station[1]} ({station[2]}), table {station[-1]}; no time zone")
+        notes.append(f"logger {station[1]} ({station[2]}), table {station[-1]}")
     if timed:
         notes.append(f"{', '.join(timed)} hold times, no numbers")
     stamps = table.frame[TIME].drop_nulls() if TIME in table.frame.columns else None

@@ -180,6 +180,8 @@ class _Reading:
         """The clock of moments as they are written."""
         if self.zone is None or moments[0].tzinfo is not None:
             elapsed = np.array([(moment - moments[0]).total_seconds() for moment in moments])
+            if moments[0].tzinfo is None and self.stated.columns != ("time",):
+                self.notes.append("time stamps have no zone")
             return self._clock(elapsed, moments[0].isoformat())
         zone = zone_of(self.zone, str(self.table.path))
         stamps, gap = in_zone(pl.Series(moments), zone, self.notes)
