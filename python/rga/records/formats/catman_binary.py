@@ -175,7 +175,8 @@ def _values(file: _Bytes, channels: Sequence[_Channel]) -> list[FloatArray]:
         elif channel.width == 2:
             low, high = file.number("d"), file.number("d")
             steps = np.frombuffer(file.part(2 * channel.length), "<u2")
-            found.append(low + (high - low) / 32767 * steps)
+            with np.errstate(over="ignore", invalid="ignore"):  # of a damaged head
+                found.append(low + (high - low) / 32767 * steps)
         else:
             kind = f"<f{channel.width}"
             held = np.frombuffer(file.part(channel.width * channel.length), kind)

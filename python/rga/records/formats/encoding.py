@@ -154,7 +154,7 @@ def _single_bytes(data: bytes) -> tuple[str, tuple[str, ...]]:
 def _refuse_controls(text: str, path: Path) -> None:
     head = text[:_LOOKED_AT]
     controls = sum(one < " " and one not in "\t\n\r\f\x1a\x00" for one in head)
-    if "\x00" in head or controls > 0.01 * len(head):
+    if "\x00" in head or controls > max(3, 0.01 * len(head)):
         raise InputError(
             "this is no table of text but of bytes",
             str(path),

@@ -39,6 +39,11 @@ def read_rows(
     if delimiter == " ":
         body = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", body))
         delimiter = "\t"
+    if b"\x01" in body:
+        line = body.count(b"\n", 0, body.index(b"\x01")) + first + 1
+        raise InputError(
+            "the line holds bytes that are no text", f"{path}, line {line}", "take them out"
+        )
     quoted = b'"' in body
     count = len(names)
     lengths = _lengths(body, delimiter, quoted)

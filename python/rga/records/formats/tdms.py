@@ -1,6 +1,9 @@
 """TDMS files of National Instruments, by npTDMS."""
 
+import logging
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,11 +37,13 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
     with needing_extras():
         from nptdms import TdmsFile
 
+    heard: list[str] = []
     try:
-        file = TdmsFile.read(BytesIO(data))
-        channels = [channel for group in file.groups() for channel in group.channels()]
-        channels = [channel for channel in channels if len(channel)]
-        values = {channel.path: np.asarray(channel[:]) for channel in channels}
+        with _listening(heard):
+            file = TdmsFile.read(BytesIO(data))
+            channels = [channel for group in file.groups() for channel in group.channels()]
+            channels = [channel for channel in channels if len(channel)]
+            values = {channel.path: np.asarray(channel[:]) for channel in channels}
     except MemoryError:
         raise
     except Exception as error:  # npTDMS says what is damaged in many ways
@@ -80,7 +85,28 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
         units=units,
         time=time,
         notes=(*notes, *more, *([] if units else ["the file states no units"])),
+        warnings=tuple(f"the file is not whole: {said[:200]}" for said in dict.fromkeys(heard)),
     )
+
+
+@contextmanager
+def _listening(heard: list[str]) -> Iterator[None]:
+    """Takes up what npTDMS says on the screen of files that are cut off."""
+    from nptdms.log import log_manager
+
+    screen = log_manager.console_handler
+    loggers = list(log_manager.loggers.values())
+    listener = logging.Handler(logging.WARNING)
+    listener.emit = lambda record: heard.append(record.getMessage())  # type: ignore[method-assign]
+    for logger in loggers:
+        logger.removeHandler(screen)
+        logger.addHandler(listener)
+    try:
+        yield
+    finally:
+        for logger in loggers:
+            logger.removeHandler(listener)
+            logger.addHandler(screen)
 
 
 def _timing(channel: "TdmsChannel") -> tuple[Any, ...]:

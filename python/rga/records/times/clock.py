@@ -150,16 +150,7 @@ class _Reading:
 
     def _counted(self, series: pl.Series, unit: float, zero: datetime) -> Clock:
         stamps = self._seconds(series) * unit
-        try:
-            start = zero + timedelta(seconds=round(float(stamps[0]), 6))
-        except OverflowError:
-            raise InputError(
-                f"the time {series[0]!r} is none of the years 1 to 9999",
-                self.table.where(0, self.where),
-                "correct [time] format in import.toml",
-            ) from None
-        (placed,) = self._zoned([start])
-        return self._clock(stamps - stamps[0], placed.isoformat())
+        return self._clock(stamps - stamps[0], self._after(zero, float(stamps[0])))
 
     def _written(self, joined: list[str], pattern: str) -> Clock:
         moments = moments_by(joined, pattern)
@@ -172,9 +163,29 @@ class _Reading:
         """Time since what the format says is the start, or on a scale that it does not name."""
         if self.stated.start is None:
             return self._clock(stamps - stamps[0], float(stamps[0]))
-        zero = datetime.fromisoformat(self.stated.start)
-        (placed,) = self._zoned([zero + timedelta(seconds=float(stamps[0]))])
-        return self._clock(stamps - stamps[0], placed.isoformat())
+        try:
+            zero = datetime.fromisoformat(self.stated.start)
+        except ValueError:
+            raise InputError(
+                f"the start {self.stated.start!r} cannot be read",
+                str(self.table.path),
+                "export the file again",
+            ) from None
+        return self._clock(stamps - stamps[0], self._after(zero, float(stamps[0])))
+
+    def _after(self, zero: datetime, seconds: float) -> str:
+        """The time stamp that lies some seconds after another, in the zone if one is stated."""
+        try:
+            moment = zero + timedelta(seconds=round(seconds, 6))
+        except OverflowError:
+            raise InputError(
+                f"{seconds:g} s after {zero} is none of the years 1 to 9999",
+                self.table.where(0, self.where),
+                "correct the time, or [time] format in import.toml",
+            ) from None
+        if self.zone is not None and moment.tzinfo is None:
+            moment = moment.replace(tzinfo=zone_of(self.zone, str(self.table.path)))
+        return moment.isoformat()
 
     def _placed(self, moments: list[datetime]) -> Clock:
         """The clock of moments as they are written."""
@@ -194,12 +205,6 @@ class _Reading:
         first = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=int(stamps[0]))
         start = first.astimezone(zone)
         return self._clock((stamps - stamps[0]) / 1e6, start.isoformat())
-
-    def _zoned(self, moments: list[datetime]) -> list[datetime]:
-        if self.zone is None:
-            return moments
-        zone = zone_of(self.zone, str(self.table.path))
-        return [one if one.tzinfo else one.replace(tzinfo=zone) for one in moments]
 
     def _clock(self, seconds: FloatArray, start: str | float) -> Clock:
         kind: Literal["iso", "seconds"] = "iso" if isinstance(start, str) else "seconds"

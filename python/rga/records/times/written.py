@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from datetime import datetime
 from itertools import pairwise
+from statistics import median
 
 import polars as pl
 
@@ -12,6 +13,7 @@ _STAMP = re.compile(
     r"(?P<gap>[T ]+)?(?P<clock>(?P<hour>\d{1,2}):\d{2}(?P<second>:\d{2}(?P<point>[.,:])?\d*)?)?"
     r"(?P<half>\s*[AaPp][Mm])?"
 )
+_DECIMALS = re.compile(r":\d{2}(?P<point>[.,])\d")
 
 
 def written_format(texts: Sequence[str]) -> str | None:
@@ -32,7 +34,9 @@ def written_format(texts: Sequence[str]) -> str | None:
     rest = ""
     if found["clock"]:
         hour = "%I" if found["half"] else "%H"
-        point = found["point"] or ""
+        # Decimals may come and go: 10:00:00, 10:00:00.5.
+        decimals = (_DECIMALS.search(text) for text in texts)
+        point = found["point"] or next((one["point"] for one in decimals if one), "")
         second = f":%S{point}%f" if point else (":%S" if found["second"] else "")
         half = (" " if found["half"] and found["half"][0] == " " else "") + "%p"
         rest = f"{gap}{hour}:%M{second}" + (half if found["half"] else "")
@@ -63,21 +67,24 @@ def moments_by(texts: Sequence[str], pattern: str) -> list[datetime] | None:
     >>> moments_by(["01.02.2024 10:00:00.4"], "%d.%m.%Y %H:%M:%S.%f")
     [datetime.datetime(2024, 2, 1, 10, 0, 0, 400000)]
     """
-    as_chrono = pattern.replace(".%f", "%.f")
+    as_chrono = pattern.replace(".%f", "%.f").replace(",%f", "%.f")
     if "%f" in as_chrono or not set(re.findall("%(.)", pattern)) <= set("YymdHMSfbIp"):
         return None
     try:
-        read = pl.Series(texts).str.to_datetime(as_chrono, strict=False, time_unit="us")
+        stamps = pl.Series(texts)
+        if ",%f" in pattern:
+            stamps = stamps.str.replace_all(",", ".", literal=True)
+        read = stamps.str.to_datetime(as_chrono, strict=False, time_unit="us")
     except pl.exceptions.PolarsError:
         return None
     return None if read.has_nulls() else read.to_list()
 
 
 def _grows(texts: Sequence[str], pattern: str) -> bool:
-    """Whether time increases from stamp to stamp, by more than a day all in all."""
+    """Whether time increases from stamp to stamp within days, and from day to day."""
     moments = moments_by(texts, pattern)
     if moments is None or (moments[-1] - moments[0]).days < 1:
         return False
     steps = [(b - a).total_seconds() for a, b in pairwise(moments)]
-    # A month taken for a day leaps by weeks.
-    return min(steps) > 0 and max(steps) < 20 * 86400
+    # A month taken for a day leaps by weeks at midnight.
+    return min(steps) > 0 and median(steps) < 86400 and max(steps) < 20 * 86400
