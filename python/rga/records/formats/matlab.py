@@ -109,7 +109,8 @@ def _time(
     if named is not None:
         values = frame[named].to_numpy()
         if _DAYS[0] < values[0] < _DAYS[1]:
-            stamps = np.round((values - _DAY_1970) * 86400e6).astype("int64")
+            # Such a number tells no less than 10 microseconds apart.
+            stamps = 10 * np.round((values - _DAY_1970) * 86400e5).astype("int64")
             moments = pl.Series(named, stamps).cast(pl.Datetime("us"))
             return frame.with_columns(moments), StatedTime((named,)), [
                 f"{named} is read as MATLAB's day numbers, without a time zone"
