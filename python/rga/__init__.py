@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rga.outputs import write_findings
     from rga.planning.planner import plan
     from rga.planning.result import Plan
-    from rga.records import Record, load_record
+    from rga.records import Record, RecordMapping, load_record
     from rga.simulation import Simulator
     from rga.twin import Twin
 
@@ -30,6 +30,7 @@ _HOMES = {
     "Model": "rga.model",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
+    "RecordMapping": "rga.records",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
     "diagnose": "rga.diagnosis",
@@ -50,6 +51,7 @@ __all__ = [
     "Model",
     "Plan",
     "Record",
+    "RecordMapping",
     "Simulator",
     "Twin",
     "__version__",
