@@ -15,7 +15,7 @@ from rga.records.units import conversion
 
 
 @dataclass(frozen=True)
-class Source:
+class ColumnSource:
     """Where a sensor or context variable stands in a table.
 
     Attributes:
@@ -31,7 +31,7 @@ class Source:
 
 def sources_of(
     table: Table, mapping: FileMapping, model: Model, time_columns: Sequence[str]
-) -> dict[str, Source]:
+) -> dict[str, ColumnSource]:
     """Sensor or context variable -> its column, and how to read it.
 
     Raises:
@@ -41,7 +41,7 @@ def sources_of(
     known = {**model.sensors, **model.context}
     where = str(table.path)
     named = _named(table, mapping, known)
-    sources: dict[str, Source] = {}
+    sources: dict[str, ColumnSource] = {}
     unknown = []
     for column in table.frame.columns:
         if column in time_columns and column not in named:
@@ -61,7 +61,7 @@ def sources_of(
             )
         else:
             channel = mapping.channels.get(name, Channel())
-            sources[name] = Source(column, channel, channel.unit or unit)
+            sources[name] = ColumnSource(column, channel, channel.unit or unit)
     if unknown:
         raise InputError(
             "the model has no sensor or context variable for " + quoted(unknown, len(unknown)),
@@ -73,7 +73,7 @@ def sources_of(
 
 
 def values_of(
-    table: Table, mapping: FileMapping, name: str, source: Source, model: Model
+    table: Table, mapping: FileMapping, name: str, source: ColumnSource, model: Model
 ) -> FloatArray:
     """Values of a channel in the unit of the model, float[n], NaN where one is missing.
 
@@ -95,7 +95,7 @@ def values_of(
 
 
 def told_of(
-    table: Table, mapping: FileMapping, sources: dict[str, Source], model: Model
+    table: Table, mapping: FileMapping, sources: dict[str, ColumnSource], model: Model
 ) -> list[str]:
     """What was assumed of units, and what stands for missing values, in words."""
     told = []

@@ -41,7 +41,12 @@ def _of_pandas(frame: Any) -> pl.DataFrame:
         raise InputError(
             f"this is a {type(frame).__name__}, no data frame", "record", "give a data frame"
         )
-    columns = {str(name): frame[name] for name in frame.columns}
+    names = [str(name) for name in frame.columns]
+    if double := next((name for name in names if names.count(name) > 1), None):
+        raise InputError(
+            f"the column {double!r} stands twice", "data frame", "give every column its own name"
+        )
+    columns = dict(zip(names, (frame[name] for name in frame.columns), strict=True))
     stamped = type(frame.index).__name__ == "DatetimeIndex"
     if "time" not in columns and (stamped or frame.index.name == "time"):
         columns = {"time": frame.index.to_series(), **columns}

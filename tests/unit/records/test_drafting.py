@@ -12,7 +12,7 @@ import pytest
 
 from rga.model import Model
 from rga.records import load_record
-from rga.records.drafting import Draft, draft_mapping
+from rga.records.drafting import MappingDraft, draft_mapping
 from rga.records.drafting.matching import folded
 
 START = datetime(2024, 1, 1)
@@ -47,7 +47,7 @@ def model(two_bars: dict[str, Any]) -> Model:
 
 
 @pytest.fixture
-def draft(tmp_path: Path, model: Model) -> Draft:
+def draft(tmp_path: Path, model: Model) -> MappingDraft:
     files = [
         main_file(tmp_path / "jan.csv", START),
         main_file(tmp_path / "feb.csv", START + timedelta(days=2)),
@@ -56,7 +56,7 @@ def draft(tmp_path: Path, model: Model) -> Draft:
     return draft_mapping(files, model, tmp_path)
 
 
-def test_channels_are_matched_by_name_and_by_unit(draft: Draft) -> None:
+def test_channels_are_matched_by_name_and_by_unit(draft: MappingDraft) -> None:
     assert {one.name: one.column for one in draft.matched} == {
         "D1": "D 1",
         "S1": "S_01",
@@ -69,7 +69,7 @@ def test_channels_are_matched_by_name_and_by_unit(draft: Draft) -> None:
     assert set(content["unused"]) == {"Batt", "Kanal 5", "Text"}
 
 
-def test_what_it_doubts_is_said(draft: Draft) -> None:
+def test_what_it_doubts_is_said(draft: MappingDraft) -> None:
     doubts = " | ".join(draft.doubts)
     for said in (
         "time stamps have no zone",
@@ -85,7 +85,9 @@ def test_what_it_doubts_is_said(draft: Draft) -> None:
     assert '# zone = "Europe/Berlin"' in draft.toml
 
 
-def test_the_record_is_read_by_what_was_written(draft: Draft, tmp_path: Path, model: Model) -> None:
+def test_the_record_is_read_by_what_was_written(
+    draft: MappingDraft, tmp_path: Path, model: Model
+) -> None:
     assert draft.fault is None
     (tmp_path / "import.toml").write_text(draft.toml, encoding="utf-8")
     record = load_record(tmp_path, model)

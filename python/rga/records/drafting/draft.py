@@ -24,7 +24,7 @@ _DAYS = (30_000, 60_000)
 
 
 @dataclass(frozen=True)
-class Draft:
+class MappingDraft:
     """A first mapping.
 
     Attributes:
@@ -60,7 +60,7 @@ class _Logger:
         return [*self.first.bookkeeping, *(self.clock.columns if self.clock else self.time.columns)]
 
 
-def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> Draft:
+def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> MappingDraft:
     """Look at files, and write a first mapping of them.
 
     Args:
@@ -84,7 +84,7 @@ def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> Draft:
     fault = _fault(content, folder, model)
     if fault is not None:
         content = f"# TO FILL IN: as it stands the record is not read: {fault}\n{content}"
-    return Draft(content, found, doubts, fault)
+    return MappingDraft(content, found, doubts, fault)
 
 
 def _fault(content: str, folder: Path, model: Model) -> str | None:

@@ -1,6 +1,6 @@
 """Binary files of HBM's catman (.bin).
 
-Source: the layout that HBM's catman help states under "Binary file format": a head, a head for each
+ColumnSource: the layout that HBM's catman help states under "Binary file format": a head, a head for each
 channel, and the channels one after the other, each as 8-byte or 4-byte numbers, or as 2-byte ones
 between its smallest and its largest.
 """
