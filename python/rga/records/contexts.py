@@ -30,7 +30,7 @@ class ContextTable:
 
 
 def load_contexts(path: str | Path, model: Model) -> ContextTable:
-    """Read contexts (CSV, Parquet or as a record): columns named after context variables, and `time` if needed.
+    """Read contexts, of any format: columns named after context variables, and `time` if needed.
 
     Columns named after sensors are passed over, so that a record serves as well.
 

@@ -1,8 +1,8 @@
 """Binary files of HBM's catman (.bin).
 
-ColumnSource: the layout that HBM's catman help states under "Binary file format": a head, a head for each
-channel, and the channels one after the other, each as 8-byte or 4-byte numbers, or as 2-byte ones
-between its smallest and its largest.
+Source: the layout as public readers and writers of such files describe it (APReader by L. Bohmann,
+the structure VB_DB_CHANHEADER): a head, a head for each channel, and the channels one after the
+other, each as 8-byte or 4-byte numbers, or as 2-byte ones between its smallest and its largest.
 """
 
 import re

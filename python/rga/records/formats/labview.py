@@ -1,6 +1,6 @@
 """LabVIEW measurement files (.lvm).
 
-ColumnSource: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)": a head of
+Source: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)": a head of
 keys, then segments, each of keys by channel, names and rows.
 """
 

@@ -1,6 +1,6 @@
 """InfluxDB line protocol: `measurement,tag=value field=1.5,other=2 1623403945000000000`.
 
-ColumnSource: InfluxData, InfluxDB documentation, "Line protocol".
+Source: InfluxData, InfluxDB documentation, "Line protocol".
 """
 
 import re

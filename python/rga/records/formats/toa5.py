@@ -1,6 +1,6 @@
 """TOA5, the text format of Campbell Scientific's loggers.
 
-ColumnSource: Campbell Scientific, LoggerNet instruction manual, appendix "File formats": lines of the
+Source: Campbell Scientific, LoggerNet instruction manual, appendix "File formats": lines of the
 station, of the names, of the units and of what was processed, then rows.
 """
 

@@ -75,9 +75,9 @@ def moments_by(texts: Sequence[str], pattern: str) -> list[datetime] | None:
         if ",%f" in pattern:
             stamps = stamps.str.replace_all(",", ".", literal=True)
         read = stamps.str.to_datetime(as_chrono, strict=False, time_unit="us")
-    except pl.exceptions.PolarsError:
+        return None if read.has_nulls() else read.to_list()
+    except (pl.exceptions.PolarsError, ValueError):  # among these, years that Python has not
         return None
-    return None if read.has_nulls() else read.to_list()
 
 
 def _grows(texts: Sequence[str], pattern: str) -> bool:
