@@ -167,7 +167,7 @@ class Beside(FileMapping):
             `mean`: the mean of the rows about each row of the slower logger, which then has the
             rows of the record.
         tolerance_s: greatest distance in time of a match; None: half the usual step of the slower
-            of the two for `nearest`, one step for `interpolate`.
+            of the two for `nearest`, one and a half of this logger for `interpolate`.
         shift_s: added to the times of this logger, whose clock is late by as much.
     """
 

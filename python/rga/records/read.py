@@ -10,6 +10,9 @@ from rga.records.formats import read_format
 from rga.records.mapping import FileMapping
 from rga.records.table import Table
 
+#: bytes of a file, beyond which it is not taken into memory
+LARGEST_FILE = 4 * 10**9
+
 
 def read_table(
     path: str | Path, mapping: FileMapping | None = None, known: Collection[str] = ()
@@ -27,6 +30,13 @@ def read_table(
     """
     path = Path(path)
     try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise InputError(
+                f"the file has {size / 1e9:.1f} GB, and at most {LARGEST_FILE / 1e9:.1f} are read",
+                str(path),
+                "part it in time, and give the parts as files of one record",
+            )
         data = path.read_bytes()
     except OSError as error:
         reason = error.strerror or "unreadable"

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from glob import has_magic
+from os.path import normpath
 from pathlib import Path
 
 from rga.errors import InputError
@@ -55,7 +56,7 @@ def files_in(folder: Path, names: Sequence[str]) -> list[Path]:
     Raises:
         InputError: a pattern fits none.
     """
-    return [path for name in names for path in _matching(folder / name)]
+    return [path for name in names for path in _matching(Path(normpath(folder / name)))]
 
 
 def _matching(place: Path) -> list[Path]:

@@ -149,3 +149,12 @@ def test_schemas_are_printed(kind: str, rga: Callable[..., Any]) -> None:
     content = json.loads(rga("schema", kind).out)
     known = {"import": "header_line", "settings": "level"}
     assert known[kind] in content["properties"]
+
+
+def test_a_column_without_a_value_is_taken_for_nothing(tmp_path: Path, model: Model) -> None:
+    content = "time;D1 [mm];S1;load [kN]\n0;1;2;\n1;2;3;Overrange\n"
+    (tmp_path / "r.csv").write_text(content, encoding="utf-8")
+    draft = draft_mapping([tmp_path / "r.csv"], model, tmp_path)
+    assert draft.fault is None
+    assert {one.name for one in draft.matched} == {"D1", "S1"}
+    assert tomllib.loads(draft.toml)["unused"] == {"load [kN]": "it holds no value"}

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import cached_property
 from os.path import relpath
 from pathlib import Path
 
@@ -57,7 +58,14 @@ class _Logger:
     @property
     def taken(self) -> list[str]:
         """Columns that are no channels."""
-        return [*self.first.bookkeeping, *(self.clock.columns if self.clock else self.time.columns)]
+        times = self.clock.columns if self.clock else self.time.columns
+        return [*self.first.bookkeeping, *times]
+
+    @cached_property
+    def empty(self) -> list[str]:
+        """Columns without any number."""
+        read = {column: readable(self.first, column) for column in self.first.frame.columns}
+        return [one for one, values in read.items() if values is None or np.isnan(values).all()]
 
 
 def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> MappingDraft:
@@ -75,7 +83,9 @@ def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> MappingD
     loggers = _loggers([read_table(path, None, known) for path in files])
     for logger in loggers:
         _look_at_time(logger)
-    found = matches([one.first for one in loggers], model, [one.taken for one in loggers])
+    found = matches(
+        [one.first for one in loggers], model, [one.taken + one.empty for one in loggers]
+    )
     sensors = [sum(m.group == k and m.name in model.sensors for m in found)
                for k in range(len(loggers))]  # fmt: skip
     main = max(range(len(loggers)), key=lambda k: (sensors[k], loggers[k].first.frame.height))
@@ -247,6 +257,8 @@ def _reason(table: Table, column: str) -> str:
     values = readable(table, column)
     if values is None:
         return "TO CHECK: it holds text or times, no numbers"
+    if np.isnan(values).all():
+        return "it holds no value"
     still = still_value(values)
     if still is not None:
         return f"TO CHECK: it reads {still:g} throughout"
