@@ -141,11 +141,23 @@ def test_labview_segments_follow_each_other(tmp_path: Path) -> None:
 
 
 def test_labview_channels_with_an_x_of_their_own(tmp_path: Path) -> None:
-    rows = "X_Value\tA\tX_Value\tB\tComment\n0.0\t1\t0.0\t2\n0.25\t3\t0.25\t4\n"
-    content = LVM.format(x="Multi") + SEGMENT.format(time="10:00:00.5") + rows
-    found = table(tmp_path / "r.lvm", content)
+    rows = "X_Value\tA\tX_Value\tB\tComment\n0.0\t1.5\t0.0\t2\n0.25\t3\t0.25\t4\n"
+    segment = SEGMENT.format(time="10:00:00,5")  # with a comma, whatever the sign of the numbers
+    for cells in (
+        "2\t2",
+        "mm\tV",
+        "2024/02/01\t2024/02/01",
+        "0.5\t0.5",
+        "0\t0",
+        "10:00:00,5\t10:00:00,5",
+    ):
+        segment = segment.replace(f"\t{cells}\n", "\t{}\t\t{}\n".format(*cells.split("\t")))
+    head = LVM.format(x="Multi").replace("Decimal_Separator\t.\n", "")
+    found = table(tmp_path / "r.lvm", head + segment + rows)
     assert begin(found) == ("2024-02-01T10:00:00.500000", [0, 0.25])
     assert found.numbers("B").tolist() == [2, 4]
+    assert dict(found.units) == {"A": "mm", "B": "V"}
+    assert found.warnings == ()
 
 
 def test_tdms_groups_of_two_rates(tmp_path: Path) -> None:

@@ -154,6 +154,15 @@ def test_columns_without_names_are_counted(tmp_path: Path, one_sensor: Model) ->
     assert record.readings[:, 0].tolist() == [1, 2, 3]
 
 
+def test_a_first_column_without_a_name_may_count_the_rows(
+    tmp_path: Path, one_sensor: Model
+) -> None:
+    assert table(tmp_path, ",time,D1\n0,5,1\n1,6,2\n").bookkeeping == ("row number",)
+    assert len(load_record(tmp_path / "r.csv", one_sensor)) == 2
+    with pytest.raises(InputError, match="column 1 has no name"):
+        table(tmp_path, ",time,D1\n7,5,1\n1,6,2\n")
+
+
 def test_two_tables_in_one_file_are_refused(tmp_path: Path) -> None:
     rows = "".join(f"{k};{k}\n" for k in range(9))
     with pytest.raises(InputError, match="lines above the names in line 11 look like rows"):

@@ -18,7 +18,7 @@ from rga.records.formats.encoding import Text
 from rga.records.formats.plain import checked_names
 from rga.records.formats.rows import read_rows
 from rga.records.mapping import FileMapping
-from rga.records.numbers import Notation
+from rga.records.numbers import Notation, notation_of
 from rga.records.table import StatedTime, Table
 
 MARK = "LabVIEW Measurement"
@@ -43,12 +43,20 @@ class _Segment:
     def channels(self) -> list[str]:
         return [name for name in self.names if name and name not in (_X, _COMMENT)]
 
+    def of_channels(self, key: str) -> dict[str, str]:
+        """What a key says, by channel; its cells stand above the names."""
+        cells = ["", *self.keys.get(key, [])]
+        named = zip(self.names, cells, strict=False)
+        return {name: cell for name, cell in named if name in self.channels and cell}
+
     def numbers(self, key: str) -> list[float]:
         """Values of a key for the channels that wrote any samples."""
-        stated = [_number(cell) for cell in self.keys.get(key, [])]
-        samples = [_number(cell) for cell in self.keys.get("Samples", [])]
-        wrote = [k for k in range(len(stated)) if k >= len(samples) or samples[k] > 0]
-        return [stated[k] for k in wrote]
+        samples = self.of_channels("Samples")
+        return [
+            _number(cell)
+            for name, cell in self.of_channels(key).items()
+            if _number(samples.get(name, "1")) > 0
+        ]
 
 
 def read_labview(text: Text, mapping: FileMapping) -> Table:
@@ -61,26 +69,26 @@ def read_labview(text: Text, mapping: FileMapping) -> Table:
     separator = "\t" if "\t" in "".join(lines[1:4]) else ","
     head, below = _keys(lines, 0, separator, text)
     separator = _SEPARATORS.get(_first(head, "Separator"), separator)
-    decimal = mapping.decimal or _first(head, "Decimal_Separator") or "."
-    notation = Notation("," if decimal == "," else ".")
+    decimal = mapping.decimal or _first(head, "Decimal_Separator") or None
     segments = _segments(lines, below, separator, text)
     notes: list[str] = []
     if mapping.block is not None or len({one.names for one in segments}) > 1:
         said = [f"{len(one.channels)} channels from line {one.header + 2} on" for one in segments]
         chosen, notes = chosen_block(segments, said, mapping.block, text.path)
         segments = [chosen]
-    starts = [_start(head, one, decimal, text) for one in segments]
+    starts = [_start(head, one, text) for one in segments]
+    tables = [_rows(text, lines, one, separator) for one in segments]
+    cells = (cell for table in tables for column in table for cell in column.head(99).drop_nulls())
+    notation = notation_of(cells, decimal, mapping.thousands)
     frames, warnings = [], list(text.warnings)
-    for segment, start in zip(segments, starts, strict=True):
-        frame = _rows(text, lines, segment, separator)
+    for segment, start, frame in zip(segments, starts, tables, strict=True):
         since = (start - starts[0]).total_seconds() if start and starts[0] else 0.0
         time = since + _elapsed(text, segment, frame, notation)
         frames.append(frame.select(segment.channels + [c for c in frame.columns if c == _COMMENT])
                       .insert_column(0, pl.Series(TIME, time)))  # fmt: skip
         warnings += _doubts(segment, frame.height)
     first = segments[0]
-    stated = zip(first.channels, first.keys.get("Y_Unit_Label", []), strict=False)
-    units = {name: unit for name, unit in stated if unit}
+    units = first.of_channels("Y_Unit_Label")
     notes += [] if units else ["the file states no units"]
     if said_in_file := " ".join(first.keys.get("Notes", [])).strip():
         notes.append(f"a note in the file: {said_in_file}")
@@ -193,13 +201,13 @@ def _number(cell: str) -> float:
         return 0.0
 
 
-def _start(head: Keys, segment: _Segment, decimal: str, text: Text) -> datetime | None:
+def _start(head: Keys, segment: _Segment, text: Text) -> datetime | None:
     """Start of a segment, else of the file; None where it is not said."""
     stated = ((_first(keys, "Date"), _first(keys, "Time")) for keys in (segment.keys, head))
     day, clock = next(((day, clock) for day, clock in stated if day and clock), ("", ""))
     if not day:
         return None
-    whole, _, decimals = clock.replace(decimal, ".").partition(".")
+    whole, _, decimals = clock.replace(",", ".").partition(".")
     written = f"{day} {whole}.{decimals[:6] or '0'}"
     for date in ("%Y/%m/%d", "%d.%m.%Y", "%Y-%m-%d"):
         try:

@@ -15,6 +15,8 @@ from rga.records.units import name_and_unit, without_brackets
 
 #: bytes at the head of a file by which its shape and its notation are known
 HEAD = 1 << 18
+#: name of a column that counts the rows and has none
+ROW = "row number"
 #: lines of numbers among the remarks that are no rows of another table
 FEW = 5
 SAID = {"\t": "tabs", ";": "semicolons", ",": "commas", "|": "bars", " ": "blanks"}
@@ -103,6 +105,7 @@ def table_of(
         units=units,
         names={name: one for name, (one, _) in bare.items() if one != name},
         time=time,
+        bookkeeping=(ROW,) if ROW in frame.columns else (),
         notation=notation,
         notes=(*text.notes, *_notes(shape, mapping, notation.decimal, notation.thousands)),
         warnings=tuple(warnings),
@@ -114,9 +117,19 @@ def _names(lines: Sequence[str], shape: Shape, text: Text) -> list[str]:
     if shape.header is None:
         return [f"column {number + 1}" for number in range(shape.fields)]
     names = split(uncommented(lines[shape.header]), shape.delimiter)
+    if not names[0] and _counted(lines, shape):
+        names[0] = ROW  # as data frames of Python write their index
     while names and not names[-1] and len(names) > shape.fields:
         names.pop()
     return checked_names(names, text, shape.header)
+
+
+def _counted(lines: Sequence[str], shape: Shape) -> bool:
+    """Whether the first column counts the rows."""
+    rows = (line for line in lines[shape.data : shape.data + 20] if line.strip())
+    cells = [split(line, shape.delimiter)[0] for line in rows]
+    first = cells[0] if cells else ""
+    return first in ("0", "1") and cells == [str(int(first) + k) for k in range(len(cells))]
 
 
 def checked_names(names: list[str], text: Text, line: int, units: Sequence[str] = ()) -> list[str]:
