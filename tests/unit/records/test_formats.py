@@ -232,6 +232,8 @@ def test_senml_bases_hold_on_and_sums_are_told(tmp_path: Path) -> None:
         ({"x_": 1}, "must be understood"),
         ({"u": "K"}, "is in 'Cel' before"),
         ({"v": "high"}, "'high' is no number"),
+        ({"t": float("inf")}, "'inf' is no number"),
+        ({"t": 1e15}, "beyond the year 9999"),
     ):
         pack[1] = {"n": "t", "t": 60, "v": 1.0, **spoilt}
         with pytest.raises(InputError, match=said):

@@ -14,10 +14,12 @@ import polars as pl
 from rga.errors import InputError
 from rga.records.formats.encoding import Text
 from rga.records.formats.points import table_of_points
-from rga.records.table import Table
+from rga.records.table import LARGEST, Table
 
 #: version of SenML that is understood, and the time below which one is relative to now [s]
 _VERSION, _RELATIVE = 10, 2**28
+#: seconds from 1970 to the end of the year 9999
+_LAST = 253_402_300_799
 _LINK, _COUNT = "Datastream@iot.navigationLink", "dataArray@iot.count"
 _SENML = {
     "bn", "bt", "bu", "bv", "bs", "bver", "n", "u", "v", "vs", "vb", "vd", "s", "t", "ut",
@@ -119,9 +121,9 @@ def _result(value: Any, where: str) -> float | None:
     try:
         if not isinstance(value, bool):
             return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         pass
-    raise InputError(f"the result {value!r} is no number", where, "leave it out")
+    raise InputError(f"the result {str(value)[:40]!r} is no number", where, "leave it out")
 
 
 def _senml(entries: Sequence[Mapping[str, Any]], text: Text) -> Table:
@@ -160,6 +162,8 @@ def _senml(entries: Sequence[Mapping[str, Any]], text: Text) -> Table:
     if not any(absolute):
         notes.append("times are relative to when the pack was sent")
         return _table(points, "SenML", units, names, notes, text)
+    if max(time for time, *_ in points) > _LAST:
+        raise InputError("a time lies beyond the year 9999", str(text.path), "write seconds")
     moments = [
         (datetime.fromtimestamp(int(time), UTC).replace(microsecond=_micro(time)), *rest)
         for time, *rest in points
@@ -183,9 +187,9 @@ def _understood(entry: Mapping[str, Any], base: Mapping[str, Any], where: str) -
 
 
 def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise InputError(f"{value!r} is no number", where, "write a number")
-    return float(value)
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < LARGEST:
+        return float(value)
+    raise InputError(f"{str(value)[:40]!r} is no number", where, "write a number")
 
 
 def _table(
