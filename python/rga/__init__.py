@@ -3,13 +3,18 @@
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-from rga.lazy import opening
+from rga.lazy import listing, opening
 
 if TYPE_CHECKING:
+    from rga.building import ModelBuilder
+    from rga.checking import check
     from rga.diagnosis import diagnose
+    from rga.drawing import draw, plot_model
+    from rga.drawing.charts import plot_findings, plot_record
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
+    from rga.importing import ImportedModel, import_model
     from rga.jobs.batch import diagnose_many
     from rga.jobs.run import run
     from rga.model import Effect, Model, load_model
@@ -17,7 +22,7 @@ if TYPE_CHECKING:
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, RecordMapping, load_record
-    from rga.simulation import Simulator
+    from rga.simulation import Results, Simulator, results
     from rga.twin import Twin
 
 __version__ = version("rga")
@@ -27,19 +32,29 @@ _HOMES = {
     "Criteria": "rga.findings.criteria",
     "Effect": "rga.model",
     "Findings": "rga.findings",
+    "ImportedModel": "rga.importing",
     "Model": "rga.model",
+    "ModelBuilder": "rga.building",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
     "RecordMapping": "rga.records",
+    "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
+    "check": "rga.checking",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
+    "draw": "rga.drawing",
+    "import_model": "rga.importing",
     "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
     "plan": "rga.planning.planner",
+    "plot_findings": "rga.drawing.charts",
+    "plot_model": "rga.drawing",
+    "plot_record": "rga.drawing.charts",
+    "results": "rga.simulation",
     "run": "rga.jobs.run",
     "write_findings": "rga.outputs",
 }
@@ -48,23 +63,34 @@ __all__ = [
     "Criteria",
     "Effect",
     "Findings",
+    "ImportedModel",
     "Model",
+    "ModelBuilder",
     "Plan",
     "Record",
     "RecordMapping",
+    "Results",
     "Simulator",
     "Twin",
     "__version__",
+    "check",
     "diagnose",
     "diagnose_many",
+    "draw",
+    "import_model",
     "load_criteria",
     "load_findings",
     "load_model",
     "load_record",
     "plan",
+    "plot_findings",
+    "plot_model",
+    "plot_record",
+    "results",
     "run",
     "write_findings",
 ]
 
 
 __getattr__ = opening(__name__, _HOMES)
+__dir__ = listing(__name__, __all__)

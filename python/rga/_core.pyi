@@ -36,7 +36,7 @@ class OutputKind(IntEnum):
     DISPLACEMENT = 0
     ROTATION = 1
     STRAIN = 2
-    AXIAL_FORCE = 3
+    SECTION_FORCE = 3
     REACTION_FORCE = 4
     REACTION_MOMENT = 5
     END_FORCE = 6

@@ -1,5 +1,6 @@
 """Errors that a user meets."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 
@@ -17,6 +18,32 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         return f"{self.what} ({self.where}): {self.remedy}"
+
+
+class SeveralMistakes(InputError):
+    """Several mistakes of one input, to be mended together.
+
+    Attributes:
+        mistakes: every one, in words.
+
+    >>> print(SeveralMistakes(["A: 0 is no area", "E: missing"], "model.json", "mend them"))
+    2 mistakes (model.json): mend them
+      A: 0 is no area
+      E: missing
+    """
+
+    #: mistakes that the words list; they count the others
+    MOST = 20
+
+    def __init__(self, mistakes: Sequence[str], where: str, remedy: str) -> None:
+        super().__init__(f"{len(mistakes)} mistakes", where, remedy)
+        self.mistakes = tuple(" ".join(one.split()) for one in mistakes)
+        self.args = (self.mistakes, where, remedy)
+
+    def __str__(self) -> str:
+        listed, more = self.mistakes[: self.MOST], len(self.mistakes) - self.MOST
+        lines = [InputError.__str__(self), *listed, *([f"... and {more} more"] if more > 0 else [])]
+        return "\n  ".join(lines)
 
 
 class UnstableStructureError(InputError):

@@ -1,6 +1,7 @@
 """Files that are written whole or not at all."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from errno import EISDIR
 from pathlib import Path
 
@@ -11,7 +12,7 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
     """Write files under temporary names beside them, and rename them when all are written.
 
     Args:
-        files: contents by path; directories exist.
+        files: contents by path; directories are made where they are missing.
 
     Raises:
         InputError: one cannot be written; no draft of another stays.
@@ -28,12 +29,14 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         for path, draft in drafts.items():
             if path.is_dir():
                 raise IsADirectoryError(EISDIR, "it is a directory")
+            path.parent.mkdir(parents=True, exist_ok=True)
             draft.write_bytes(files[path])
         for path, draft in drafts.items():
             draft.replace(path)
     except OSError as error:
         for draft in drafts.values():
-            draft.unlink(missing_ok=True)
+            with suppress(OSError):
+                draft.unlink()
         reason = (error.strerror or "refused").lower()
         what = f"the output cannot be written, {reason}"
         raise InputError(what, str(path), "give another place") from None

@@ -1,8 +1,10 @@
 """Names that a package opens on first use, and packages that only some of them need."""
 
-from collections.abc import Callable, Iterator, Mapping
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 from rga.errors import MissingPackageError
@@ -14,6 +16,9 @@ EXTRAS = {
     "sqlalchemy": "twin",
     "alembic": "twin",
     "filelock": "twin",
+    "weasyprint": "pdf",
+    "ezdxf": "formats",
+    "openpyxl": "formats",
     "nptdms": "formats",
 }
 
@@ -37,6 +42,27 @@ def needing_extras() -> Iterator[None]:
         if package not in EXTRAS:
             raise
         raise MissingPackageError(package, EXTRAS[package]) from None
+
+
+def listing(package: str, names: Iterable[str]) -> Callable[[], list[str]]:
+    """What a package lists as its own: `__dir__`.
+
+    Args:
+        package: its name.
+        names: of its interface, those that it has not opened yet too; modules in it that are
+            imported come beside them.
+
+    >>> import rga
+    >>> "diagnose" in dir(rga), "opening" in dir(rga)
+    (True, False)
+    """
+
+    def listed() -> list[str]:
+        own = vars(sys.modules[package]).items()
+        beside = {name for name, one in own if isinstance(one, ModuleType) or name.startswith("__")}
+        return sorted({*names, *beside})
+
+    return listed
 
 
 def opening(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def write_findings(
     findings: Findings,
-    directory: Path,
+    directory: str | Path,
     report: Callable[[Findings, Path], Path] | None = None,
 ) -> Path:
     """Write findings.json and model.json to a directory, then report.html.
@@ -36,6 +36,7 @@ def write_findings(
         ReportError: the report could not be drawn. Findings and model are there, and a line that
             says so in the place of the report.
     """
+    directory = Path(directory)
     extended = findings.account.extended
     directory.mkdir(parents=True, exist_ok=True)
     write_whole(

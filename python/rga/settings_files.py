@@ -37,7 +37,8 @@ def read_table(path: Path, what: str) -> dict[str, object]:
         raise InputError(
             f"these are no {what}: give a table of {what}", str(path), "mend the syntax"
         )
-    return content
+    # By which an editor completes the file.
+    return {key: value for key, value in content.items() if key != "$schema"}
 
 
 def validated(kind: type[T], content: dict[str, object], where: str, what: str) -> T:

@@ -7,9 +7,12 @@ from pathlib import Path
 from typing import assert_type
 
 import numpy as np
+import polars as pl
 from numpy.typing import NDArray
 
 import rga
+from rga.checking import CheckResult
+from rga.checking.finding import Severity
 from rga.detection import Alarm, SyncMonitor, rows_between
 from rga.model import Model
 from rga.records import Record
@@ -26,6 +29,8 @@ def diagnoses(folder: Path) -> str:
     assert_type(found, rga.Findings)
     rga.diagnose(record, model)  # type: ignore[arg-type]
     rga.diagnose(model)  # type: ignore[call-arg]
+    of_files = rga.diagnose("model.json", folder / "record.csv", mapping="import.toml")
+    assert_type(of_files, rga.Findings)
     found.write(folder / "out")
     plan = rga.plan(model, found, sensors=1, positions=2)
     assert_type(plan.sentence, str)
@@ -38,7 +43,15 @@ def simulates(model: Model) -> Array:
     shown = simulator.predict({"load": np.array([1.0, 2.0]), "temperature": 10.0})
     assert_type(shown, Array)
     simulator.predict(["load"])  # type: ignore[arg-type]
-    return shown
+    return rga.Simulator("model.json").predict(pl.DataFrame({"load": [1.0, 2.0]}))
+
+
+def checks(model: Model, record: Record) -> bool:
+    checked = rga.check(model, record)
+    assert_type(checked, CheckResult)
+    assert_type([one.severity for one in checked.findings], list[Severity])
+    rga.check(record)  # type: ignore[arg-type]
+    return rga.check("model.json").ok
 
 
 def watches(baseline: Array, rows: Array) -> str:

@@ -18,4 +18,9 @@ def test_where_one_cannot_be_written_all_stay_as_they_were(tmp_path: Path) -> No
     assert kept.read_bytes() == b"before"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["kept.txt", "taken.txt"]
     with pytest.raises(InputError, match="cannot be written"):
-        write_whole({tmp_path / "nowhere" / "a.txt": b"after"})
+        write_whole({kept / "a.txt": b"after"})
+
+
+def test_directories_are_made_where_they_are_missing(tmp_path: Path) -> None:
+    write_whole({tmp_path / "new" / "deeper" / "a.txt": b"after"})
+    assert (tmp_path / "new" / "deeper" / "a.txt").read_bytes() == b"after"

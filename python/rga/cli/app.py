@@ -8,19 +8,24 @@ from typing import Annotated
 import typer
 
 from rga import __version__
+from rga.cli.check import check
 from rga.cli.dataset import dataset
 from rga.cli.diagnose import diagnose
 from rga.cli.diagnose_many import diagnose_many
 from rga.cli.doctor import doctor
+from rga.cli.draw import draw
+from rga.cli.example import example
+from rga.cli.import_model import import_model
 from rga.cli.import_record import import_record
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
+from rga.cli.results import results
 from rga.cli.run import run
 from rga.cli.schema import schema
 from rga.cli.simulate import simulate
 from rga.cli.verify import verify
 from rga.cli.whatif import whatif
-from rga.errors import InputError, MissingPackageError, ReportError
+from rga.errors import InputError, MissingPackageError, ReportError, SeveralMistakes
 from rga.lazy import needing_extras
 
 app = typer.Typer(
@@ -30,10 +35,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    run, diagnose, diagnose_many, plan, whatif, replay, rollback, simulate, dataset, verify, schema,
-    import_record, doctor,
+    check, run, diagnose, diagnose_many, plan, draw, whatif, replay, rollback, simulate, results,
+    dataset, verify, schema, example, import_record, doctor,
 ):  # fmt: skip
     app.command()(command)
+app.command("import")(import_model)
 # Other packages, as the benchmarks in this wheel, add commands of their own.
 for plugin in entry_points(group="rga.commands"):
     app.add_typer(plugin.load(), name=plugin.name)
@@ -65,8 +71,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with needing_extras():
             app(args=_json_with_target(given), prog_name="rga")
     except (InputError, MissingPackageError, ReportError) as error:
-        typer.echo("error: " + " ".join(str(error).split()), err=True)
+        typer.echo(f"error: {_words(error)}", err=True)
         sys.exit(1 if isinstance(error, ReportError) else 2)
+
+
+def _words(error: Exception) -> str:
+    """One line, or the list of several mistakes."""
+    return str(error) if isinstance(error, SeveralMistakes) else " ".join(str(error).split())
 
 
 def _json_with_target(arguments: list[str]) -> list[str]:

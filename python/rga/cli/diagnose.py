@@ -10,6 +10,7 @@ from rga.cli.options import (
     MappingFile,
     ModelFile,
     OutputDirectory,
+    PrintPdf,
     RecordFiles,
     Seed,
 )
@@ -24,9 +25,10 @@ def diagnose(
     criteria: CriteriaFile = None,
     seed: Seed = 0,
     json: JsonTarget = None,
+    pdf: PrintPdf = False,
 ) -> None:
     """Diagnose what the model gets wrong of a record."""
-    diagnose_into(output, model, record, mapping, criteria, seed, json)
+    diagnose_into(output, model, record, mapping, criteria, seed, json, pdf)
 
 
 def diagnose_into(
@@ -37,6 +39,7 @@ def diagnose_into(
     criteria: Path | None,
     seed: int,
     target: str | None,
+    pdf: bool,
 ) -> None:
     """Write findings, extended model and report, and say the verdict."""
     import json
@@ -52,13 +55,16 @@ def diagnose_into(
     measured = read_record(record, structure, mapping)
     # Not needed before the input is known to be good, and slow to import.
     from rga.diagnosis import diagnose
+    from rga.report.pdf import write_pdf
 
     fault: ReportError | None = None
     with whole_directory(output) as draft:
         with shown_progress() as progress:
             findings = diagnose(structure, measured, criteria=chosen, seed=seed, progress=progress)
         try:
-            findings.write(draft)
+            report = findings.write(draft)
+            if pdf:
+                write_pdf(report, draft / "report.pdf")
         except ReportError as error:
             fault = error
         content = json.loads((draft / "findings.json").read_text(encoding="utf-8"))

@@ -6,10 +6,11 @@ from rga.cli.options import JsonTarget
 
 NEEDED = (
     "numpy", "scipy", "pydantic", "polars", "PyYAML", "typer", "rich", "jinja2", "matplotlib",
+    "pint",
 )  # fmt: skip
 OPTIONAL = (
     "torch", "safetensors", "sqlalchemy", "alembic", "filelock", "psycopg", "distributed",
-    "scikit-sparse", "PyNiteFEA", "npTDMS",
+    "scikit-sparse", "PyNiteFEA", "ezdxf", "openpyxl", "npTDMS",
 )  # fmt: skip
 CPU_FEATURES = ("sse4_2", "avx", "avx2", "fma", "avx512f", "neon", "asimd", "sve")
 

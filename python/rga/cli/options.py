@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from rga.errors import InputError
+
 ModelFile = Annotated[
     Path, typer.Argument(metavar="MODEL", help="Model file (JSON, TOML or YAML).")
 ]
@@ -43,6 +45,12 @@ JsonTarget = Annotated[
         "--json", metavar="[FILE]", help="Write the result as JSON; without FILE to the output."
     ),
 ]
+PrintPdf = Annotated[
+    bool,
+    typer.Option(
+        "--pdf", help="Write report.pdf too: by a browser that is installed, else WeasyPrint."
+    ),
+]
 Workers = Annotated[
     int, typer.Option("--workers", min=1, help="Processes at work on this machine.")
 ]
@@ -55,3 +63,21 @@ DaskAddress = Annotated[
     ),
 ]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is random.")]
+
+
+def setting(text: str, option: str) -> tuple[str, float]:
+    """A name with its number, as NAME=VALUE.
+
+    Raises:
+        InputError: no number is given.
+
+    >>> setting("temperature=35", "--set")
+    ('temperature', 35.0)
+    """
+    name, _, value = text.rpartition("=")
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        raise InputError(
+            f"{text!r} sets no number", option, f"write {option} name=value, such as temperature=35"
+        ) from None

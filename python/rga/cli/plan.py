@@ -93,9 +93,8 @@ def _show(result: "Plan") -> None:
         loads = ", ".join(f"{load:g}" for load in result.truck.loads)
         spacings = ", ".join(f"{spacing:g}" for spacing in result.truck.spacings) or "none"
         paths = "; ".join(f"{path[0]} to {path[-1]}" for path in result.truck.paths)
-        typer.echo(
-            f"Truck: axles of {loads} kN, spacings {spacings} m, shared by the paths {paths}."
-        )
+        what = "Truck: axles of" if result.truck.driven else "Known weights of"
+        typer.echo(f"{what} {loads} kN, spacings {spacings} m, shared by the paths {paths}.")
     for number, sensor in enumerate(result.sensors, 1):
         noise = f"{sensor.noise:.3g} {sensor.unit}"
         typer.echo(f"\nSensor {number}: measure {sensor.words} (noise {noise})")

@@ -14,8 +14,12 @@ Row = Annotated[
     int | None, typer.Option("--row", min=0, help="As the twin stood at this row of the record.")
 ]
 Time = Annotated[
-    float | None,
-    typer.Option("--time", help="As it stood at this time, seconds since the first row."),
+    str | None,
+    typer.Option(
+        "--time",
+        help="As it stood at this time: a date as in the record, such as 2026-03-01T12:00, or "
+        "seconds since the first row.",
+    ),
 ]
 VersionNumber = Annotated[
     int, typer.Option("--to", min=1, help="Model version to put in force again.")
@@ -32,7 +36,7 @@ def replay(place: Place, row: Row = None, time: Time = None, json: JsonTarget = 
         raise InputError("both --row and --time are given", "options", "give one of them")
     with Twin.open(place) as twin:
         if row is not None or time is not None:
-            twin = twin.as_of(row=row, time=time)
+            twin = twin.as_of(row=row, time=None if time is None else _moment(time))
         log = twin.log()
         state = {
             "version": twin.version,
@@ -49,6 +53,14 @@ def replay(place: Place, row: Row = None, time: Time = None, json: JsonTarget = 
         typer.echo(f"row {at:>6}  {kinds}  {words}")
     where = "before its first row" if state["row"] is None else f"at row {state['row']}"
     typer.echo(f"The twin stands {where}, with model version {state['version']}.")
+
+
+def _moment(text: str) -> float | str:
+    """Seconds where the text is a number, else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def rollback(place: Place, to: VersionNumber) -> None:

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.options import JsonTarget, MappingFile, ModelFile, OutputDirectory, RecordFiles, Seed
+from rga.cli.options import (
+    JsonTarget,
+    MappingFile,
+    ModelFile,
+    OutputDirectory,
+    PrintPdf,
+    RecordFiles,
+    Seed,
+)
 
 if TYPE_CHECKING:
     from rga.cli.progress import Shown
@@ -47,6 +55,7 @@ def run(
     settings: SettingsFile = None,
     repository: RepositoryUrl = None,
     json: JsonTarget = None,
+    pdf: PrintPdf = False,
 ) -> None:
     """Calibrate a twin, watch its gap, recalibrate, diagnose and report.
 
@@ -84,6 +93,10 @@ def run(
             typer.echo(f"warning: {warning}", err=True)
     if json is not None:
         write_json(findings.model_dump(mode="json"), json)
+    if pdf:
+        from rga.report.pdf import write_pdf
+
+        write_pdf(output / "report.html", output / "report.pdf")
     if not quiet:
         typer.echo(f"Verdict: {findings.verdict}. {findings.sentence()}")
         typer.echo(f"The report is {output / 'report.html'}.")

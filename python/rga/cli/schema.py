@@ -50,4 +50,6 @@ def schema(
         from rga.findings.criteria import Criteria
 
         content = Criteria.model_json_schema()
+        # A file may name the schema by which an editor completes it.
+        content["properties"]["$schema"] = {"type": "string"}
     write_json(content, json or "-")

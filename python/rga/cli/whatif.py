@@ -1,4 +1,4 @@
-"""`rga whatif`: what a change does to every sensor."""
+"""`rga whatif`: what an added effect, or a change of contexts, does to every sensor."""
 
 from math import isclose
 from pathlib import Path
@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rga.cli.options import JsonTarget
-from rga.errors import InputError
+from rga.cli.options import JsonTarget, setting
 
 if TYPE_CHECKING:
     from rga.model import Effect
@@ -42,12 +41,14 @@ def whatif(
 ) -> None:
     """Show every sensor before and after a change, with intervals where something is not sure.
 
+    With --add the structure without and with the effect is compared at the same contexts, those
+    that are set among them; without it, the contexts as they stand with those that are set.
     Contexts that are not set stand at mid-range, or where the twin of a run stands.
     """
     from rga.cli.output import write_json
     from rga.simulation.whatif import read_effects
 
-    given = dict(_setting(text) for text in settings or [])
+    given = dict(setting(text, "--set") for text in settings or [])
     effects = {name: effect for path in add or [] for name, effect in read_effects(path).items()}
     result = _answer(model, given, effects)
     for warning in result.warnings:
@@ -55,6 +56,7 @@ def whatif(
     if json is not None:
         write_json(_content(result), json)
     if json != "-":
+        typer.echo(_contexts(result))
         _show(result)
 
 
@@ -81,7 +83,30 @@ def _content(result: "WhatIf") -> dict[str, Any]:
         if table is not None:
             for name, interval in zip(result.sensors, table.tolist(), strict=True):
                 sensors[name][key] = interval
-    return {"contexts": result.contexts, "sensors": sensors, "warnings": result.warnings}
+    return {
+        "contexts_before": result.contexts_before,
+        "contexts": result.contexts,
+        "sensors": sensors,
+        "warnings": result.warnings,
+    }
+
+
+def _contexts(result: "WhatIf") -> str:
+    """At which contexts the two sides are compared."""
+
+    def listed(contexts: dict[str, float]) -> str:
+        return ", ".join(f"{name} = {value:.4g}" for name, value in contexts.items())
+
+    if not result.contexts:
+        return "No context drives the model."
+    if result.contexts_before == result.contexts:
+        return f"Without and with the change, at {listed(result.contexts)}."
+    moved = {
+        name: value
+        for name, value in result.contexts.items()
+        if value != result.contexts_before[name]
+    }
+    return f"Before: {listed(result.contexts_before)}. After: {listed(moved)}."
 
 
 def _show(result: "WhatIf") -> None:
@@ -109,13 +134,3 @@ def _show(result: "WhatIf") -> None:
             "Intervals are of what is not sure of contexts and of estimated effects; without one "
             "(-) all of these are taken as exact. What scatters as built is not in them."
         )
-
-
-def _setting(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    try:
-        return name.strip(), float(value)
-    except ValueError:
-        raise InputError(
-            f"{text!r} sets no number", "--set", "write --set name=value, such as temperature=35"
-        ) from None

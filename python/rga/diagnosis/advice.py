@@ -53,15 +53,13 @@ class Advice:
         rows = np.unique(np.linspace(0, len(data.time) - 1, ROWS).astype(int))
         operation = {name: column[rows] for name, column in data.belief.table.items()}
         lane = lane_of(model)
-        self._truck = usual_truck(model, lane) if lane else None
+        truck = usual_truck(model, lane) if lane else None
         needed = set(data.belief.centre) | set(data.belief.lines)
         tests = settings(model, needed)
-        if lane and self._truck:
-            tests += stands(lane, self._truck, STANDS)
+        if lane and truck:
+            tests += stands(lane, truck, STANDS)
         added = [one for one in added_sensors(model) if not one.context or one.context in needed]
-        site = MeasurementModel(
-            model, data.sensors, added, tests, operation, lane, self._truck, levels
-        )
+        site = MeasurementModel(model, data.sensors, added, tests, operation, lane, truck, levels)
         self._errors = site.errors(self._together.effects)
         self._site = site
 
@@ -76,7 +74,7 @@ class Advice:
             return ""
         options = [
             *((one.advice, one.cost) for one in site.added),
-            *((one.advice(self._truck), one.cost) for one in site.tests),
+            *((one.advice, one.cost) for one in site.tests),
         ]
         by_tests = self._by_tests(site, pair)
         separation = np.concatenate([self._by_sensors(site, pair), by_tests]).tolist()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -46,10 +47,11 @@ from rga.diagnosis.verdict import reasons_for_doubt, verdict
 from rga.errors import InputError
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
-from rga.findings.criteria import Criteria
-from rga.model.schema import Model
+from rga.findings.criteria import Criteria, as_criteria
+from rga.given import as_record
+from rga.model import Model, as_model
 from rga.provenance import versions
-from rga.records import Record
+from rga.records import Record, RecordMapping, RecordSource
 from rga.simulation import Simulator
 
 Progress = Callable[[str, float], None]
@@ -58,25 +60,27 @@ SHOW_SCATTER = 20
 
 
 def diagnose(
-    model: Model,
-    record: Record,
+    model: Model | str | Path,
+    record: Record | RecordSource,
     *,
+    mapping: str | Path | RecordMapping | None = None,
     parts: Model | None = None,
     calm: Record | None = None,
-    criteria: Criteria | None = None,
+    criteria: Criteria | str | Path | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Findings:
     """Diagnose what a model gets wrong of a record.
 
     Args:
-        model: the structure with its effects and sensors.
-        record: measured data.
+        model: the structure with its effects and sensors, or its file.
+        record: measured data, or their file.
+        mapping: how to read the file, as `load_record` takes it.
         parts: the model in whose parts causes are looked for, where this one has others beside
             them; None: this one.
         calm: measured rows in which nothing acts that is looked for, so that the scatter shows
             there as it is; None: it is estimated from all rows, beside causes.
-        criteria: what decides the verdict; None: the default ones.
+        criteria: what decides the verdict, or their file; None: the default ones.
         seed: of the bootstrap of the gain.
         progress: called with a stage and the share of it that is done.
 
@@ -84,13 +88,14 @@ def diagnose(
         Findings with verdict, causes, gain, and what stays unexplained.
 
     Raises:
-        InputError: the record is too short, or the model cannot be simulated.
+        InputError: a file cannot be used, the record is too short, or the model cannot be
+            simulated.
     """
     tell_progress = progress or (lambda stage, done: None)
+    model = as_model(model)
+    record, chosen = as_record(record, model, mapping), as_criteria(criteria)
     with threadpool_limits(1):
-        return _diagnose(
-            model, parts or model, record, calm, criteria or Criteria(), seed, tell_progress
-        )
+        return _diagnose(model, parts or model, record, calm, chosen, seed, tell_progress)
 
 
 def _diagnose(

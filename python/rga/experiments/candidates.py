@@ -8,7 +8,7 @@ import numpy as np
 
 from rga.experiments.truck import STANDS, Lane, Truck
 from rga.model.schema import Model, Sensor
-from rga.model.structure import HELD_BY_PLANE
+from rga.model.structure_arrays import HELD_BY_PLANE
 from rga.model.units import UNITS
 
 Kind = Literal["displacement", "rotation", "strain"]
@@ -66,6 +66,7 @@ class LoadTest:
         at, against: contexts that differ from their rest, in both states.
         position: of the truck in the first [m]; None without a truck.
         cost: in strain gauges put on.
+        truck: what it weighs, in words; empty without a truck.
     """
 
     words: str
@@ -73,11 +74,13 @@ class LoadTest:
     against: dict[str, float]
     position: float | None
     cost: float
+    truck: str = ""
 
-    def advice(self, truck: Truck | None) -> str:
+    @property
+    def advice(self) -> str:
         """As an advice has it, the truck with it."""
         words = f"a load test, {self.words},"
-        return words if self.position is None else f"{words} axles [kN] @ [m] {truck},"
+        return f"{words} {self.truck}," if self.truck else words
 
 
 def added_sensors(model: Model) -> list[Added]:
@@ -152,11 +155,12 @@ def stands(lane: Lane, truck: Truck, most: int = STANDS) -> list[LoadTest]:
     """The truck at each of its places, so many at most, against no truck."""
     return [
         LoadTest(
-            f"truck with its first axle at {place:.2f} m (node {lane.nearest(place)})",
+            f"{lane.load} at {place:.2f} m (node {lane.nearest(place)})",
             {},
             {},
             place,
             STAND_COST,
+            lane.described(truck),
         )
         for place in lane.stands(truck, most)
     ]

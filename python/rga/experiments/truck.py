@@ -1,7 +1,10 @@
-"""A truck for load tests: its axles, the lanes on which it may drive, and where it may stand."""
+"""A truck for load tests: its axles, the lanes on which it may drive, and where it may stand.
+
+Where no axles cross the model, test weights stand in a row instead of a truck's axles.
+"""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 
 import numpy as np
@@ -13,7 +16,7 @@ from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.loads.nodal_load import NodalLoad
 from rga.model.parameter import Driven
 from rga.model.schema import Model
-from rga.model.structure import HELD_BY_PLANE
+from rga.model.structure_arrays import HELD_BY_PLANE
 
 #: places along a lane at which a truck may stand, at most
 STANDS = 24
@@ -76,7 +79,7 @@ def read_truck(text: str) -> Truck:
         )
     if max(truck.loads) > HEAVIEST:
         raise InputError(
-            f"an axle of {max(truck.loads):g} kN stands on no bridge", "--truck", WRITTEN
+            f"an axle of {max(truck.loads):g} kN stands on no structure", "--truck", WRITTEN
         )
     return truck
 
@@ -90,12 +93,23 @@ class Lane:
         shares: of the truck that each path carries [-].
         length: of the shortest path [m].
         stations: where the nodes of the first path stand along it [m].
+        driven: whether loads drive on it; else a truck on it is a row of test weights.
     """
 
     paths: tuple[tuple[str, ...], ...]
     shares: tuple[float, ...]
     length: float
     stations: tuple[float, ...]
+    driven: bool = True
+
+    @property
+    def load(self) -> str:
+        """What stands on it, in words."""
+        return "truck with its first axle" if self.driven else "known weights with the first"
+
+    def described(self, truck: Truck) -> str:
+        """What a truck on it weighs, as an advice has it."""
+        return f"{'axles ' if self.driven else ''}[kN] @ [m] {truck}"
 
     def nearest(self, position: float) -> str:
         """The node of the first path nearest to a position [m]."""
@@ -168,7 +182,7 @@ def lane_of(model: Model) -> Lane | None:
         if sum(of_path.values()) > 0:
             return _lane(model, list(of_path), np.array(list(of_path.values())))
     chains = _loaded_chains(model)
-    return _lane(model, chains, np.ones(len(chains))) if chains else None
+    return replace(_lane(model, chains, np.ones(len(chains))), driven=False) if chains else None
 
 
 def _lane(model: Model, paths: Sequence[tuple[str, ...]], weights: FloatArray) -> Lane:

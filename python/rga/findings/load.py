@@ -10,6 +10,20 @@ from rga.errors import InputError
 from rga.findings.schema import Findings
 
 
+def as_findings(given: Findings | str | Path) -> Findings:
+    """Findings, read where their file, or the directory that holds it, is given.
+
+    Raises:
+        InputError: as `load_findings`; these are no findings.
+    """
+    if isinstance(given, Findings):
+        return given
+    if isinstance(given, str | Path):
+        return load_findings(given)
+    what = f"a {type(given).__name__} is no findings"
+    raise InputError(what, "findings", "give Findings, or the path of their file")
+
+
 def load_findings(path: str | Path) -> Findings:
     """Read findings.json; its arrays (`Findings.account`) are not kept there.
 

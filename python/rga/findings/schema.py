@@ -3,12 +3,17 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr
 
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.criteria import Criteria
+from rga.notebook import short_html
+
+if TYPE_CHECKING:
+    import polars as pl
+    from matplotlib.axes import Axes
 
 Interval = tuple[float, float]
 Verdict = Literal["nothing_wrong", "named", "ambiguous", "partial", "unknown", "unidentifiable"]
@@ -168,6 +173,43 @@ class Findings(FindingsPart):
         from rga.findings.phrases import verdict_sentence
 
         return verdict_sentence(self)
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """The gap by sensor before and after the extension, in axes of matplotlib.
+
+        Args:
+            ax: axes; None: those of a new figure.
+        """
+        # What draws stands above the findings: it is reached through the front of the package.
+        import rga
+
+        return rga.plot_findings(self, ax)
+
+    def to_frame(self) -> "pl.DataFrame":
+        """The causes, one a row: effect, place, what is known of its size, log-odds, d' [-]."""
+        import polars as pl
+
+        from rga.findings.phrases import effect_words
+
+        rows = [
+            {
+                "kind": str(one.effect.get("kind")),
+                "effect": effect_words(one.effect),
+                "status": one.status,
+                "onset": None if one.onset is None else str(one.onset),
+                "log_odds": one.log_odds,
+                "d_prime": one.d_prime,
+                "d_perp": one.d_perp,
+                "rivals": len(one.rivals),
+            }
+            for one in self.causes
+        ]
+        words = dict.fromkeys(("kind", "effect", "status", "onset"), pl.String)
+        numbers = dict.fromkeys(("log_odds", "d_prime", "d_perp"), pl.Float64)
+        return pl.DataFrame(rows, schema={**words, **numbers, "rivals": pl.Int64})
+
+    def _repr_html_(self) -> str:
+        return short_html(self.verdict.replace("_", " "), self.sentence(), self.to_frame())
 
     def write(
         self, directory: str | Path, report: Callable[["Findings", Path], Path] | None = None

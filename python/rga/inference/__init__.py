@@ -10,7 +10,7 @@ from rga.inference.networks.dataset import Samples
 from rga.inference.networks.settings import TrainingSettings
 from rga.inference.rows import Rows
 from rga.inference.variables import Variables
-from rga.lazy import opening
+from rga.lazy import listing, opening
 
 if TYPE_CHECKING:
     from rga.inference.networks.context_network import ContextNetwork
@@ -32,10 +32,9 @@ __all__ = [
 ]
 
 # These need torch.
-__getattr__ = opening(
-    __name__,
-    {
-        "ContextNetwork": "rga.inference.networks.context_network",
-        "train": "rga.inference.networks.training",
-    },
-)
+_HOMES = {
+    "ContextNetwork": "rga.inference.networks.context_network",
+    "train": "rga.inference.networks.training",
+}
+__getattr__ = opening(__name__, _HOMES)
+__dir__ = listing(__name__, __all__)

@@ -1,7 +1,7 @@
 """Many bridges at once: a list of models and records in, findings for each and a summary out."""
 
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -11,11 +11,12 @@ from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
 from rga.files import write_whole
 from rga.findings import Findings
-from rga.findings.criteria import Criteria
+from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.phrases import effect_words
-from rga.model import Model, load_model
+from rga.given import as_record
+from rga.model import Model, as_model
 from rga.parallel import finished
-from rga.records import Record, load_record
+from rga.records import Record
 from rga.records.read import read_table
 
 NEEDED = ("name", "model", "record")
@@ -47,9 +48,9 @@ class _Bridge:
     """A line of the list."""
 
     name: str
-    model: Path
-    record: Path
-    mapping: Path | None
+    model: Model | str | Path
+    record: Record | str | Path
+    mapping: str | Path | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class _Task:
     name: str
     model: Model
     record: Record
-    criteria: Criteria | None
+    criteria: Criteria
     seed: int
 
 
@@ -72,10 +73,10 @@ class _Done:
 
 
 def diagnose_many(
-    bridges: str | Path,
+    bridges: str | Path | Mapping[str, tuple[Model | str | Path, Record | str | Path]],
     output: str | Path,
     *,
-    criteria: Criteria | None = None,
+    criteria: Criteria | str | Path | None = None,
     seed: int = 0,
     workers: int = 1,
     dask: str | None = None,
@@ -88,9 +89,10 @@ def diagnose_many(
 
     Args:
         bridges: CSV or Parquet file, a bridge a line: `name`, `model`, `record` and, where wanted,
-            `import` (a mapping); files relative to the list.
+            `import` (a mapping); files relative to the list. Or model and record by the name of
+            the bridge, themselves or their files.
         output: directory for the results.
-        criteria: what decides each verdict; None: the default ones.
+        criteria: what decides each verdict, or their file; None: the default ones.
         seed: of each diagnosis.
         workers: processes at work on this machine.
         dask: address of the scheduler of a Dask cluster, whose workers do the work instead; they
@@ -104,13 +106,13 @@ def diagnose_many(
         InputError: the list cannot be used, the output cannot be written, or there is no cluster.
         ReportError: a report could not be drawn; all else is written.
     """
-    listed = _read(Path(bridges))
+    listed, chosen = _listed(bridges), as_criteria(criteria)
     output = Path(output)
     _make(output)
     errors: dict[str, Exception] = {}
     faults: list[ReportError] = []
     summary_of: dict[str, Summary] = {}
-    tasks = _tasks(listed, criteria, seed, errors)
+    tasks = _tasks(listed, chosen, seed, errors)
     for task, future in finished(_work, tasks, workers=workers, dask=dask):
         error = future.exception()
         if isinstance(error, Exception):
@@ -138,15 +140,15 @@ def diagnose_many(
 
 def _tasks(
     bridges: Iterable[_Bridge],
-    criteria: Criteria | None,
+    criteria: Criteria,
     seed: int,
     errors: dict[str, Exception],
 ) -> Iterator[_Task]:
     """Bridges as they are read; errors are kept by the name of the bridge."""
     for bridge in bridges:
         try:
-            model = load_model(bridge.model)
-            record = load_record(bridge.record, model, bridge.mapping)
+            model = as_model(bridge.model)
+            record = as_record(bridge.record, model, bridge.mapping)
         except Exception as error:
             errors[bridge.name] = error
         else:
@@ -182,6 +184,32 @@ def _make(directory: Path) -> None:
         ) from None
 
 
+def _listed(
+    bridges: str | Path | Mapping[str, tuple[Model | str | Path, Record | str | Path]],
+) -> list[_Bridge]:
+    if not isinstance(bridges, Mapping):
+        return _read(Path(bridges))
+    seen: dict[str, str] = {}
+    for name in bridges:
+        where = f"bridge {name!r}"
+        _check_name(name, where)
+        if (first := seen.setdefault(name.casefold(), name)) != name:
+            raise InputError(f"the name stands twice, as {first!r} too", where, "give another")
+    return [_Bridge(name, model, record) for name, (model, record) in bridges.items()]
+
+
+def _check_name(name: str, where: str) -> None:
+    """Refuse a name that cannot be that of a directory of results."""
+    if not name or name.startswith(".") or not name.isprintable() or {*name} & {"/", "\\", ":"}:
+        raise InputError(
+            f"{name!r} cannot name a directory",
+            where,
+            "leave out slashes, colons and a dot in front",
+        )
+    if name.casefold() == SUMMARY:
+        raise InputError(f"{name!r} is the name of the summary", where, "give another")
+
+
 def _read(path: Path) -> list[_Bridge]:
     table = read_table(path)
     columns = table.frame.columns
@@ -201,22 +229,13 @@ def _read(path: Path) -> list[_Bridge]:
                     f"there is no {column}", table.where(number, column), "fill the cell with text"
                 )
         name = row["name"]
-        if name.startswith(".") or not name.isprintable() or {*name} & {"/", "\\", ":"}:
-            raise InputError(
-                f"{name!r} cannot name a directory",
-                table.where(number, "name"),
-                "leave out slashes, colons and a dot in front",
-            )
+        _check_name(name, table.where(number, "name"))
         # Disks that do not distinguish capitals would mix up their results.
         if (first := seen.setdefault(name.casefold(), number)) < number:
             raise InputError(
                 f"the name {name!r} stands twice",
                 table.where(number, "name"),
                 f"give another than in {table.row_name} {table.first + first}",
-            )
-        if name.casefold() == SUMMARY:
-            raise InputError(
-                f"{name!r} is the name of the summary", table.where(number), "give another"
             )
         model, record = path.parent / row["model"], path.parent / row["record"]
         mapping = path.parent / row["import"] if row.get("import") else None

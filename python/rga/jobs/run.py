@@ -5,23 +5,25 @@ from pathlib import Path
 
 from rga.diagnosis.preparation.prepare import check_length
 from rga.errors import InputError
-from rga.model import Model
+from rga.given import as_record
+from rga.model import Model, as_model
 from rga.outputs import write_run
-from rga.records import Record
+from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.calibration.estimator import Learn
 from rga.twin.outcome import Outcome
 from rga.twin.runner import Progress, Running, taken_up
-from rga.twin.settings import Settings
+from rga.twin.settings import Settings, as_settings
 
 FILE = "twin.sqlite"
 
 
 def run(
-    model: Model,
-    record: Record,
+    model: Model | str | Path,
+    record: Record | RecordSource,
     directory: str | Path,
     *,
-    settings: Settings | None = None,
+    mapping: str | Path | RecordMapping | None = None,
+    settings: Settings | str | Path | None = None,
     seed: int = 0,
     repository: str | None = None,
     progress: Progress | None = None,
@@ -34,10 +36,11 @@ def run(
     and ends in the same findings, and one that had ended is not done again.
 
     Args:
-        model: the structure with its effects and sensors.
-        record: measured data.
+        model: the structure with its effects and sensors, or its file.
+        record: measured data, or their file.
         directory: for `findings.json`, `model.json`, `report.html` and the repository.
-        settings: level of integration and the rest.
+        mapping: how to read the file of the record, as `load_record` takes it.
+        settings: level of integration and the rest, or their file.
         seed: of everything random.
         repository: URL of a PostgreSQL database, instead of the file in the directory.
         progress: called with a stage and the share of it that is done.
@@ -54,7 +57,8 @@ def run(
         ReportError: the report could not be drawn; findings and model are there, and the same
             call goes on with the report.
     """
-    settings = settings or Settings()
+    model = as_model(model)
+    record, settings = as_record(record, model, mapping), as_settings(settings)
     check_length(record, settings.criteria.record)
     directory = made(Path(directory))
     if repository is not None and "://" not in repository:

@@ -2,7 +2,7 @@
 
 from rga.model import effects as effects
 from rga.model.effect import Effect
-from rga.model.io import load_model, model_content, read_model, write_model
+from rga.model.io import as_model, load_model, model_content, read_model, write_model
 from rga.model.schema import ContextVariable, Model, Sensor, model_schema, read_effect
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "Effect",
     "Model",
     "Sensor",
+    "as_model",
     "load_model",
     "model_content",
     "model_schema",

@@ -55,7 +55,7 @@ class Effect(BaseModel):
     title: ClassVar[str] = ""
     #: What a cause of this kind calls for.
     action: ClassVar[Action] = Action(
-        "{place}", "what the model says of {place}", "{vehicle}, near {place}"
+        "{place}", "what the model says of {place}", "{load}, near {place}"
     )
     #: What size is usual, in words: what `priors` say, and where it comes from.
     usual: ClassVar[str] = ""
@@ -63,6 +63,8 @@ class Effect(BaseModel):
     is_load: ClassVar[bool] = False
     #: True for a restraint that may let go at any time, so that it is normally not credited.
     may_let_go: ClassVar[bool] = False
+    #: True where `factor` is a share of the section of members, which then bears that much less.
+    takes_section: ClassVar[bool] = False
     #: True where the parameters change the structure itself.
     structural: ClassVar[bool] = False
     #: True where the effect changes nothing but what sensors show.

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from rga.errors import InputError
 from rga.files import write_whole
+from rga.model.mistakes import refusal
 from rga.model.schema import Model
 
 
@@ -24,7 +25,8 @@ def load_model(path: str | Path) -> Model:
         The validated model.
 
     Raises:
-        InputError: the file is missing or unreadable, or breaks the schema.
+        InputError: the file is missing or unreadable, or breaks the schema; where it does so in
+            several places, with all of them (`SeveralMistakes`).
     """
     path = Path(path)
     try:
@@ -46,12 +48,30 @@ def load_model(path: str | Path) -> Model:
     return model
 
 
+def as_model(given: Model | str | Path) -> Model:
+    """A model, read where its file is given.
+
+    Args:
+        given: the model, or the path of its file.
+
+    Raises:
+        InputError: the file cannot be used, or this is neither.
+    """
+    if isinstance(given, Model):
+        return given
+    if isinstance(given, str | Path):
+        return load_model(given)
+    raise InputError(
+        f"a {type(given).__name__} is no model", "model", "give a Model, or the path of its file"
+    )
+
+
 def read_model(content: Any, where: str) -> Model:
-    """A model from parsed content; InputError with the key, the value and what would be right."""
+    """A model from parsed content; InputError with every mistake: key, value, what is right."""
     try:
         return Model.model_validate(content)
     except ValidationError as error:
-        raise _explained(error, where) from None
+        raise refusal(error, content, where) from None
 
 
 def write_model(model: Model, path: Path) -> None:
@@ -69,7 +89,7 @@ def model_content(model: Model) -> dict[str, Any]:
 
     An effect keeps what it was given, since one that is given nothing is refused.
     """
-    content = model.model_dump(mode="json", by_alias=True, exclude_defaults=True)
+    content = model.model_dump(mode="json", exclude_defaults=True)
     content["effects"] = {
         name: {
             "kind": effect.kind,
@@ -99,15 +119,3 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"the key {twice!r} stands twice")
     return content
-
-
-def _explained(error: ValidationError, where: str) -> InputError:
-    first = error.errors(include_url=False)[0]
-    key = ".".join(str(part) for part in first["loc"])
-    message = first["msg"].removeprefix("Value error, ")
-    if first["type"] == "extra_forbidden":
-        message = "this key is unknown"
-    value = first.get("input")
-    shown = f" (value {value!r})" if isinstance(value, str | int | float | list) else ""
-    what = f"{key}: {message}{shown if len(shown) < 80 else ''}" if key else message
-    return InputError(what, where, "see `rga schema model` for what is right")

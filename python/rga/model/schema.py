@@ -1,17 +1,19 @@
 """The model file: the structure as data, its contexts, its effects and its sensors."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union
 
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     PrivateAttr,
     SerializeAsAny,
     TypeAdapter,
+    ValidationInfo,
     field_validator,
     model_validator,
 )
@@ -19,9 +21,13 @@ from pydantic import (
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment, seconds
 from rga.model.parameter import Number, listed
+from rga.model.pictured import Pictured
+from rga.model.references import EVERYTHING_READ, Mistake, effect_mistakes, mistakes, refuse
 from rga.model.units import UNITS
 from rga.model.vocabulary import field_texts, kind_text
 
+#: key of what a file has besides, in the context of a validation
+UNREAD = "unread"
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
 Vector = tuple[Number, Number, Number]
@@ -228,7 +234,21 @@ class Analysis(Part):
     geometry: Literal["linear", "nonlinear"] = "linear"
 
 
-class Model(Part):
+def _unknown_kind(effect: Any) -> Iterator[Mistake]:
+    kind = effect.get("kind") if isinstance(effect, dict) else None
+    if not isinstance(kind, str) or kind not in Effect.vocabulary:
+        known = ", ".join(sorted(Effect.vocabulary))
+        yield ("kind",), f"{kind!r} is no kind of effect; known are {known}"
+
+
+def _of_vocabulary(effect: Any) -> Effect:
+    if isinstance(effect, Effect):
+        return effect
+    refuse("Effect", _unknown_kind(effect), "unknown_kind")
+    return Effect.vocabulary[effect["kind"]].model_validate(effect)
+
+
+class Model(Pictured, Part):
     """A model file. SI units, z up, tension and elongation positive; see the design of the format.
 
     Raises on validation: unknown keys, members between missing nodes, places that do not exist.
@@ -236,6 +256,8 @@ class Model(Part):
     Attributes:
         schema_file: the JSON Schema by which an editor completes the file (`"$schema"`).
     """
+
+    model_config = ConfigDict(serialize_by_alias=True, validate_by_name=True)
 
     schema_file: Annotated[str | None, Field(alias="$schema")] = None
     rga_model: Literal[1]
@@ -251,87 +273,23 @@ class Model(Part):
     ties: list[Tie] = []
     masses: dict[str, Mass] = {}
     context: dict[str, ContextVariable] = {}
-    effects: dict[str, SerializeAsAny[Effect]] = {}
+    effects: dict[str, Annotated[SerializeAsAny[Effect], BeforeValidator(_of_vocabulary)]] = {}
     sensors: dict[str, Sensor] = {}
     analysis: Analysis = Analysis()
 
     _sha256: str = PrivateAttr(default="")
     _path: Path | None = PrivateAttr(default=None)
 
-    @field_validator("effects", mode="before")
-    @classmethod
-    def _effects_by_kind(cls, effects: Any) -> Any:
-        if not isinstance(effects, dict):
-            raise ValueError("effects must be a table of named effects")
-        return {name: read_effect(effect, name) for name, effect in effects.items()}
-
     @model_validator(mode="after")
-    def _references(self) -> "Model":
-        for name, member in self.members.items():
-            for node in member.nodes:
-                self._known("nodes", node, f"members.{name}.nodes")
-            if member.nodes[0] == member.nodes[1]:
-                raise ValueError(f"members.{name}.nodes: both ends are node {member.nodes[0]!r}")
-            if self.nodes[member.nodes[0]] == self.nodes[member.nodes[1]]:
-                raise ValueError(f"members.{name}.nodes: the member has no length")
-            self._known("sections", member.section, f"members.{name}.section")
-            self._known("materials", member.material, f"members.{name}.material")
-        for name, support in self.supports.items():
-            self._known("nodes", support.node, f"supports.{name}.node")
-        for number, spring in enumerate(self.springs):
-            for end in (spring.node, spring.to):
-                if end is not None:
-                    self._known("nodes", end, f"springs[{number}]")
-        for number, tie in enumerate(self.ties):
-            for node in tie.nodes:
-                self._known("nodes", node, f"ties[{number}]")
-        for name, mass in self.masses.items():
-            self._known("nodes", mass.node, f"masses.{name}.node")
-        if "time" in {**self.sensors, **self.context}:
-            raise ValueError("'time' is the column of the time: choose another name")
-        if both := sorted(self.sensors.keys() & self.context.keys()):
-            raise ValueError(f"sensors.{both[0]}: a context variable has the same name")
-        for name, sensor in self.sensors.items():
-            if sensor.member is not None:
-                self._known("members", sensor.member, f"sensors.{name}.member")
-            for place in (sensor.node, sensor.relative_to):
-                if place is not None:
-                    self._known("nodes", place, f"sensors.{name}")
-        for name, effect in self.effects.items():
-            self.check_effect(effect, f"effects.{name}")
+    def _references(self, info: ValidationInfo) -> "Model":
+        unread = (info.context or {}).get(UNREAD, EVERYTHING_READ)
+        refuse("Model", mistakes(self, unread))
         return self
-
-    def _known(self, table: str, name: str, where: str) -> None:
-        if name not in getattr(self, table):
-            raise ValueError(f"{where}: there is no {name!r} in {table}")
 
     def check_effect(self, effect: Effect, where: str) -> None:
         """Refuse an effect whose place or driving context is not in the model (ValueError)."""
-        tables: dict[str, Any] = {
-            "member": self.members,
-            "group": self.groups,
-            "support": self.supports,
-            "sensor": self.sensors,
-            "context": self.context,
-            "effect": self.effects,
-            "material": self.materials,
-            "node": self.nodes,
-        }
-        for field, mark in effect.place_fields().items():
-            named = getattr(effect, field)
-            if named is None or mark.of not in tables:
-                continue
-            if not named:
-                raise ValueError(f"{where}.{field}: names no {mark.of}; name one of the model")
-            for one in [named] if isinstance(named, str) else named:
-                if one not in tables[mark.of]:
-                    raise ValueError(f"{where}.{field}: there is no {mark.of} {one!r} in the model")
-        for node in getattr(effect, "nodes", ()):
-            self._known("nodes", node, where)
-        effect.check(self)
-        for context in effect.drivers():
-            if context not in self.context:
-                raise ValueError(f"{where}: there is no context {context!r} in the model")
+        for place, what in effect_mistakes(self, effect, (where,)):
+            raise ValueError(f"{'.'.join(place)}: {what}")
 
     @cached_property
     def groups(self) -> dict[str, list[str]]:
@@ -363,7 +321,7 @@ class Model(Part):
                 name in sensors and sensors[name] == self.sensors.get(name)
                 for field, mark in effect.place_fields().items()
                 if mark.of == "sensor"
-                for name in listed(effect.place[field])
+                for name in listed(effect.place.get(field))
             )
 
         effects = {name: effect for name, effect in self.effects.items() if stays(effect)}
@@ -392,15 +350,10 @@ class Model(Part):
 
 def read_effect(effect: Any, name: str) -> Effect:
     """An effect of the vocabulary from its keys; ValueError where the kind is unknown."""
-    if isinstance(effect, Effect):
-        return effect
-    kind = effect.get("kind") if isinstance(effect, dict) else None
-    if not isinstance(kind, str) or kind not in Effect.vocabulary:
-        raise ValueError(
-            f"effects.{name}.kind: {kind!r} is no kind of effect; known are "
-            + ", ".join(sorted(Effect.vocabulary))
-        )
-    return Effect.vocabulary[kind].model_validate(effect)
+    if not isinstance(effect, Effect):
+        for place, what in _unknown_kind(effect):
+            raise ValueError(f"effects.{name}.{'.'.join(place)}: {what}")
+    return _of_vocabulary(effect)
 
 
 def model_schema() -> dict[str, Any]:

@@ -7,19 +7,17 @@ from typing import Any, Literal, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rga._core import OutputKind
 from rga.arrays import (
     FloatArray,
     IntArray,
-    MemberArrays,
     OutputArrays,
-    RestraintArrays,
     StructureArrays,
     by_name,
 )
 from rga.model.copied_when_read import CopiedWhenRead
 from rga.model.parameter import listed
-from rga.model.schema import DOFS, Model, Sensor, Vector
+from rga.model.schema import Model, Vector
+from rga.model.structure_arrays import member_arrays, restraint_arrays, sensor_output
 from rga.model.units import per_si
 
 T = TypeVar("T")
@@ -42,15 +40,6 @@ GEOMETRY: tuple[Literal["coordinates", "ends", "frame", "local_y", "inclined_nod
 OF_MEMBERS: tuple[
     Literal["E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end"], ...
 ] = ("E", "G", "A", "Iy", "Iz", "J", "Asy", "Asz", "local_y", "connection", "rigid_end")
-#: what a sensor of each kind reads
-OUTPUT_KIND = {
-    "displacement": OutputKind.DISPLACEMENT,
-    "rotation": OutputKind.ROTATION,
-    "strain": OutputKind.STRAIN,
-    "force": OutputKind.AXIAL_FORCE,
-    "reaction": OutputKind.REACTION_FORCE,
-}
-HELD_BY_PLANE = {"xz": (1, 3, 5), "xy": (2, 3, 4), "yz": (0, 4, 5)}
 
 
 @dataclass
@@ -119,6 +108,7 @@ class Structure:
         nodes, members, supports, sensors: names -> numbers.
         groups: group -> numbers of its members.
         materials: material of every member of the model.
+        drawn_frames: numbers of the members that are frames in the model, whatever effects make.
         arrays: coordinates [m], member properties, supports, springs, ties.
         outputs: one row a sensor, as the core takes them.
         per_si: sensor units per SI unit, float[sensors].
@@ -135,6 +125,7 @@ class Structure:
     sensors: dict[str, int]
     groups: dict[str, IntArray]
     materials: tuple[str, ...]
+    drawn_frames: IntArray
     arrays: StructureArrays
     outputs: OutputArrays
     per_si: FloatArray
@@ -180,6 +171,7 @@ class Structure:
             self.sensors,
             self.groups,
             self.materials,
+            self.drawn_frames,
             cast(StructureArrays, CopiedWhenRead(by_name(self.arrays))),
             cast(OutputArrays, CopiedWhenRead(by_name(self.outputs))),
             self.per_si,
@@ -291,11 +283,11 @@ def build_structure(model: Model) -> Structure:
     nodes = {name: number for number, name in enumerate(model.nodes)}
     members = {name: number for number, name in enumerate(model.members)}
     arrays: StructureArrays = {
-        **_member_arrays(model, nodes),
-        **_restraint_arrays(model, nodes),
+        **member_arrays(model, nodes),
+        **restraint_arrays(model, nodes),
     }
     sensors = list(model.sensors.items())
-    outputs = [_output(sensor, nodes, members) for _, sensor in sensors]
+    outputs = [sensor_output(sensor, nodes, members) for _, sensor in sensors]
     return Structure(
         nodes=nodes,
         members=members,
@@ -306,6 +298,7 @@ def build_structure(model: Model) -> Structure:
             for group, names in model.groups.items()
         },
         materials=tuple(member.material for member in model.members.values()),
+        drawn_frames=np.flatnonzero(arrays["frame"]),
         arrays=arrays,
         outputs={
             "kind": np.array([row[0] for row in outputs], dtype=np.int64),
@@ -321,80 +314,3 @@ def build_structure(model: Model) -> Structure:
         laws=[],
         nonlinear=model.analysis.geometry == "nonlinear",
     )
-
-
-def _member_arrays(model: Model, nodes: dict[str, int]) -> MemberArrays:
-    chosen = list(model.members.values())
-    materials = [model.materials[member.material] for member in chosen]
-    sections = [model.sections[member.section] for member in chosen]
-    connection = np.full((len(chosen), 12), np.inf)
-    for row, member in zip(connection, chosen, strict=True):
-        for first, released, springs in (
-            (0, member.releases.i, member.end_springs.i),
-            (6, member.releases.j, member.end_springs.j),
-        ):
-            for dof in released:
-                row[first + DOFS.index(dof)] = 0.0
-            for dof, stiffness in springs.items():
-                row[first + DOFS.index(dof)] = stiffness
-    nowhere = (np.nan, np.nan, np.nan)
-    return {
-        "coordinates": np.array(list(model.nodes.values()), dtype=float).reshape(-1, 3),
-        "ends": np.array(
-            [[nodes[n] for n in member.nodes] for member in chosen], dtype=np.int64
-        ).reshape(-1, 2),
-        "frame": np.array([member.kind == "frame" for member in chosen], dtype=bool),
-        "E": np.array([material.E for material in materials]),
-        "G": np.array([material.E / (2 * (1 + material.nu)) for material in materials]),
-        "A": np.array([section.A for section in sections]),
-        "Iy": np.array([section.Iy for section in sections]),
-        "Iz": np.array([section.Iz for section in sections]),
-        "J": np.array([section.J for section in sections]),
-        "Asy": np.array([section.Asy or np.inf for section in sections]),
-        "Asz": np.array([section.Asz or np.inf for section in sections]),
-        "local_y": np.array([member.local_y or nowhere for member in chosen], dtype=float).reshape(
-            -1, 3
-        ),
-        "connection": connection,
-        "rigid_end": np.zeros((len(chosen), 2)),
-    }
-
-
-def _restraint_arrays(model: Model, nodes: dict[str, int]) -> RestraintArrays:
-    fixed = np.zeros((len(nodes), 6), dtype=bool)
-    if model.plane is not None:
-        fixed[:, HELD_BY_PLANE[model.plane]] = True
-    for support in model.supports.values():
-        fixed[nodes[support.node], [DOFS.index(dof) for dof in support.fixed]] = True
-    inclined = [support for support in model.supports.values() if support.along is not None]
-    ties = [(tie.nodes, dof) for tie in model.ties for dof in tie.dofs]
-    return {
-        "fixed": fixed,
-        "inclined_node": np.array([nodes[support.node] for support in inclined], dtype=np.int64),
-        "inclined_direction": np.array(
-            [support.along for support in inclined], dtype=float
-        ).reshape(-1, 3),
-        "spring_node": np.array(
-            [[nodes[s.node], -1 if s.to is None else nodes[s.to]] for s in model.springs],
-            dtype=np.int64,
-        ).reshape(-1, 2),
-        "spring_dof": np.array([DOFS.index(s.dof) for s in model.springs], dtype=np.int64),
-        "spring_stiffness": np.array([s.stiffness for s in model.springs], dtype=float),
-        "tie_node": np.array(
-            [[nodes[n] for n in pair] for pair, _ in ties], dtype=np.int64
-        ).reshape(-1, 2),
-        "tie_dof": np.array([DOFS.index(dof) for _, dof in ties], dtype=np.int64),
-    }
-
-
-def _output(
-    sensor: Sensor, nodes: dict[str, int], members: dict[str, int]
-) -> tuple[int, int, int, tuple[float, float, float], bool]:
-    kind = OUTPUT_KIND[sensor.kind]
-    if sensor.member is not None and sensor.kind in ("strain", "force"):
-        return kind, members[sensor.member], -1, (sensor.at, sensor.y, sensor.z), sensor.total
-    assert sensor.node is not None  # by the schema
-    assert sensor.direction is not None
-    x, y, z = np.array(sensor.direction) / np.linalg.norm(sensor.direction)
-    other = -1 if sensor.relative_to is None else nodes[sensor.relative_to]
-    return kind, nodes[sensor.node], other, (float(x), float(y), float(z)), False

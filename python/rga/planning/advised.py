@@ -3,12 +3,11 @@
 from collections.abc import Mapping, Sequence
 
 from rga.experiments.candidates import Added, LoadTest
-from rga.experiments.truck import Truck
 from rga.findings import Findings
 
 
 def advised(
-    findings: Findings, added: Sequence[Added], tests: Sequence[LoadTest], truck: Truck | None
+    findings: Findings, added: Sequence[Added], tests: Sequence[LoadTest]
 ) -> tuple[list[int], list[int]]:
     """Numbers of the sensors and of the tests that findings advise.
 
@@ -16,7 +15,7 @@ def advised(
     left out.
     """
     sensors = _named(findings, {one.advice: k for k, one in enumerate(added)})
-    return sensors, _named(findings, {one.advice(truck): k for k, one in enumerate(tests)})
+    return sensors, _named(findings, {one.advice: k for k, one in enumerate(tests)})
 
 
 def _named(findings: Findings, phrases: Mapping[str, int]) -> list[int]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,8 @@ from rga.experiments.separation import Pair, paired, success
 from rga.experiments.truck import Lane, Truck, given_lane, lane_of, read_truck
 from rga.findings import Findings
 from rga.findings.criteria import Criteria
-from rga.findings.load import findings_sha256
-from rga.model import Model
+from rga.findings.load import as_findings, findings_sha256
+from rga.model import Model, as_model
 from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test
@@ -65,8 +66,8 @@ class Scope:
 
 
 def plan(
-    model: Model,
-    findings: Findings,
+    model: Model | str | Path,
+    findings: Findings | str | Path,
     *,
     sensors: int = SENSORS,
     positions: int = POSITIONS,
@@ -78,8 +79,8 @@ def plan(
     """Choose the sensors and load tests that best separate what findings cannot separate.
 
     Args:
-        model: the model that was diagnosed.
-        findings: of its diagnosis.
+        model: the model that was diagnosed, or its file.
+        findings: of its diagnosis, or their file, or the directory that holds it.
         sensors: sensors that may be added.
         positions: load tests that may be made: places of a truck, and settings of contexts.
         truck: axle loads [kN] @ spacings [m], such as "60,100@3.5"; None: a truck that strains the
@@ -95,6 +96,7 @@ def plan(
         InputError: findings of another model, a budget below zero, a truck that is none or does
             not stand on its path, or explanations that cannot be simulated.
     """
+    model, findings = as_model(model), as_findings(findings)
     for value, option in ((sensors, "sensors"), (positions, "positions")):
         if value < 0:
             raise InputError(f"{option} are {value}", f"--{option}", "give 0 or more")
@@ -150,7 +152,7 @@ def _planned(
     scope = _scope(model, findings, rivalries, lane, truck, warnings)
     progress("choosing measurements", 0.0)
     chooser = scope.chooser(_separable(scope))
-    sensors, tests = advised(findings, scope.site.added, scope.site.tests, truck)
+    sensors, tests = advised(findings, scope.site.added, scope.site.tests)
     columns = [scope.site.standing + one for one in sensors]
     choice = chooser.best(*budget, (columns, tests))
     beside = _beside(chooser, scope.site, choice, columns, tests)
@@ -334,7 +336,9 @@ def _sentence(separations: Sequence[Separation], scope: Scope, choice: Choice) -
 
 def _truck(truck: Truck, lane: Lane) -> PlannedTruck:
     paths = [list(path) for path in lane.paths]
-    return PlannedTruck(loads=list(truck.loads), spacings=list(truck.spacings), paths=paths)
+    return PlannedTruck(
+        loads=list(truck.loads), spacings=list(truck.spacings), paths=paths, driven=lane.driven
+    )
 
 
 def _silent(stage: str, done: float) -> None:

@@ -1,9 +1,15 @@
 """A plan: what to measure next, as it stands in a file."""
 
 import json
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+
+from rga.notebook import short_html
+
+if TYPE_CHECKING:
+    import polars as pl
+    from matplotlib.axes import Axes
 
 Interval = tuple[float, float]
 
@@ -81,11 +87,18 @@ class PlannedTest(PlanPart):
 
 
 class PlannedTruck(PlanPart):
-    """The truck of the tests: axle loads [kN], spacings [m], and the paths that share it."""
+    """The truck of the tests, or the test weights where nothing drives on the structure.
+
+    Attributes:
+        loads, spacings: of its axles [kN] [m].
+        paths: nodes, that share it.
+        driven: whether it is a truck.
+    """
 
     loads: list[float]
     spacings: list[float]
     paths: list[list[str]]
+    driven: bool = True
 
 
 class SimulatedTrials(PlanPart):
@@ -165,6 +178,48 @@ class Plan(PlanPart):
     model_sha256: str
     findings_sha256: str
     versions: dict[str, str] = Field(default_factory=dict)
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """How far the plan separates every two explanations, in axes of matplotlib.
+
+        Args:
+            ax: axes; None: those of a new figure.
+        """
+        # matplotlib takes long to load, and a plan is made without it.
+        from rga.drawing.charts import plot_pairs
+
+        return plot_pairs(
+            [
+                " | ".join(words.partition(":")[0] for words in (pair.one, pair.other))
+                for pair in self.separations
+            ],
+            [pair.d_perp_at_best for pair in self.separations],
+            [pair.d_perp for pair in self.separations],
+            ("with all that was thought of", "with the plan"),
+            "d\N{UP TACK}: difference in units of all errors",
+            ax,
+        )
+
+    def to_frame(self) -> "pl.DataFrame":
+        """Sensors and tests to make, one a row, with their cost in strain gauges put on."""
+        import polars as pl
+
+        parts: list[tuple[str, PlannedSensor | PlannedTest]] = [
+            *(("sensor", one) for one in self.sensors),
+            *(("test", one) for one in self.tests),
+        ]
+        told = ["; ".join(f"{t.sensor}, {t.change}" for t in one.tells) for _, one in parts]
+        return pl.DataFrame(
+            [
+                pl.Series("measurement", [kind for kind, _ in parts], dtype=pl.String),
+                pl.Series("words", [one.words for _, one in parts], dtype=pl.String),
+                pl.Series("cost", [one.cost for _, one in parts], dtype=pl.Float64),
+                pl.Series("tells", told, dtype=pl.String),
+            ]
+        )
+
+    def _repr_html_(self) -> str:
+        return short_html("plan", self.sentence, self.to_frame())
 
     def to_json(self) -> str:
         """The content of a plan's file."""

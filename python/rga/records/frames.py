@@ -1,5 +1,6 @@
 """Data frames of polars or pandas as tables."""
 
+from collections.abc import Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,9 @@ import polars as pl
 
 from rga.errors import InputError
 from rga.records.table import Table
+
+#: what a record is read from: a file, several in time, a folder, a mapping, or a data frame
+RecordSource = str | Path | Sequence[str | Path] | pl.DataFrame | pl.LazyFrame
 
 
 def is_frame(given: object) -> bool:

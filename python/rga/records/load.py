@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,16 +10,13 @@ from rga.errors import InputError
 from rga.model import Model
 from rga.records.beside import side_by_side
 from rga.records.channels import quoted
-from rga.records.frames import is_frame, table_of_frame
+from rga.records.frames import RecordSource, is_frame, table_of_frame
 from rga.records.lead_in import find_lead_in
 from rga.records.mapping import FileMapping, RecordMapping, read_mapping
 from rga.records.measured import Measured, in_time, measured
 from rga.records.read import read_table
 from rga.records.record import Record
 from rga.records.sources import files_in, find_sources
-
-if TYPE_CHECKING:
-    import polars as pl
 
 #: deviations of the noise of a context, by which a value lies outside its range by chance
 CHANCE = 4.0
@@ -29,7 +25,7 @@ STILL = 50
 
 
 def load_record(
-    source: "str | Path | Sequence[str | Path] | pl.DataFrame | Any",
+    source: RecordSource,
     model: Model,
     mapping: str | Path | RecordMapping | None = None,
 ) -> Record:

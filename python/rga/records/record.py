@@ -3,13 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.model.effect import seconds
+from rga.notebook import short_html
+
+if TYPE_CHECKING:
+    import polars as pl
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,51 @@ class Record:
             readings=self.readings[chosen],
             contexts={name: values[chosen] for name, values in self.contexts.items()},
         )
+
+    def plot(self, ax: "Axes | None" = None, channels: Sequence[str] | None = None) -> "Axes":
+        """Channels and measured contexts over time in axes of matplotlib.
+
+        Args:
+            ax: axes; None: those of a new figure.
+            channels: names; None: all, the first 40.
+
+        Raises:
+            InputError: the record has no row, or no such channel.
+        """
+        # What draws stands above the records: it is reached through the front of the package.
+        import rga
+
+        return rga.plot_record(self, ax, channels)
+
+    def to_frame(self) -> "pl.DataFrame":
+        """Time and all channels and contexts, one row a reading.
+
+        Time is that of the record's clock where it writes dates, else seconds.
+
+        >>> Record(np.arange(2.0), 10.0, "seconds", ("D1",), np.ones((2, 1))).to_frame().rows()
+        [(10.0, 1.0), (11.0, 1.0)]
+        """
+        import polars as pl
+
+        if isinstance(self.start, str):
+            # Dates without a zone: the clock of the record is kept as it is.
+            first = datetime.fromisoformat(self.start).replace(tzinfo=None)
+            steps = pl.Series(np.round(self.time * 1e6).astype(np.int64)).cast(pl.Duration("us"))
+            time = pl.Series("time", [first] * len(self), dtype=pl.Datetime("us")) + steps
+        else:
+            time = pl.Series("time", self.start + self.time)
+        columns = [pl.Series(name, self.readings[:, k]) for k, name in enumerate(self.sensors)]
+        columns += [pl.Series(name, values) for name, values in self.contexts.items()]
+        return pl.DataFrame([time, *columns])
+
+    def _repr_html_(self) -> str:
+        last = self.time_label(self.time[-1]) if len(self) else self.start
+        first = self.time_label(self.time[0]) if len(self) else self.start
+        said = (
+            f"{len(self)} rows of {len(self.sensors)} channels and {len(self.contexts)} contexts, "
+            f"from {first} to {last}"
+        )
+        return short_html("record", said, self.to_frame())
 
     def channels(self, keep: Sequence[str]) -> "Record":
         """The record with the sensors `keep` only, in their present order.

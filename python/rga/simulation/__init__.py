@@ -1,5 +1,6 @@
-"""The simulator: contexts in, sensor values out."""
+"""The simulator: contexts in, sensor values and results of the structure out."""
 
 from rga.simulation.simulator import Simulator
+from rga.simulation.structural_results import Results, results
 
-__all__ = ["Simulator"]
+__all__ = ["Results", "Simulator", "results"]

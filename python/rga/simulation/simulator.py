@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,11 +12,13 @@ from numpy.typing import ArrayLike
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.lazy import needing_extras
+from rga.model import as_model
 from rga.model.effect import Effect, Values, seconds
 from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import Structure, build_structure
 from rga.simulation.assembly import Assembly
+from rga.simulation.contexts import Contexts, by_name
 from rga.simulation.derivatives.forward import jacobian, pull_back
 from rga.simulation.dispatch import ResponsePlan, answer
 
@@ -49,17 +52,17 @@ class Simulator:
     structural parameters differ are solved apart (`ResponsePlan`).
 
     Args:
-        model: the structure with its effects and sensors.
+        model: the structure with its effects and sensors, or its file.
 
     Attributes:
         model: itself.
         assembly: the structures that parameters of its effects make.
     """
 
-    def __init__(self, model: Model, _structure: Structure | None = None) -> None:
-        self.model = model
-        self._structure = build_structure(model) if _structure is None else _structure
-        self.assembly = Assembly(model, self._structure, self.resolve)
+    def __init__(self, model: Model | str | Path, _structure: Structure | None = None) -> None:
+        self.model = as_model(model)
+        self._structure = build_structure(self.model) if _structure is None else _structure
+        self.assembly = Assembly(self.model, self._structure, self.resolve)
 
     def extended(self, effects: Mapping[str, Effect]) -> "Simulator":
         """A simulator of the same structure with more effects; what is condensed serves both."""
@@ -102,12 +105,13 @@ class Simulator:
         """Context variables that drive effects of the model."""
         return set(self.driven)
 
-    def predict(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
+    def predict(self, contexts: Contexts) -> FloatArray:
         """Simulated sensor values.
 
         Args:
             contexts: context variables in their units, and `time` [s] where an onset, a lag, a
-                drift or friction needs it; every one float[rows], or a number for all rows.
+                drift or friction needs it; every one float[rows], or a number for all rows. A table
+                of them (polars, pandas) does as well.
 
         Returns:
             float[rows, sensors] in the units of the sensors, in the order of the model.
@@ -131,7 +135,7 @@ class Simulator:
             )
         return shown
 
-    def respond(self, contexts: Mapping[str, ArrayLike]) -> Response:
+    def respond(self, contexts: Contexts) -> Response:
         """The response of the structure, before any sensor reads it.
 
         Args:
@@ -142,7 +146,7 @@ class Simulator:
         plan, quantities = answer(self.assembly.request(values, len(table["time"])))
         return Response(table, values, quantities * self._structure.per_si, plan)
 
-    def plan(self, contexts: Mapping[str, ArrayLike]) -> ResponsePlan:
+    def plan(self, contexts: Contexts) -> ResponsePlan:
         """The path that `predict` takes for these contexts: the cheapest exact one."""
         return self.respond(contexts).plan
 
@@ -173,7 +177,7 @@ class Simulator:
                 effect.change_readings(readings, own)
         return readings
 
-    def load_coefficients(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
+    def load_coefficients(self, contexts: Contexts) -> FloatArray:
         """Coefficients of all load patterns: what any linear structure responds to.
 
         Args:
@@ -187,7 +191,7 @@ class Simulator:
         none = np.zeros((len(table["time"]), 0))
         return np.column_stack([none, *(load.coefficient for load in loads)])
 
-    def jacobian(self, contexts: Mapping[str, ArrayLike]) -> FloatArray:
+    def jacobian(self, contexts: Contexts) -> FloatArray:
         """Derivatives of the sensors by the context variables of the model.
 
         Args:
@@ -199,7 +203,7 @@ class Simulator:
         """
         return jacobian(self, self._table(contexts))
 
-    def pull_back(self, contexts: Mapping[str, ArrayLike], gradients: ArrayLike) -> FloatArray:
+    def pull_back(self, contexts: Contexts, gradients: ArrayLike) -> FloatArray:
         """Derivatives of a function of the sensors by the context variables: the adjoint.
 
         Args:
@@ -242,12 +246,12 @@ class Simulator:
 
         return DifferentiableSimulator(self, None if time is None else np.asarray(time, float))
 
-    def _table(self, contexts: Mapping[str, ArrayLike]) -> Values:
+    def _table(self, contexts: Contexts) -> Values:
+        named = by_name(contexts)
         if not isinstance(contexts, Mapping):
-            raise InputError(
-                f"contexts are a {type(contexts).__name__}", "contexts", "give names with values"
-            )
-        given = {name: _numbers(name, value) for name, value in contexts.items()}
+            # A table may have more columns than contexts: readings, notes.
+            named = {name: named[name] for name in ("time", *self.model.context) if name in named}
+        given = {name: _numbers(name, value) for name, value in named.items()}
         rows = max((len(column) for column in given.values()), default=1)
         if not rows:
             raise InputError("there is no row", "contexts", "give a value or more of each")

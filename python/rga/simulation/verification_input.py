@@ -281,7 +281,12 @@ def _output(frame: FrameCase, entry: Json) -> tuple[int, int, int, Sequence[floa
             return BY_AXIS[kind][turning], node, -1, along
         case "axial":
             # Where a load along the member makes it vary, the format means the second end.
-            return OutputKind.AXIAL_FORCE, frame.members[str(entry["element"])], -1, [1.0, 0.0, 0.0]
+            return (
+                OutputKind.SECTION_FORCE,
+                frame.members[str(entry["element"])],
+                0,
+                [1.0, 0.0, 0.0],
+            )
         case "end_force":
             member = frame.members[str(entry["element"])]
             return OutputKind.END_FORCE, member, int(entry["index"]), [0.0] * 3

@@ -1,4 +1,4 @@
-"""What a change of context, or an added effect, does to every sensor."""
+"""What an added effect, or a change of contexts, does to every sensor."""
 
 import json
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model import Effect, Model, read_effect
+from rga.model import Effect, Model, as_model, read_effect
 from rga.model.parameter import Estimated
 from rga.simulation.simulator import Simulator
 
@@ -33,7 +33,7 @@ class WhatIf:
         after_ci90, change_ci90: 90 % intervals of the value after, and of the change, from what
             is not sure of contexts and effects, float[sensors, 2]; None where all is taken as
             sure.
-        contexts: the contexts after the change.
+        contexts_before, contexts: the contexts on both sides; the same where an effect is added.
         warnings: where the answer reaches beyond what the model holds for, in words.
     """
 
@@ -43,12 +43,13 @@ class WhatIf:
     after: FloatArray
     after_ci90: FloatArray | None
     change_ci90: FloatArray | None
+    contexts_before: dict[str, float]
     contexts: dict[str, float]
     warnings: list[str] = field(default_factory=list)
 
 
 def whatif(
-    model: Model,
+    model: Model | str | Path,
     settings: Mapping[str, float],
     add: Mapping[str, Effect] | None = None,
     *,
@@ -57,15 +58,52 @@ def whatif(
 ) -> WhatIf:
     """Compare the model with the same model after a change.
 
+    Where effects are added, the model without and with them is compared at the same contexts. Where
+    none is, contexts before are compared with those that are set.
+
     Args:
-        model: the model.
-        settings: context variables after the change, and `time` [s] where it matters.
+        model: the model, or its file.
+        settings: context variables, and `time` [s] where it matters.
         add: effects that the changed model has besides its own; one of the same name is replaced.
-        base: contexts before the change, and `time` [s]; mid-range where left out.
+        base: contexts that are not set, and `time` [s]; mid-range where left out.
         spread: standard deviations of contexts of the base that are not sure.
 
     Raises:
         InputError: a setting is no context variable of the model, or an effect does not fit it.
+    """
+    model = as_model(model)
+    check_settings(model, settings)
+    middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
+    contexts = {**middle, **(base or {}), **settings}
+    # Without a base both sides stand at the same time: only what was set makes a difference.
+    start = {"time": settings["time"]} if "time" in settings and base is None else {}
+    first = contexts if add else {**middle, **(base or {}), **start}
+    changed = model.extended(dict(add or {}))
+    before = Simulator(model).predict(first)[0]
+    after = Simulator(changed).predict(contexts)[0]
+    warnings = []
+    for name, variable in model.context.items():
+        low, high = variable.range
+        if not low <= contexts[name] <= high:
+            warnings.append(
+                f"{name} = {contexts[name]:g} lies outside its range "
+                f"{low:g}..{high:g} {variable.unit}"
+            )
+    unsure = {name: s for name, s in (spread or {}).items() if s > 0}
+    intervals: tuple[FloatArray | None, FloatArray | None] = (None, None)
+    if unsure or any(_estimated(effect) for effect in changed.effects.values()):
+        sure = (set(settings) if add else set(), set(settings))
+        intervals = _intervals(model, changed, (first, contexts), unsure, sure)
+    units = tuple(sensor.unit for sensor in model.sensors.values())
+    without, having = ({name: table[name] for name in model.context} for table in (first, contexts))
+    return WhatIf(tuple(model.sensors), units, before, after, *intervals, without, having, warnings)
+
+
+def check_settings(model: Model, settings: Mapping[str, float]) -> None:
+    """Refuse settings of contexts that the model does not have, or far from their ranges.
+
+    Raises:
+        InputError: names the context.
     """
     for name in settings:
         if name != "time" and name not in model.context:
@@ -83,29 +121,6 @@ def whatif(
                 f"model {model.name!r}",
                 f"give a value near {low:g}..{high:g} {variable.unit}",
             )
-    middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
-    contexts = {**middle, **(base or {}), **settings}
-    # Without a base both sides stand at the same time: only what was set makes a difference.
-    start = {"time": settings["time"]} if "time" in settings and base is None else {}
-    first = {**middle, **(base or {}), **start}
-    changed = model.extended(dict(add or {}))
-    before = Simulator(model).predict(first)[0]
-    after = Simulator(changed).predict(contexts)[0]
-    warnings = []
-    for name, variable in model.context.items():
-        low, high = variable.range
-        if not low <= contexts[name] <= high:
-            warnings.append(
-                f"{name} = {contexts[name]:g} lies outside its range "
-                f"{low:g}..{high:g} {variable.unit}"
-            )
-    unsure = {name: s for name, s in (spread or {}).items() if s > 0}
-    intervals: tuple[FloatArray | None, FloatArray | None] = (None, None)
-    if unsure or any(_estimated(effect) for effect in changed.effects.values()):
-        intervals = _intervals(model, changed, (first, contexts), unsure, set(settings))
-    units = tuple(sensor.unit for sensor in model.sensors.values())
-    kept = {name: value for name, value in contexts.items() if name in model.context}
-    return WhatIf(tuple(model.sensors), units, before, after, *intervals, kept, warnings)
 
 
 def _intervals(
@@ -113,7 +128,7 @@ def _intervals(
     changed: Model,
     contexts: tuple[Mapping[str, float], Mapping[str, float]],
     spread: Mapping[str, float],
-    sure: set[str],
+    sure: tuple[set[str], set[str]],
 ) -> tuple[FloatArray, FloatArray]:
     """90 % intervals of the values after and of the change, float[sensors, 2] each."""
     generator = np.random.default_rng(0)
@@ -122,10 +137,10 @@ def _intervals(
         off = {name: s * generator.standard_normal() for name, s in spread.items()}
         ends = []
         drawn = {name: _drawn(effect, generator) for name, effect in changed.effects.items()}
-        for one, table in zip((model, changed), contexts, strict=True):
-            # What is set is sure after the change; before it, the context is what it was.
+        for one, table, known in zip((model, changed), contexts, sure, strict=True):
+            # What is set is sure; where it is set for one side alone, the other is what it was.
             moved = {
-                name: value + (off.get(name, 0.0) if one is model or name not in sure else 0.0)
+                name: value + (0.0 if name in known else off.get(name, 0.0))
                 for name, value in table.items()
             }
             effects = {name: drawn[name] for name in one.effects}

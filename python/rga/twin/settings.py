@@ -1,6 +1,7 @@
 """Settings of a run: the level of integration, and the figures that T1 and T2 go by."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -8,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from rga.errors import InputError
 from rga.findings.criteria import Criteria
 from rga.inference.networks.settings import TrainingSettings
+from rga.settings_files import read_table, validated
 
 Inference = Literal["auto", "joint", "networks", "amortised"]
 Level = Literal["A", "B", "C"]
@@ -104,6 +106,22 @@ class Settings(BaseModel):
             self.settle or max(1, rows // 12),
             self.interval or max(1, rows // 6),
         )
+
+
+def as_settings(given: Settings | str | Path | None) -> Settings:
+    """Settings, read where their file (JSON or TOML) is given; the default ones where none are.
+
+    Raises:
+        InputError: the file cannot be read, a setting is unknown or impossible, or these are none.
+    """
+    if given is None:
+        return Settings()
+    if isinstance(given, Settings):
+        return given
+    if isinstance(given, str | Path):
+        return validated(Settings, read_table(Path(given), "settings"), str(given), "settings")
+    what = f"a {type(given).__name__} is no set of settings"
+    raise InputError(what, "settings", "give Settings, or the path of their file")
 
 
 @dataclass(frozen=True)

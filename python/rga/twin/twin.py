@@ -1,7 +1,6 @@
 """A twin as its repository holds it."""
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Self
 
@@ -9,6 +8,7 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.model import Effect, Model
+from rga.model.effect import seconds
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.archive import Archive
 from rga.twin.digital_twin import DigitalTwin, TwinState
@@ -33,43 +33,84 @@ from rga.twin.versions import extended
 class Twin:
     """A twin, now or as it stood: its model, its context, its history, and what it answers.
 
-    Nothing but a response changes it; `rollback` asks for one.
+    Nothing but a response changes it; `rollback` asks for one. It reads its repository when it is
+    asked, and holds no lock: `close` it, use it in a `with` block, or leave it to Python.
 
     Args:
         view: a run of a repository.
         place: of the repository.
+        repository: that is closed with the twin; None: it belongs to another.
     """
 
-    def __init__(self, view: RunView, place: str | Path) -> None:
-        self._view, self._place = view, place
+    def __init__(
+        self, view: RunView, place: str | Path, repository: Repository | None = None
+    ) -> None:
+        self._view, self._place, self._repository = view, place, repository
         self._station, self.given = station_of(view), given_model(view)
         self.state: TwinState = replay(view, self._station.channels)
 
     @classmethod
-    @contextmanager
-    def open(cls, place: str | Path) -> Iterator[Self]:
+    def open(cls, place: str | Path) -> Self:
         """The twin of the run last acted on in a run's directory, its file, or a database by URL.
 
         Raises:
             InputError: there is no repository, or nothing has run in it.
         """
-        with Repository.open(place, read_only=True) as repository:
-            yield cls(_latest(repository, place), place)
+        repository = Repository.open(place, read_only=True)
+        try:
+            return cls(_latest(repository, place), place, repository)
+        except BaseException:
+            repository.close()
+            raise
 
-    def as_of(self, *, row: int | None = None, time: float | None = None) -> "Twin":
-        """The twin as it stood when the record had reached a row, or a time since its start [s].
+    def close(self) -> None:
+        """Close the connections to its repository; it opens them again where it is asked more."""
+        if self._repository is not None:
+            self._repository.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def as_of(self, *, row: int | None = None, time: float | str | None = None) -> "Twin":
+        """The twin as it stood when the record had reached a row, or a time.
+
+        Args:
+            row: number of the row, from 0.
+            time: seconds since the first row, or a date as in the record (ISO 8601).
 
         Raises:
-            InputError: a row or time before the record.
+            InputError: a row or time before the record, or a text that is no date.
         """
-        for name, value in (("row", row), ("time", time)):
+        elapsed = self._elapsed(time) if isinstance(time, str) else time
+        for name, value, given in (("row", row, row), ("time", elapsed, time)):
             if value is not None and not value >= 0:
                 raise InputError(
-                    f"the {name} {value:g} is none of the record",
+                    f"the {name} {given} is none of the record",
                     name,
-                    "give rows, or seconds since the first row, from 0 on",
+                    "give rows, seconds since the first row from 0 on, or a date of the record",
                 )
-        return Twin(self._view.as_of(row, time=time), self._place)
+        return Twin(self._view.as_of(row, time=elapsed), self._place)
+
+    def _elapsed(self, moment: str) -> float:
+        """Seconds from the first row of the record to a date."""
+        station = station_of(self._view)
+        if station.time_format != "iso":
+            raise InputError(
+                f"the record counts seconds, and {moment!r} is a date",
+                "time",
+                "give seconds since the first row",
+            )
+        try:
+            return seconds(moment) - station.origin
+        except ValueError:
+            raise InputError(
+                f"{moment!r} is no date",
+                "time",
+                "write it as in the record, such as 2026-03-01T12:00",
+            ) from None
 
     @property
     def version(self) -> int:
@@ -188,4 +229,4 @@ def rollback(place: str | Path, version: int) -> Twin:
             words = f"version {version} is in force again, as asked"
             label = record.time_label(float(record.time[row]) if len(record) else 0.0)
             archive.event(Event("rollback", row, label, words))
-        return Twin(kept, place)
+    return Twin.open(place)

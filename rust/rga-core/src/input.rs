@@ -97,7 +97,7 @@ pub struct Outputs<'a> {
     pub kind: Array<'a, i64>,
     /// `[o]` node or member
     pub index: Array<'a, i64>,
-    /// `[o]` reference node or local end dof, else -1
+    /// `[o]` reference node, component of a section force or local end dof, else -1
     pub other: Array<'a, i64>,
     /// `[o, 3]`
     pub vector: Array<'a, f64>,
@@ -122,8 +122,8 @@ pub enum OutputKind {
     Rotation,
     /// Of a member at (place in 0..1, y, z).
     Strain,
-    /// Of a member at a place in 0..1.
-    AxialForce,
+    /// Of a member at a place in 0..1: N, Vy, Vz, T, My or Mz.
+    SectionForce,
     /// Of supports and springs to ground, on a node along a direction.
     ReactionForce,
     ReactionMoment,
@@ -137,7 +137,7 @@ impl OutputKind {
         (Self::Displacement, "DISPLACEMENT"),
         (Self::Rotation, "ROTATION"),
         (Self::Strain, "STRAIN"),
-        (Self::AxialForce, "AXIAL_FORCE"),
+        (Self::SectionForce, "SECTION_FORCE"),
         (Self::ReactionForce, "REACTION_FORCE"),
         (Self::ReactionMoment, "REACTION_MOMENT"),
         (Self::EndForce, "END_FORCE"),
@@ -151,6 +151,6 @@ impl OutputKind {
 
     /// It reads a member, not a node.
     pub(crate) fn reads_member(self) -> bool {
-        matches!(self, Self::Strain | Self::AxialForce | Self::EndForce)
+        matches!(self, Self::Strain | Self::SectionForce | Self::EndForce)
     }
 }

@@ -15,7 +15,7 @@ fn bar_lengthens_by_its_force() -> Result<()> {
     let bar = bar.fix(0, &[0, 1, 2]).fix(1, &[1, 2]).force(1, 0, P);
     let found = bar.solve(&[
         at(DISPLACEMENT, 1, 0),
-        (AXIAL, 0, -1, [0.5, 0.0, 0.0]),
+        (SECTION_FORCE, 0, 0, [0.5, 0.0, 0.0]),
         (STRAIN, 0, -1, [0.5, 0.0, 0.0]),
         at(REACTION, 0, 0),
     ])?;
@@ -76,7 +76,7 @@ fn warm_bar_pushes_against_its_spring() -> Result<()> {
     let own = E * AREA / L;
     let found = bar.solve(&[
         at(DISPLACEMENT, 1, 0),
-        (AXIAL, 0, -1, [0.0; 3]),
+        (SECTION_FORCE, 0, 0, [0.0; 3]),
         at(REACTION, 1, 0),
         (STRAIN, 0, -1, [0.0; 3]),
     ])?;
@@ -103,6 +103,49 @@ fn released_beam_is_simply_supported() -> Result<()> {
         .solve(&[end_force(0, 11), end_force(0, 1)])?;
     close(propped[0], P * L * L / 8.0);
     close(propped[1], -3.0 / 8.0 * P * L);
+    Ok(())
+}
+
+#[test]
+fn sections_carry_what_lies_beyond_them() -> Result<()> {
+    let section = |part, place| (SECTION_FORCE, 0, part, [place, 0.0, 0.0]);
+    // A cantilever: whatever pushes at its end comes through every section.
+    let mut arm = Case::beam(L).fix(0, &ALL);
+    arm.forces[1] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+    let found = arm.solve(&[0, 1, 2, 3, 4, 5].map(|part| section(part, 0.25)))?;
+    let lever = 0.75 * L;
+    for (found, expected) in
+        found
+            .into_iter()
+            .zip([1.0, 2.0, 3.0, 4.0, 5.0 - 3.0 * lever, 6.0 + 2.0 * lever])
+    {
+        close(found, expected);
+    }
+    // A simple beam under loads along local y and z, the one upwards, the other downwards.
+    let beam = Case::beam(L).fix(0, &ALL).fix(1, &ALL).uniform(0, 1, L, P);
+    let beam = [4, 5, 10, 11]
+        .iter()
+        .fold(beam.uniform(0, 2, L, -P), |beam, &dof| {
+            beam.connect(0, dof, 0.0)
+        });
+    let found = beam.solve(&[
+        section(5, 0.5),
+        section(1, 0.0),
+        section(1, 0.75),
+        section(4, 0.5),
+        section(2, 0.0),
+        section(2, 0.75),
+    ])?;
+    for (found, expected) in found.into_iter().zip([
+        -P * L * L / 8.0,
+        P * L / 2.0,
+        -P * L / 4.0,
+        -P * L * L / 8.0,
+        -P * L / 2.0,
+        P * L / 4.0,
+    ]) {
+        close(found, expected);
+    }
     Ok(())
 }
 

@@ -46,10 +46,11 @@ fn outputs() -> Vec<Output> {
     let ends = (0..5).flat_map(|member| (0..12).map(move |dof| end_force(member, dof)));
     let gauges = (0..7).map(|member| (STRAIN, member, -1, [0.4, 0.05, -0.03]));
     let braces = [5, 6].map(|member| (STRAIN, member, -1, [0.5, 0.0, 0.0]));
-    let axial = (0..7).map(|member| (AXIAL, member, -1, [0.3, 0.0, 0.0]));
+    let sections = (0..7)
+        .flat_map(|member| (0..6).map(move |part| (SECTION_FORCE, member, part, [0.3, 0.0, 0.0])));
     let nodes = (0..5)
         .flat_map(|node| [DISPLACEMENT, ROTATION, REACTION, MOMENT].map(|kind| at(kind, node, 2)));
-    (ends.chain(gauges.take(5)).chain(braces).chain(axial))
+    (ends.chain(gauges.take(5)).chain(braces).chain(sections))
         .chain(nodes)
         .collect()
 }

@@ -95,7 +95,7 @@ fn a_turn_as_a_whole_costs_no_tension() -> Result<()> {
         beam.prescribed[0][4] = turn;
         let (along, across) = (length * (turn.cos() - 1.0), -length * turn.sin());
         beam.prescribed[1] = [along, 0.0, across, 0.0, turn, 0.0];
-        let tension = solve(&beam, &[(AXIAL, 0, -1, [0.5, 0.0, 0.0])])?[0];
+        let tension = solve(&beam, &[(SECTION_FORCE, 0, 0, [0.5, 0.0, 0.0])])?[0];
         // Without its chord, EA turn^2 / 2 would be missed.
         assert!(tension.abs() < 1e-8 * E * AREA, "{tension}");
     }

@@ -45,8 +45,9 @@ type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 ///     kind, index, other i64[o], vector f64[o, 3], total bool[o]; kind by
 ///     `OutputKind`: DISPLACEMENT and ROTATION of node index along vector,
 ///     relative to node other (or -1); STRAIN of member index at vector =
-///     (place in 0..1, y, z), total or mechanical; AXIAL_FORCE of member index
-///     at vector[0]; REACTION_FORCE and REACTION_MOMENT on node index along
+///     (place in 0..1, y, z), total or mechanical; SECTION_FORCE of member
+///     index at vector[0], other 0..5 for N, Vy, Vz, T, My, Mz in local axes,
+///     of what lies beyond on what lies before; REACTION_FORCE and REACTION_MOMENT on node index along
 ///     vector, of supports and springs to ground; END_FORCE of the node on
 ///     member index at local end dof other (0..11). Directions are taken as
 ///     given, not normalised.

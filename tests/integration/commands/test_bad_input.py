@@ -9,6 +9,7 @@ import pytest
 
 from rga.cli.settings import read_settings
 from rga.errors import InputError
+from rga.model import load_model
 
 GOOD = "time,D1,S1\n0,1,2\n1,1,2\n2,1,2\n"
 
@@ -162,7 +163,6 @@ def test_files_that_are_not_there(
 MODELS: dict[str, tuple[str, list[str]]] = {
     "no JSON": ("{", ["no JSON"]),
     "no object": ("[]", ["model.json"]),
-    "unknown key": ('{"rga_model": 1, "nmae": "x"}', ["model.json"]),
 }
 
 
@@ -174,6 +174,20 @@ def test_models(case: str, tmp_path: Path, rga: Callable[..., Any]) -> None:
     assert outcome.code == 2
     for part in expected:
         assert part in one_line(outcome.err)
+
+
+def test_mistakes_of_a_model_are_listed_as_in_python(
+    tmp_path: Path, rga: Callable[..., Any]
+) -> None:
+    path = tmp_path / "model.json"
+    path.write_text('{"rga_model": 1, "nmae": "x"}', encoding="utf-8")
+    outcome = rga("whatif", path)
+    with pytest.raises(InputError) as refused:
+        load_model(path)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert outcome.err == f"error: {refused.value}\n"
+    for line in ("nodes: Field required", "nmae: this key is unknown (value 'x')"):
+        assert f"\n  {line}\n" in outcome.err
 
 
 EFFECTS: dict[str, tuple[str, list[str]]] = {

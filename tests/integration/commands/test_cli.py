@@ -175,6 +175,25 @@ def test_whatif_compares_with_mid_range(tmp_path: Path, model_file: Path, rga: R
     sensors = json.loads(target.read_text(encoding="utf-8"))["sensors"]
     assert sensors["D1"]["after"] == pytest.approx(2 * sensors["D1"]["before"])
     assert "D1" in outcome.out
+    assert "Without and with the change, at temperature = 10, load = 5e+04." in outcome.out
+
+
+def test_whatif_adds_an_effect_at_the_contexts_that_are_set(
+    tmp_path: Path, model_file: Path, rga: Rga
+) -> None:
+    (tmp_path / "none.json").write_text(
+        '{"kind": "elastic_modulus", "material": "steel", "factor": 1.0}', encoding="utf-8"
+    )
+    result = json.loads(
+        rga(
+            "whatif", model_file, "--set", "load=1e5", "--add", tmp_path / "none.json", "--json"
+        ).out
+    )
+    assert result["contexts_before"] == result["contexts"]
+    for sensor in result["sensors"].values():
+        assert sensor["after"] == pytest.approx(sensor["before"], rel=1e-9, abs=1e-9)
+    shown = rga("whatif", model_file, "--set", "load=1e5").out
+    assert "Before: temperature = 10, load = 5e+04. After: load = 1e+05." in shown
 
 
 @pytest.mark.parametrize("ci90", [[0.45, 0.55], None])

@@ -176,7 +176,7 @@ def test_a_truck_separates_soft_steel_from_heavy_loads(
 ) -> None:
     """Exactly alike under the deck load; a truck of known weight is planned, and tells."""
     model, findings = alike
-    assert "truck" in findings.causes[0].separated_by
+    assert "known weights" in findings.causes[0].separated_by
 
     planned = plan(model, findings, sensors=0, positions=2, seed=1)
     assert planned.sensors == []
@@ -312,8 +312,8 @@ def files(bridge: dict[str, Any], tmp_path: Path) -> Path:
 def test_the_command_writes_what_it_says(files: Path, rga: Callable[..., Any]) -> None:
     done = rga("plan", files / "model.json", files, "-o", files / "plan.json", "--seed", "4")
     assert done.code == 0
-    assert "Truck: axles of" in done.out
-    assert "first axle at" in done.out
+    assert "Known weights of" in done.out
+    assert "known weights with the first at" in done.out
     content = json.loads((files / "plan.json").read_text(encoding="utf-8"))
     assert content["seed"] == 4
     assert all(test["words"] in content["sentence"] for test in content["tests"])
@@ -332,7 +332,7 @@ def test_findings_are_read_back(files: Path) -> None:
     [
         (["--truck", "60,-100@3.5"], "not above zero"),
         (["--truck", "60,100@0"], "not above zero"),
-        (["--truck", "60,1e300@3.5"], "stands on no bridge"),
+        (["--truck", "60,1e300@3.5"], "stands on no structure"),
         (["--truck", "nan"], "not above zero"),
         (["--truck", "60,100"], "2 axles have 0 spacings"),
         (["--truck", "lorry"], "is no truck"),

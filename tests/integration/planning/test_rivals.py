@@ -264,7 +264,7 @@ def soft_or_heavy(
     findings = diagnose(model, measured_record(model, soft))
     (cause,) = findings.causes
     assert {cause.effect["kind"], cause.rivals[0]["kind"]} == {"elastic_modulus", "load_scale"}
-    assert "a load test, truck" in cause.separated_by
+    assert "a load test, known weights with the first at" in cause.separated_by
     return model, findings
 
 
@@ -282,9 +282,8 @@ def test_a_plan_begins_with_what_the_findings_advise(
     advice = findings.causes[0].separated_by
     taken = set()
     for stand in ("1.50 m (node L1)", "3.75 m (node L2)", "6.00 m (node L3)"):
-        words = advice.replace(
-            advice[advice.index("axle at ") + 8 : advice.index(", axles")], stand
-        )
+        begin = advice.index("the first at ") + len("the first at ")
+        words = advice.replace(advice[begin : advice.index(", [kN]")], stand)
         planned = plan(model, advising(findings, words), sensors=1, positions=1)
         (one,), (test,) = planned.advised, planned.tests
         assert one.planned
@@ -302,7 +301,7 @@ def test_a_truck_at_either_end_of_its_path_separates_as_far(
     model, findings = soft_or_heavy
     separations = []
     for stand in ("1.50 m (node L1)", "6.00 m (node L3)"):
-        words = f"a load test, truck with its first axle at {stand}, axles [kN] @ [m] 100,100@1.5, "
+        words = f"a load test, known weights with the first at {stand}, [kN] @ [m] 100,100@1.5, "
         (one,) = plan(model, advising(findings, words), sensors=0, positions=1).advised
         separations.append(one.d_perp)
     assert separations[0] == pytest.approx(separations[1], rel=0.1)

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga.drawing.projection import views
 from rga.findings import schema as contract
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Cause, Explanation, Findings, GroupGap, Unexplained
 from rga.model import Model, read_model
+from rga.quantities import number, percent, quantity
 from rga.records import Record
 from rga.report import write_report
-from rga.report.drawing.projection import views
 from rga.report.figures.deviation import percent_off
 from rga.report.figures.gain import blocks
 from rga.report.figures.series import runs_on
-from rga.report.text.quantities import number, percent, quantity
 
 HOSTILE = "<script>alert('x')</script> $\\frac{a_b}$ & \"q\""
 #: what a full report says somewhere
@@ -136,7 +136,9 @@ class Reader(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.append(tag)
         for name, value in attrs:
-            if name in ("src", "href", "xlink:href") and not str(value).startswith("#"):
+            if name in ("src", "href", "xlink:href") and not str(value).startswith(
+                ("#", "data:text/csv")
+            ):
                 self.fetched.append(str(value))
 
     def handle_data(self, data: str) -> None:
@@ -171,8 +173,10 @@ def test_report_says_all_and_fetches_nothing(tmp_path: Path) -> None:
     reader, html = read(findings, tmp_path)
     assert not reader.fetched
     assert "script" not in reader.tags
-    assert reader.tags.count("svg") == 5
-    assert html.count('<svg role="img" aria-label="') == 5
+    channels = len(findings.account.record.sensors)
+    assert reader.tags.count("svg") == 5 + channels
+    assert html.count('<svg role="img" aria-label="') == 5 + channels
+    assert html.count("data:text/csv") == channels
     plain = reader.text.replace("\u00a0", " ")
     for words in re.split(r" \| |\n", SAID):
         assert words in plain
@@ -250,7 +254,7 @@ def test_a_single_sensor(tmp_path: Path) -> None:
     reader, _ = read(
         found(model.model_copy(update={"sensors": {"D0": model.sensors["D0"]}})), tmp_path
     )
-    assert reader.tags.count("svg") == 4
+    assert reader.tags.count("svg") == 4 + 1
 
 
 @pytest.mark.parametrize("panels", [3, 20])
@@ -259,7 +263,7 @@ def test_bridges_of_any_size(tmp_path: Path, panels: int) -> None:
     gone = Cause(effect=lost, status="named", log_odds=9, d_prime=5, d_perp=5)
     model = truss(panels, at=(-2.0, 2.0), plane=None)
     reader, _ = read(found(model, causes=[gone]), tmp_path)
-    assert reader.tags.count("svg") == 4
+    assert reader.tags.count("svg") == 4 + len(model.sensors)
     plain = reader.text.replace("\u00a0", " ")
     assert "member stiffness of L10-L11" in plain
     drawn = [view.title for view in views(model, {"L10-L11"})]

@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rga.drawing.time_axis import spaced, thinned, time_axis
 from rga.findings import schema as contract
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.schema import Cause, Findings, Unexplained
 from rga.model import Model, read_model
+from rga.quantities import number
 from rga.records import Record
 from rga.report.figures.gap_map import MOST_CELLS, stretches
 from rga.report.figures.run_gap import MOST_PHASES, phases, smoothed, standardised
-from rga.report.figures.time_axis import spaced, thinned, time_axis
 from rga.report.pages.run_page import lived
 from rga.report.pages.write import write_report, write_run_report
-from rga.report.text.quantities import number
 from rga.twin.history import Event, History, Version
 from rga_bench.synthetic import draw_case
 
@@ -29,7 +29,7 @@ SPRING = {"kind": "support_spring", "support": "rocker", "dof": "ux", "stiffness
 SAID = """120 rows | the gap left its band | w1, w2, w3 | 8.31 → 1.13 | version 2 | 130 [121, 138]
 in force | 90 % interval | people on 1 row | What happened | The closing diagnosis
 Provenance | grew to 2400 | 1 alarm | 2024-03-03 12:00:00 | beyond the model as given"""
-FIGURES = {"Gap over time", "The bridge with the gap", "Gap of", "Contexts", "Stored simulations"}
+FIGURES = {"Gap over time", "The structure and the gap", "Gap of", "Contexts", "Stored simulations"}
 
 
 @pytest.fixture(scope="module")
@@ -146,7 +146,9 @@ class Reader(HTMLParser):
         for name, value in attrs:
             if tag == "svg" and name == "aria-label":
                 self.figures.append(str(value))
-            if name in ("src", "href", "xlink:href") and not str(value).startswith("#"):
+            if name in ("src", "href", "xlink:href") and not str(value).startswith(
+                ("#", "data:text/csv")
+            ):
                 self.fetched.append(str(value))
 
     def handle_data(self, data: str) -> None:
@@ -250,7 +252,7 @@ def test_a_quiet_run(model: Model, tmp_path: Path) -> None:
     assert "Nothing happened to the twin." in reader.text
     assert "in force" not in reader.text
     assert ">alarm<" not in html
-    assert reader.figures_of_the_run() == {"Gap over time", "The bridge with the gap", "Gap of"}
+    assert reader.figures_of_the_run() == {"Gap over time", "The structure and the gap", "Gap of"}
 
 
 def test_columns_without_values(model: Model, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import random
 import shutil
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from rga.cli import main
 from rga.errors import InputError
 from rga.twin import Outcome, Settings, rollback
 from rga.twin.repository import Repository
-from rga.twin.restore import log_of
+from rga.twin.restore import log_of, station_of
 from rga.twin.runner import Running
 
 Stream = Callable[..., Path]
@@ -282,6 +283,21 @@ def test_the_past_stands_as_it_was(finished: tuple[Path, Outcome]) -> None:
         assert twin.version > 1
         assert len(early.history().events) < len(twin.history().events)
         assert twin.as_of(time=600.0 * 79).context == early.context
+
+
+def test_the_past_stands_at_a_date_of_the_record(
+    finished: tuple[Path, Outcome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with rga.Twin.open(finished[0]) as twin:
+        with pytest.raises(InputError, match="counts seconds, and '2026-03-01' is a date"):
+            twin.as_of(time="2026-03-01")
+        station = replace(station_of(twin._view), start="2026-03-01T00:00:00", time_format="iso")
+        monkeypatch.setattr("rga.twin.twin.station_of", lambda view: station)
+        assert twin.as_of(time="2026-03-01T13:10").state.row == 79
+        with pytest.raises(InputError, match="the time 2026-02-28 is none of the record"):
+            twin.as_of(time="2026-02-28")
+        with pytest.raises(InputError, match="'yesterday' is no date"):
+            twin.as_of(time="yesterday")
 
 
 def test_a_repository_that_was_tampered_with_is_reported(

@@ -13,7 +13,7 @@ from rga._core import Condensation, DependentTerms, OutputKind
 from rga_bench.solver.box_bridge import BoxBridge, box_bridge
 
 DISPLACEMENT, STRAIN = OutputKind.DISPLACEMENT, OutputKind.STRAIN
-FORCE, REACTION = OutputKind.AXIAL_FORCE, OutputKind.REACTION_FORCE
+FORCE, REACTION = OutputKind.SECTION_FORCE, OutputKind.REACTION_FORCE
 
 
 def small_bridge(seed: int) -> BoxBridge:
@@ -33,7 +33,7 @@ def small_bridge(seed: int) -> BoxBridge:
     bridge.outputs.update(
         kind=np.array([row[0] for row in rows]),
         index=np.array([row[1] for row in rows]),
-        other=np.full(len(rows), -1),
+        other=np.array([0 if row[0] == FORCE else -1 for row in rows]),
         vector=np.array([row[2] for row in rows], dtype=float),
         total=np.arange(len(rows)) == 5,
     )

@@ -17,7 +17,7 @@ from rga.simulation.verification_input import FrameCase, Loads, output_arrays
 
 HERE = Path(__file__).parents[2]
 NONE = np.zeros(0, np.int64)
-STRAIN, FORCE = OutputKind.STRAIN, OutputKind.AXIAL_FORCE
+STRAIN, FORCE = OutputKind.STRAIN, OutputKind.SECTION_FORCE
 
 
 def condensed(arrays: Any, members: Any, springs: Any, q: Any, factors: Any) -> Any:
@@ -113,7 +113,7 @@ def bent_chain(seed: int) -> tuple[Any, Any, Any]:
     ]  # fmt: skip
     rows += [(6, member, dof, np.zeros(3), False) for member in range(count) for dof in range(12)]
     for member in range(count):
-        rows.append((FORCE, member, -1, [draw.random(), 0, 0], False))
+        rows += [(FORCE, member, part, [draw.random(), 0, 0], False) for part in range(6)]
         rows += [(STRAIN, member, -1, [draw.random(), *draw.normal(0, 0.1, 2)], total)
                  for total in (False, True)]  # fmt: skip
     kind, index, other, vector, total = zip(*rows, strict=True)

@@ -10,11 +10,11 @@ from rga.planning.advised import advised
 
 def numbers(bridge: MeasurementModel, *phrases: str) -> tuple[list[int], list[int]]:
     said = (cause(EAST, separated_by=f"against it: {one} tells them apart") for one in phrases)
-    return advised(findings(*said), bridge.added, bridge.tests, None)
+    return advised(findings(*said), bridge.added, bridge.tests)
 
 
 def test_sensors_and_tests_are_found_by_their_words(bridge: MeasurementModel) -> None:
-    sensor, test = bridge.added[3].advice, bridge.tests[1].advice(None)
+    sensor, test = bridge.added[3].advice, bridge.tests[1].advice
     assert numbers(bridge, sensor) == ([3], [])
     assert numbers(bridge, test) == ([], [1])
     assert numbers(bridge, test, sensor, sensor) == ([3], [1])
@@ -37,5 +37,5 @@ def test_of_words_that_are_the_beginning_of_others_the_longer_are_meant(
     short = bridge.added[3]
     long = replace(short, words=f"{short.words} at midspan")
     said = findings(cause(EAST, separated_by=f"{long.advice} tells them apart"))
-    assert advised(said, [short, long], [], None) == ([1], [])
-    assert advised(said, [long, short], [], None) == ([0], [])
+    assert advised(said, [short, long], []) == ([1], [])
+    assert advised(said, [long, short], []) == ([0], [])

@@ -102,10 +102,10 @@ def prepare(
     serious = [w for w, share in faults_of_rows.items() if share >= criteria.record.faulty_share]
     as_measured = record
     simulator = Simulator(model.without_zeros())
-    given = _data(model, record, criteria)
+    given = data_of(model, record, criteria)
     zeros = with_own_zeros(model, simulator, record, given)
     record = zeros.record
-    data = _data(model, record, criteria)
+    data = data_of(model, record, criteria)
     faults = stuck_channels(data.sensors, data.readings, data.observed, criteria.channels)
     found = {fault.sensor: fault for fault in faults}
     data = _without(data, faults)
@@ -240,7 +240,12 @@ def check_length(record: Record, criteria: RecordCriteria) -> None:
         )
 
 
-def _data(model: Model, record: Record, criteria: Criteria) -> Data:
+def data_of(model: Model, record: Record, criteria: Criteria) -> Data:
+    """All rows of a record as observations, before anything of it is judged.
+
+    Raises:
+        InputError: a channel was zeroed outside the times of the record.
+    """
     order = {name: number for number, name in enumerate(model.sensors)}
     belief = first_belief(model, record.origin + record.time, record.contexts)
     # A row whose context is missing cannot be simulated: its readings are left aside.

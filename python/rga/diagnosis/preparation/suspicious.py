@@ -1,5 +1,7 @@
 """What of a record looks like a slip: units that were mixed up, contexts that do not change."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from rga.arrays import BoolArray, FloatArray
@@ -15,6 +17,19 @@ FEWEST_OF_A_UNIT = 2
 ALIKE = 3.0
 
 
+@dataclass(frozen=True)
+class UnitSlip:
+    """Channels of some units that go with the simulation, but for a factor or the sign.
+
+    Attributes:
+        units: of these channels.
+        words: what there is of it.
+    """
+
+    units: tuple[str, ...]
+    words: str
+
+
 def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[str]:
     """Warnings where most channels of a unit go with the simulation, but for a factor or the sign.
 
@@ -23,8 +38,13 @@ def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[st
         data: of the rows that are analysed.
         simulated: float[rows, sensors].
     """
+    return [slip.words for slip in unit_slips(model, data, simulated)]
+
+
+def unit_slips(model: Model, data: Data, simulated: FloatArray) -> list[UnitSlip]:
+    """The same with the units that they are of."""
     units = np.array([model.sensors[name].unit for name in data.sensors])
-    factors, limits = _unit_factors(data, simulated), data.criteria.record
+    factors, limits = unit_factors(data, simulated), data.criteria.record
     larger: dict[float, list[str]] = {}
     turned: list[str] = []
     for unit in dict.fromkeys(units.tolist()):
@@ -33,22 +53,27 @@ def suspicious_units(model: Model, data: Data, simulated: FloatArray) -> list[st
         if len(known) < FEWEST_OF_A_UNIT or len(known) <= len(own) / 2:
             continue
         factor = float(np.median(known))
-        if _of_a_unit(abs(factor), limits):
+        if of_a_unit(abs(factor), limits):
             alike = (one for one in larger if ALIKE > abs(factor) / one > 1 / ALIKE)
             larger.setdefault(next(alike, abs(factor)), []).append(unit)
         if factor < 0:
             turned.append(unit)
-    warnings = [
-        f"the readings in {' and '.join(of)} go with the simulation and are about "
-        f"{few_digits(factor)} times as large: check the units of record and model before any cause"
+    slips = [
+        UnitSlip(
+            tuple(of),
+            f"the readings in {' and '.join(of)} go with the simulation and are about "
+            f"{few_digits(factor)} times as large: check the units of record and model before any "
+            "cause",
+        )
         for factor, of in larger.items()
     ]
     if turned:
-        warnings.append(
+        words = (
             f"the readings in {' and '.join(turned)} go against the simulation: check the sign "
             "convention of record and model before any cause"
         )
-    return warnings
+        slips.append(UnitSlip(tuple(turned), words))
+    return slips
 
 
 def doubted_units(data: Data, simulated: FloatArray) -> BoolArray:
@@ -59,11 +84,11 @@ def doubted_units(data: Data, simulated: FloatArray) -> BoolArray:
         simulated: float[rows, sensors].
     """
     limits = data.criteria.record
-    factors = np.abs(_unit_factors(data, simulated))
-    return np.array([_of_a_unit(one, limits) for one in factors], dtype=bool)
+    factors = np.abs(unit_factors(data, simulated))
+    return np.array([of_a_unit(one, limits) for one in factors], dtype=bool)
 
 
-def _unit_factors(data: Data, simulated: FloatArray) -> FloatArray:
+def unit_factors(data: Data, simulated: FloatArray) -> FloatArray:
     """Readings over simulation of channels that go with it, or against it, float[sensors]; NaN."""
     limits = data.criteria.record
     readings = np.where(data.observed, data.readings, np.nan)
@@ -75,7 +100,7 @@ def _unit_factors(data: Data, simulated: FloatArray) -> FloatArray:
     return factors
 
 
-def _of_a_unit(factor: float, limits: RecordCriteria) -> bool:
+def of_a_unit(factor: float, limits: RecordCriteria) -> bool:
     """Whether so large a factor, or so small a one, is a matter of units; NaN is not."""
     return factor >= limits.unit_factor or factor <= 1 / limits.unit_factor
 

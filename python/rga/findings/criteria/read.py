@@ -2,8 +2,25 @@
 
 from pathlib import Path
 
+from rga.errors import InputError
 from rga.findings.criteria.criteria import Criteria
 from rga.settings_files import read_table, validated
+
+
+def as_criteria(given: Criteria | str | Path | None) -> Criteria:
+    """Criteria, read where their file is given; the default ones where none are.
+
+    Raises:
+        InputError: as `load_criteria`; these are no criteria.
+    """
+    if given is None:
+        return Criteria()
+    if isinstance(given, Criteria):
+        return given
+    if isinstance(given, str | Path):
+        return load_criteria(given)
+    what = f"a {type(given).__name__} is no set of criteria"
+    raise InputError(what, "criteria", "give Criteria, or the path of their file")
 
 
 def load_criteria(path: str | Path) -> Criteria:

@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
+from rga.drawing.figure_style import INK, MARKED, STEEL, inline, label, style
+from rga.drawing.projection import Projection, views
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.schema import Model
 from rga.report.drawing.labels import Label, marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Named, Spot, spots
-from rga.report.drawing.projection import Projection, views
-from rga.report.figures.figure_style import INK, MARKED, STEEL, inline, label, style
 
 WIDTH = 10.0  # inches; the page shows it about as wide as its text
 TITLE, KEY = 0.4, 0.75

@@ -3,11 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rga.drawing.labels import LETTER, LINE, Box, overlap
 from rga.report.drawing.places import Spot
 
-LETTER, LINE = 0.058, 0.112  # inches, at the size at which labels are set
 STEP, MOST_STEPS = 0.06, 14
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ def place_labels(
                 label
                 for names in (True, False)
                 for label in _candidates(spot, unit, lines(spot, names), names)
-                if not any(_overlap(label.box, other) for other in taken)
+                if not any(overlap(label.box, other) for other in taken)
             ),
             None,
         )
@@ -96,7 +95,3 @@ def _candidates(spot: Spot, unit: float, text: list[str], names: bool) -> list[L
             box = (x0 - wide / 2, y0 + y, x0 + wide / 2, y0 + y + high)
         found.append(Label(x, y, names, box, number > 1))
     return found
-
-
-def _overlap(a: Box, b: Box) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from rga.drawing.projection import Projection
 from rga.model.effect import Effect
 from rga.model.schema import Model
-from rga.report.drawing.projection import Projection
 
 
 @dataclass(frozen=True)

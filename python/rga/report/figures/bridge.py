@@ -6,10 +6,10 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from rga.arrays import FloatArray
 from rga.findings import Findings
+from rga.quantities import DASH, percent, short
 from rga.report.drawing.bridge_drawing import Shades, draw_at_sensors
 from rga.report.drawing.places import named_parts
 from rga.report.figures.deviation import percent_off, squares
-from rga.report.text.quantities import DASH, percent, short
 
 #: below the reference, at it, above it
 EITHER_WAY = LinearSegmentedColormap.from_list(
@@ -91,4 +91,4 @@ def _words(off: dict[str, FloatArray]) -> str:
         if len(seen):
             parts.append(f"{when} the extension by {percent(float(np.median(seen)), sign=False)}")
     said = " and ".join(parts) or "by an amount that cannot be determined"
-    return f"The bridge with its sensors; the median sensor is off {said}."
+    return f"The structure with its sensors; the median sensor is off {said}."

@@ -9,9 +9,9 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
-from rga.report.figures.figure_style import AFTER, BEFORE, FAINT, grid, inline, label, style
-from rga.report.figures.time_axis import TimeAxis, spaced, thinned, time_axis
-from rga.report.text.quantities import scale
+from rga.drawing.figure_style import AFTER, BEFORE, FAINT, grid, inline, label, style
+from rga.drawing.time_axis import TimeAxis, spaced, thinned, time_axis
+from rga.quantities import scale
 from rga.twin.history import History
 
 #: standard deviations from the middle to the ends of a 90 % interval of a normal distribution

@@ -8,8 +8,7 @@ from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Contrast
-from rga.model.schema import Model
-from rga.report.figures.figure_style import (
+from rga.drawing.figure_style import (
     AFTER,
     BEFORE,
     MEASURED,
@@ -19,7 +18,8 @@ from rga.report.figures.figure_style import (
     label,
     style,
 )
-from rga.report.text.quantities import duration, scale, short
+from rga.model.schema import Model
+from rga.quantities import duration, scale, short
 
 COLUMNS, MEANS = 3, 8
 

@@ -4,10 +4,10 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from rga.drawing.figure_style import INK, STEEL, inline, style
 from rga.findings.schema import Explanation, Findings
 from rga.model.effects.sensors.sensor_fault import is_fault
 from rga.report.drawing.places import place_names
-from rga.report.figures.figure_style import INK, STEEL, inline, style
 from rga.report.figures.gain import dumbbells
 
 

@@ -11,10 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from rga.arrays import FloatArray
-from rga.findings import Findings
-from rga.findings.arrays import DiagnosisArrays
-from rga.report.figures.deviation import runs, squares
-from rga.report.figures.figure_style import (
+from rga.drawing.figure_style import (
     AFTER,
     BEFORE,
     FAINT,
@@ -25,7 +22,10 @@ from rga.report.figures.figure_style import (
     label,
     style,
 )
-from rga.report.text.quantities import DASH, duration, number, short
+from rga.findings import Findings
+from rga.findings.arrays import DiagnosisArrays
+from rga.quantities import DASH, duration, number, short
+from rga.report.figures.deviation import runs, squares
 
 T = TypeVar("T")
 MOST_BLOCKS, FEWEST_BLOCKS, MOST_SENSORS = 12, 6, 40

@@ -8,9 +8,9 @@ from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.patches import Rectangle
 
 from rga.arrays import FloatArray
-from rga.report.figures.figure_style import STEEL
+from rga.drawing.figure_style import STEEL
+from rga.quantities import short
 from rga.report.figures.run_gap import mean
-from rga.report.text.quantities import short
 
 LEVELS, BLOCKS = 12, 60
 SHADES = LinearSegmentedColormap.from_list(

@@ -8,10 +8,10 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path as Outline
 
 from rga.arrays import FloatArray
-from rga.report.figures.figure_style import FAINT, INK, inline, label, style
+from rga.drawing.figure_style import FAINT, INK, inline, label, style
+from rga.drawing.time_axis import TimeAxis, time_axis
 from rga.report.figures.gap_colours import HATCH, LEVELS, GapColours, gap_colours
 from rga.report.figures.run_gap import row_of, standardised
-from rga.report.figures.time_axis import TimeAxis, time_axis
 from rga.report.figures.timeline import LEFT, LOOKS, MOST_MARKS, RIGHT, WIDTH
 from rga.twin.history import History
 

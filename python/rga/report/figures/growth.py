@@ -5,10 +5,10 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from rga.report.figures.figure_style import AFTER, STEEL, grid, inline, style
-from rga.report.figures.time_axis import time_axis
+from rga.drawing.figure_style import AFTER, STEEL, grid, inline, style
+from rga.drawing.time_axis import time_axis
+from rga.quantities import fixed
 from rga.report.figures.timeline import LEFT, RIGHT, WIDTH
-from rga.report.text.quantities import fixed
 from rga.twin.history import History
 
 HIGH, BOTTOM, TOP = 1.2, 0.5, 0.3  # inches

@@ -10,15 +10,15 @@ from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
 from rga.diagnosis.member_forces import IDLE, Forces
+from rga.drawing.figure_style import STEEL, inline, label, style
+from rga.drawing.projection import Projection, views
 from rga.findings.phrases import kind_words
 from rga.model.effect import Effect
 from rga.model.schema import Model
+from rga.quantities import DASH, fixed, number
 from rga.report.drawing.bridge_drawing import KEY, TITLE, WIDTH, Shades, draw_supports, paint_scale
 from rga.report.drawing.places import Named
-from rga.report.drawing.projection import Projection, views
 from rga.report.figures.bridge import EITHER_WAY
-from rga.report.figures.figure_style import STEEL, inline, label, style
-from rga.report.text.quantities import DASH, fixed, number
 
 #: change of a force below which a member is left out of the table, and how many are shown
 WORTH_A_LINE, MOST_LINES = 0.005, 24

@@ -8,14 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
+from rga.drawing.figure_style import INK, STEEL, inline, label, style
+from rga.drawing.projection import Projection, views
+from rga.quantities import number
 from rga.report.drawing.bridge_drawing import MARKERS
 from rga.report.drawing.labels import marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Spot, spots
-from rga.report.drawing.projection import Projection, views
-from rga.report.figures.figure_style import INK, STEEL, inline, label, style
 from rga.report.figures.gap_colours import GapColours, gap_colours
 from rga.report.figures.run_gap import Phase, mean, phases, standardised, usual
-from rga.report.text.quantities import number
 from rga.twin.history import History
 
 WIDTH, COLUMNS = 10.0, 2
@@ -72,7 +72,9 @@ def draw_phases(history: History) -> Markup | None:
         worst = number(float(np.nanmax(values)), 2) if np.isfinite(values).any() else "not known"
         words = ", ".join(phase.title for phase in looked_at)
         return inline(
-            figure, "phases", f"The bridge with the gap of its sensors: {words}; at most {worst}."
+            figure,
+            "phases",
+            f"The structure and the gap of its sensors: {words}; at most {worst}.",
         )
 
 

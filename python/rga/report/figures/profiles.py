@@ -7,10 +7,10 @@ from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.profiles import Onset, Profile
+from rga.drawing.figure_style import AFTER, FAINT, INK, STEEL, grid, inline, label, style
 from rga.model.parameter import NORMAL_90
-from rga.report.figures.figure_style import AFTER, FAINT, INK, STEEL, grid, inline, label, style
+from rga.quantities import duration, scale
 from rga.report.pages.cards import plain
-from rga.report.text.quantities import duration, scale
 
 #: half width of the 90 % interval in standard deviations, and its depth in log probability
 DEPTH = NORMAL_90**2 / 2

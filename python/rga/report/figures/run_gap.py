@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.report.figures.time_axis import when
+from rga.report.figures.when import when
 from rga.twin.history import Event, History
 
 #: events after which the twin simulates otherwise than before

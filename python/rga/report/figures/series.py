@@ -8,10 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rga.arrays import FloatArray
-from rga.findings import Findings
-from rga.findings.arrays import DiagnosisArrays
-from rga.report.figures.deviation import runs
-from rga.report.figures.figure_style import (
+from rga.drawing.figure_style import (
     AFTER,
     BEFORE,
     FAINT,
@@ -21,7 +18,10 @@ from rga.report.figures.figure_style import (
     label,
     style,
 )
-from rga.report.text.quantities import duration, scale
+from rga.findings import Findings
+from rga.findings.arrays import DiagnosisArrays
+from rga.quantities import duration, scale
+from rga.report.figures.deviation import runs
 
 COLUMNS = 3
 MOST_IMPROVED, WORST_LEFT = 8, 4

@@ -12,8 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rga.arrays import FloatArray
-from rga.report.drawing.labels import LETTER
-from rga.report.figures.figure_style import (
+from rga.drawing.figure_style import (
     AFTER,
     BEFORE,
     FAINT,
@@ -24,9 +23,10 @@ from rga.report.figures.figure_style import (
     label,
     style,
 )
+from rga.drawing.labels import LETTER
+from rga.drawing.time_axis import TimeAxis, spaced, thinned, time_axis
+from rga.quantities import number, short
 from rga.report.figures.run_gap import mean, row_of, smoothed, standardised, version_number, window
-from rga.report.figures.time_axis import TimeAxis, spaced, thinned, time_axis
-from rga.report.text.quantities import number, short
 from rga.twin.history import Event, History
 
 WIDTH, LEFT, RIGHT = 10.0, 0.115, 0.985

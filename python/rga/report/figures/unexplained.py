@@ -10,14 +10,14 @@ from rga.arrays import FloatArray
 from rga.diagnosis.residuals.patterns import Leftover, known_contexts, leftovers
 from rga.diagnosis.residuals.slopes import Bend, bends
 from rga.diagnosis.search.linearised import Problem
+from rga.drawing.figure_style import INK, MEASURED, grid, inline, label, style
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.effect import Values
+from rga.quantities import DASH, duration, fixed, scale
 from rga.report.drawing.bridge_drawing import Shades, draw_at_sensors
 from rga.report.drawing.places import Named
 from rga.report.figures.bridge import EITHER_WAY
-from rga.report.figures.figure_style import INK, MEASURED, grid, inline, label, style
 from rga.report.pages.cards import moment
-from rga.report.text.quantities import DASH, duration, fixed, scale
 
 CONTEXTS, STRONGEST = 2, 5
 #: ends of the scale of colours

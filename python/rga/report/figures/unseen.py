@@ -7,10 +7,10 @@ from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Unseen
+from rga.drawing.figure_style import AFTER, BEFORE, MEASURED, grid, inline, label, style
 from rga.model.parameter import NORMAL_90
 from rga.model.schema import Model
-from rga.report.figures.figure_style import AFTER, BEFORE, MEASURED, grid, inline, label, style
-from rga.report.text.quantities import scale
+from rga.quantities import scale
 
 COLUMNS, MOST_DOTS = 3, 240
 

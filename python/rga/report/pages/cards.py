@@ -7,8 +7,8 @@ from rga.findings.phrases import kind_words
 from rga.findings.schema import Cause
 from rga.model.effect import Effect
 from rga.model.schema import Model
+from rga.quantities import DASH, number, quantity, short
 from rga.report.drawing.places import place_names
-from rga.report.text.quantities import DASH, number, quantity, short
 
 #: keys of an effect that are neither place nor parameter
 OTHER = {"kind", "onset", "end", "profile"}

@@ -7,16 +7,22 @@ import numpy as np
 
 from rga.diagnosis.checks.leave_one_out import unseen_groups
 from rga.diagnosis.member_forces import member_forces
+from rga.diagnosis.member_stresses import member_stresses
+from rga.drawing.figure_style import FONTS
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.findings.phrases import effect_words, kind_words
+from rga.findings.schema import Cause
+from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
+from rga.quantities import DASH, duration, number, percent, short
 from rga.report.figures.bridge import draw_bridge, draw_residuals
+from rga.report.figures.channels import all_channels
 from rga.report.figures.deviation import percent_off, runs
 from rga.report.figures.explanations import draw_explanations, kept, ranked
-from rga.report.figures.figure_style import FONTS
 from rga.report.figures.gain import draw_gain
 from rga.report.figures.member_forces import draw_forces, force_table, restraint_words
+from rga.report.figures.member_stresses import stress_table
 from rga.report.figures.series import draw_series
 from rga.report.figures.unexplained import unexplained
 from rga.report.figures.unseen import draw_unseen
@@ -24,7 +30,6 @@ from rga.report.pages.cards import card, generic, moment, plain
 from rga.report.pages.evidence import evidence
 from rga.report.pages.fault_tolerant_parts import part
 from rga.report.text.actions import BY_VERDICT, actions
-from rga.report.text.quantities import DASH, duration, number, percent, short
 
 VERDICTS = {
     "nothing_wrong": "Nothing wrong found",
@@ -51,6 +56,7 @@ def page(findings: Findings) -> dict[str, Any]:
     return {
         "fonts": FONTS,
         "model_name": model.name,
+        "about": [(what, said) for what, said in model.about.model_dump().items() if said],
         "verdict": VERDICTS[findings.verdict],
         "verdict_key": findings.verdict,
         "headline": headline,
@@ -69,7 +75,7 @@ def page(findings: Findings) -> dict[str, Any]:
                     effect_words(cause.effect),
                     [effect_words(rival) for rival in cause.rivals],
                 ),
-                "actions": part("What to do about it", actions, cause.effect),
+                "actions": part("What to do about it", calls_for, findings, cause),
                 "evidence": part("The evidence", evidence, findings, cause),
             }
             for cause in effects
@@ -91,6 +97,7 @@ def page(findings: Findings) -> dict[str, Any]:
             for group in findings.groups
         ],
         "sensors": part("The table of the sensors", sensors, findings),
+        "channels": part("Every channel", all_channels, findings) if len(record) else None,
         "series": series[0] if series else series,
         "over_time": bool(series and series[1]),
         "explanations": part("The table of explanations", explanations, findings),
@@ -172,8 +179,16 @@ def rejected(findings: Findings) -> list[dict[str, str]]:
 
 def tasks(findings: Findings) -> list[tuple[str, str, str]]:
     """The first thing that every cause calls for: its kind, what sort of action, in words."""
-    effects = [cause.effect for cause in findings.causes]
-    return [(kind_words(str(effect.get("kind"))), *actions(effect)[0]) for effect in effects]
+    return [
+        (kind_words(str(cause.effect.get("kind"))), *calls_for(findings, cause)[0])
+        for cause in findings.causes
+    ]
+
+
+def calls_for(findings: Findings, cause: Cause) -> list[tuple[str, str]]:
+    """What a cause calls for on the structure at hand: what sort of action, in words."""
+    effects = findings.account.model.effects.values()
+    return actions(cause.effect, crossed=any(isinstance(one, AxleLoad) for one in effects))
 
 
 def forces(findings: Findings) -> dict[str, Any] | None:
@@ -186,8 +201,11 @@ def forces(findings: Findings) -> dict[str, Any] | None:
     if not table.lines:
         return None
     record = account.record
+    names = [line[0] for line in table.lines]
+    stresses = member_stresses(account, names, found.row)
     return {
         "table": table,
+        "stresses": None if stresses is None else stress_table(stresses),
         "row": moment(record.time_label(float(record.time[found.row]))),
         "restraint": restraint_words(found, [str(c.effect["kind"]) for c in findings.causes]),
         "figure": draw_forces(found, account.model),

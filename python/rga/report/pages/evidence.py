@@ -16,12 +16,12 @@ from rga.findings.phrases import effect_words
 from rga.findings.schema import Cause, Findings
 from rga.model.effect import Effect
 from rga.model.schema import Model
+from rga.quantities import number, percent, quantity
 from rga.report.figures.contrast import draw_contrast
 from rga.report.figures.profiles import draw_profiles
 from rga.report.figures.series import runs_on
 from rga.report.pages.cards import moment, own_unit, plain
 from rga.report.pages.fault_tolerant_parts import Lost, part
-from rga.report.text.quantities import number, percent, quantity
 
 
 def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:

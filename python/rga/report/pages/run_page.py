@@ -7,6 +7,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.findings import Findings
+from rga.quantities import DASH, fixed, number
 from rga.report.figures.contexts_over_time import draw_contexts, drawn_contexts, out_of_range
 from rga.report.figures.gap_map import draw_gap_map
 from rga.report.figures.growth import draw_growth
@@ -19,11 +20,10 @@ from rga.report.figures.run_gap import (
     standardised,
     usual,
 )
-from rga.report.figures.time_axis import when
 from rga.report.figures.timeline import draw_timeline
+from rga.report.figures.when import when
 from rga.report.pages.diagnosis_page import page
 from rga.report.pages.fault_tolerant_parts import part
-from rga.report.text.quantities import DASH, fixed, number
 from rga.twin.history import Event, History
 
 LEVELS = {

@@ -12,11 +12,11 @@ BY_VERDICT = {
     "data could not have shown stands below.",
     "named": "What each cause calls for stands with it.",
     "ambiguous": "First separate the causes from their rivals: what would do so stands with each. "
-    "Until then act on the one that is worse for the bridge.",
+    "Until then act on the one that is worse for the structure.",
     "partial": "What each cause calls for stands with it. Something is left that no kind explains: "
     "what it follows stands below, and the log-odds are less sure than they look.",
     "unknown": "Do not use the model for what it gets wrong here until the reason is known. Where "
-    "it shows, when, and what it goes with stand below: look at the bridge, the sensors and the "
+    "it shows, when, and what it goes with stand below: look at the structure, the sensors and the "
     "log book there and then.",
     "unidentifiable": "Measure more: what was sought cannot show in these data.",
 }
@@ -25,14 +25,18 @@ PARTS = ("member", "group", "support", "sensor", "context", "effect", "material"
 OF = {"member": "member ", "group": "the group ", "effect": "the load "}
 
 
-def actions(effect: Mapping[str, Any]) -> list[tuple[str, str]]:
+def actions(effect: Mapping[str, Any], *, crossed: bool = True) -> list[tuple[str, str]]:
     """What an effect calls for: what sort of action, and in words.
+
+    Args:
+        effect: keys and values of a cause.
+        crossed: whether loads drive across the structure.
 
     >>> actions({"kind": "sensor_bias", "sensor": "S1"})[0]
     ('inspect', 'the fixing of sensor S1')
     """
     kind = Effect.vocabulary.get(str(effect.get("kind")), Effect)
-    return kind.action.at(_where(effect))
+    return kind.action.at(_where(effect), crossed=crossed)
 
 
 def _where(effect: Mapping[str, Any]) -> str:

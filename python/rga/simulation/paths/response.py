@@ -1,12 +1,14 @@
 """Response of a structure to loads: the way into the core."""
 
+import re
+
 import numpy as np
 
 from rga import _core
 from rga.arrays import FloatArray, LoadArrays, OutputArrays
 from rga.errors import InputError, UnstableStructureError
 from rga.model.schema import DOFS
-from rga.model.structure import Load, Structure
+from rga.model.structure import OF_MEMBERS, Load, Structure
 
 
 def respond(structure: Structure, loads: list[Load], outputs: OutputArrays) -> FloatArray:
@@ -32,13 +34,21 @@ def refused(
 ) -> InputError:
     """What the core refuses, in the names of the model."""
     if isinstance(error, _core.InvalidInput):
-        return InputError(str(error), "the structure as it reaches the solver", "mend that value")
+        return InputError(str(error), _of_member(structure, str(error)), "mend that value")
     place = f"node {node_name(structure, error.node)!r} in {DOFS[error.dof]}"
     return UnstableStructureError(
         f"the structure can move: {place} meets no resistance",
         "members and supports",
         "add a member, a support or a stiffness there, or hold the plane",
     )
+
+
+def _of_member(structure: Structure, told: str) -> str:
+    """The member that the core tells of by its number, as in "Iy[1] is 0"."""
+    found, names = re.match(r"(\w+)\[(\d+)\]", told), list(structure.members)
+    if found is None or found[1] not in OF_MEMBERS or int(found[2]) >= len(names):
+        return "the structure as it reaches the solver"
+    return f"member {names[int(found[2])]!r}"
 
 
 def node_name(structure: Structure, node: int) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rga import _core
 from rga.arrays import FloatArray, IntArray, OutputArrays, StructureArrays, by_name
 from rga.model.structure import Structure
+from rga.simulation.paths.response import refused
 
 #: rows at which straightness is checked, beside the ends of each parameter
 CHECKED = 6
@@ -82,8 +83,16 @@ class Variation:
 
     @property
     def terms(self) -> int:
-        """How many terms of rank one vary."""
-        return _core.count_terms(self.start.arrays, self.start.outputs, self.members, self.springs)
+        """How many terms of rank one vary.
+
+        Raises:
+            InputError: a property that the core refuses.
+        """
+        arrays, outputs = self.start.arrays, self.start.outputs
+        try:
+            return _core.count_terms(arrays, outputs, self.members, self.springs)
+        except _core.InvalidInput as error:
+            raise refused(self.start, error) from None
 
 
 class VariationWithin:

@@ -5,6 +5,7 @@ from contextlib import ExitStack, contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Self
+from weakref import finalize
 
 from sqlalchemy import Connection, Row, insert, select
 
@@ -77,7 +78,9 @@ class Repository:
     def __init__(self, kept_in: Database) -> None:
         self._database = kept_in
         self._held = ExitStack()
-        self._held.callback(kept_in.engine.dispose)
+        if kept_in.read_only:
+            # Nothing but connections goes with it: Python may close what nobody has closed.
+            finalize(self, kept_in.engine.dispose)
 
     @classmethod
     def open(cls, place: str | Path, *, read_only: bool = False) -> Self:
@@ -132,6 +135,7 @@ class Repository:
     def close(self) -> None:
         """Close all connections; the lock of a run goes with them."""
         self._held.close()
+        self._database.engine.dispose()
 
     def __enter__(self) -> Self:
         return self

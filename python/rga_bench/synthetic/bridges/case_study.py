@@ -140,6 +140,7 @@ def actions(draft: Draft, panels: int) -> None:
         effects[name] = {
             "kind": "axle_load",
             "path": [low(side, i) for i in range(panels + 1)],
+            "carried_by": "nodes",
             "forces": [round(1e3 * PATCH * WIDTH / 2.0 / _AXLES, 3)] * _AXLES,
             "offsets": [round(float(x), 4) for x in spread],
             "factor": {"context": "crowd"},

@@ -94,6 +94,7 @@ class Draft:
         self.model["effects"][name] = {
             "kind": "axle_load",
             "path": path,
+            "carried_by": "nodes",
             "forces": [share],
             "offsets": [0.0],
             "factor": {"context": weight},

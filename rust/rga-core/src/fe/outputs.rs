@@ -42,8 +42,8 @@ pub(crate) struct Motion {
 pub(crate) enum Reading {
     /// At (place in 0..1, y, z); total or mechanical.
     Strain([f64; 3], bool),
-    /// At a place in 0..1.
-    AxialForce(f64),
+    /// A component of the `Section` at a place in 0..1.
+    SectionForce(usize, f64),
     /// Of a local end dof.
     EndForce(usize),
 }
@@ -54,12 +54,11 @@ pub(crate) struct Observer<'a> {
     outputs: &'a [Output],
 }
 
-/// Axial force and bending moments EI (v'' + free curvature) of a section.
-struct Section {
-    axial: f64,
-    /// In the local x-y and x-z planes.
-    moments: [f64; 2],
-}
+/// What the part beyond a section does to the part before it, in local axes: N, Vy, Vz, T, My, Mz.
+///
+/// With deflections v and w along local y and z, Mz = EI (v'' + free curvature) and
+/// My = -EI (w'' + free curvature): a positive My stretches fibres at +z, a positive Mz at -y.
+pub(crate) struct Section(pub [f64; 6]);
 
 impl<'a> Observer<'a> {
     pub(crate) fn new(
@@ -93,9 +92,9 @@ impl<'a> Observer<'a> {
     pub(crate) fn member(&self, state: &State, index: usize, reading: &Reading) -> f64 {
         match *reading {
             Reading::Strain(place, total) => self.strain(state, index, &place, total),
-            Reading::AxialForce(place) => {
+            Reading::SectionForce(component, place) => {
                 let x = place * self.model.members[index].length;
-                self.section(state, index, x).axial
+                self.section(state, index, x).0[component]
             }
             Reading::EndForce(dof) => self.end_forces(state, index)[dof],
         }
@@ -129,19 +128,15 @@ impl<'a> Observer<'a> {
             Some(deformed) => deformed[index].ends,
             None => self.end_forces(state, index),
         };
-        let mut section = Section {
-            axial: -ends[0],
-            moments: [ends[1] * x - ends[5], ends[2] * x + ends[4]],
-        };
+        let mut section = Section::of_ends(&ends, x);
         for load in state.loads.of(index) {
             section.add(load, x);
         }
         if let Some(deformed) = state.deformed {
             let member = &self.model.members[index];
             let bow = deformed[index].bow(member, x);
-            for (moment, bow) in section.moments.iter_mut().zip(bow) {
-                *moment += deformed[index].tension * bow;
-            }
+            section.0[5] += deformed[index].tension * bow[0];
+            section.0[4] -= deformed[index].tension * bow[1];
         }
         section
     }
@@ -156,11 +151,10 @@ impl<'a> Observer<'a> {
             };
             return elongation / member.length - if total { 0.0 } else { initial[0] };
         };
-        let section = self.section(state, index, place[0] * member.length);
-        let fibre = &place[1..];
-        let mut strain = section.axial / frame.beam.ea;
-        for ((plane, moment), distance) in frame.beam.planes.iter().zip(section.moments).zip(fibre)
-        {
+        let Section(forces) = self.section(state, index, place[0] * member.length);
+        let (fibre, moments) = (&place[1..], [forces[5], -forces[4]]);
+        let mut strain = forces[0] / frame.beam.ea;
+        for ((plane, moment), distance) in frame.beam.planes.iter().zip(moments).zip(fibre) {
             if *distance != 0.0 {
                 strain -= distance * moment / plane.ei;
             }
@@ -190,18 +184,28 @@ impl Motion {
 }
 
 impl Section {
+    /// At x, of the forces of the nodes on a member without loads.
+    pub(crate) fn of_ends(ends: &Vector12, x: f64) -> Self {
+        Self([
+            -ends[0],
+            -ends[1],
+            -ends[2],
+            -ends[3],
+            -(ends[2] * x + ends[4]),
+            ends[1] * x - ends[5],
+        ])
+    }
+
     /// The part of a member load between the first node and the section at x.
     fn add(&mut self, load: &MemberLoad, x: f64) {
         if load.from >= x {
             return;
         }
         for (at, size) in load.points(0.0, x) {
+            self.0[load.axis] -= size;
             match load.axis {
-                0 => self.axial -= size,
-                1 => self.moments[0] += size * (x - at),
-                2 => self.moments[1] += size * (x - at),
-                4 => self.moments[1] += size,
-                5 => self.moments[0] -= size,
+                1 => self.0[5] += size * (x - at),
+                2 => self.0[4] -= size * (x - at),
                 _ => {}
             }
         }
@@ -231,7 +235,9 @@ fn read_output(outputs: &Outputs, at: usize, kind: OutputKind) -> Output {
         OutputKind::Displacement => motion(0),
         OutputKind::Rotation => motion(3),
         OutputKind::Strain => Output::Member(index, Reading::Strain(vector, outputs.total[at])),
-        OutputKind::AxialForce => Output::Member(index, Reading::AxialForce(vector[0])),
+        OutputKind::SectionForce => {
+            Output::Member(index, Reading::SectionForce(other as usize, vector[0]))
+        }
         OutputKind::ReactionForce => Output::Reaction(6 * index, vector),
         OutputKind::ReactionMoment => Output::Reaction(6 * index + 3, vector),
         OutputKind::EndForce => Output::Member(index, Reading::EndForce(other as usize)),

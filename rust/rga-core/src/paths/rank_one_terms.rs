@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::fe::element::Vector12;
 use crate::fe::member::{Frame, Member};
 use crate::fe::model::{Model, Spring};
-use crate::fe::outputs::{Output, Reading, read_outputs};
+use crate::fe::outputs::{Output, Reading, Section, read_outputs};
 use crate::input::{Outputs, Structure};
 use crate::validate::outputs::check_outputs;
 use crate::validate::structure::check_structure;
@@ -44,6 +44,7 @@ pub(super) enum TermKind {
 #[derive(Debug, Clone)]
 pub(super) struct Mode {
     member: usize,
+    length: f64,
     /// First dof of either end.
     first: [usize; 2],
     /// b in local axes, and in global ones.
@@ -177,7 +178,9 @@ impl Term {
         match (&self.kind, output) {
             (TermKind::Mode(mode), Output::Member(member, reading)) if mode.member == *member => {
                 match reading {
-                    Reading::AxialForce(_) => mode.local[0],
+                    Reading::SectionForce(component, place) => {
+                        Section::of_ends(&-mode.local, place * mode.length).0[*component]
+                    }
                     Reading::EndForce(dof) => -mode.local[*dof],
                     Reading::Strain(..) => 0.0,
                 }
@@ -204,6 +207,7 @@ impl Mode {
         }
         Self {
             member: number,
+            length: member.length,
             first: member.nodes.map(|node| 6 * node),
             local,
             global,

@@ -30,6 +30,7 @@ pub(crate) fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<
         }
         let (low, end) = match kind {
             OutputKind::Displacement | OutputKind::Rotation => (-1, n as i64),
+            OutputKind::SectionForce => (0, 6),
             OutputKind::EndForce => (0, 12),
             _ => continue,
         };
@@ -41,7 +42,7 @@ pub(crate) fn check_outputs(structure: &Structure, outputs: &Outputs) -> Result<
         }
     }
     for (at, &kind) in kinds.iter().enumerate() {
-        if matches!(kind, OutputKind::Strain | OutputKind::AxialForce) {
+        if matches!(kind, OutputKind::Strain | OutputKind::SectionForce) {
             check_section(structure, outputs, at, kind)?;
         }
     }
@@ -62,7 +63,7 @@ fn check_section(
             vector[0]
         )));
     }
-    if kind == OutputKind::AxialForce || !structure.frame[member] {
+    if kind == OutputKind::SectionForce || !structure.frame[member] {
         return Ok(());
     }
     for (name, array, needed) in [

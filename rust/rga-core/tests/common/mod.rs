@@ -16,7 +16,7 @@ pub const TORSION: f64 = 1e-6;
 pub const DISPLACEMENT: i64 = OutputKind::Displacement as i64;
 pub const ROTATION: i64 = OutputKind::Rotation as i64;
 pub const STRAIN: i64 = OutputKind::Strain as i64;
-pub const AXIAL: i64 = OutputKind::AxialForce as i64;
+pub const SECTION_FORCE: i64 = OutputKind::SectionForce as i64;
 pub const REACTION: i64 = OutputKind::ReactionForce as i64;
 pub const MOMENT: i64 = OutputKind::ReactionMoment as i64;
 pub const END_FORCE: i64 = OutputKind::EndForce as i64;
@@ -204,7 +204,7 @@ pub fn heights_and_forces(count: i64) -> Vec<Output> {
     let pair = |index| {
         [
             at(DISPLACEMENT, index, 2),
-            (AXIAL, index, -1, [0.5, 0.0, 0.0]),
+            (SECTION_FORCE, index, 0, [0.5, 0.0, 0.0]),
         ]
     };
     (0..count).flat_map(pair).collect()

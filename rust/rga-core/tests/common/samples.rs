@@ -201,7 +201,7 @@ pub fn all_outputs(case: &Case) -> Vec<Output> {
     }
     for member in 0..case.ends.len() as i64 {
         outputs.push((STRAIN, member, -1, [0.3, 0.0, 0.0]));
-        outputs.push((AXIAL, member, -1, [0.6, 0.0, 0.0]));
+        outputs.push((SECTION_FORCE, member, 0, [0.6, 0.0, 0.0]));
         outputs.extend([0, 1, 2].map(|dof| end_force(member, dof)));
     }
     outputs

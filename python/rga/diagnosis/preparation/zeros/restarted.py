@@ -37,7 +37,13 @@ class Jump:
 
 
 def restarted(compared: Compared) -> Jump | None:
-    """The largest jump of many channels that no few causes make, if there is one."""
+    """The largest jump of many channels, if no few causes make it."""
+    jump = jump_of_many(compared)
+    return None if jump is None or _few_causes(compared, jump) else jump
+
+
+def jump_of_many(compared: Compared) -> Jump | None:
+    """The largest jump of many channels that stays, if there is one."""
     criteria = compared.data.criteria.zeros
     over, step = (moving_means(compared.residual, width) for width in (BESIDE, AT_ONCE))
     rows = np.arange(BESIDE, len(over))
@@ -57,8 +63,7 @@ def restarted(compared: Compared) -> Jump | None:
     row, channels = int(rows[best]), jumping[best]
     largest = np.where(channels, size[best], 0.0)
     jump = Jump(row, channels, largest, _at_zero(compared, row, channels))
-    known = _stays(compared, jump) and not _few_causes(compared, jump)
-    return jump if known else None
+    return jump if _stays(compared, jump) else None
 
 
 def _stays(compared: Compared, jump: Jump) -> bool:

@@ -71,12 +71,20 @@ def _without_zero(compared: Compared, record: Record) -> OwnZeros:
     return OwnZeros(only_changes, doubts=[_taken_words(compared, record, taken)])
 
 
+def off_by_constants(compared: Compared) -> FloatArray | None:
+    """The constant in the residual of each channel, over the noise, where most have one."""
+    criteria = compared.data.criteria.zeros
+    least = compared.at_least(criteria.share_of_channels)
+    offset = _offsets(compared, compared.residual)
+    return None if (np.abs(offset) > criteria.offset).sum() < least else offset
+
+
 def _anywhere(compared: Compared) -> bool:
     """Whether most channels are off by constants that no few causes make."""
     criteria = compared.data.criteria.zeros
     least = compared.at_least(criteria.share_of_channels)
-    offset = _offsets(compared, compared.residual)
-    if (np.abs(offset) > criteria.offset).sum() < least:
+    offset = off_by_constants(compared)
+    if offset is None:
         return False
     patterns = [_offsets(compared, change) for change, _ in compared.changes]
     left = left_by_causes(offset, patterns, criteria.most_causes)

@@ -9,6 +9,12 @@ TAKEN, BESIDE = (1, 2, 5, 10), 10
 
 
 def zeroed_again(compared: Compared) -> int | None:
+    """The row from which on the channels start from zero again, if no single cause makes that."""
+    row = zero_from(compared)
+    return None if row is None or _one_cause(compared, row) else row
+
+
+def zero_from(compared: Compared) -> int | None:
     """The row from which on the channels start from zero again, if there is one."""
     criteria = compared.data.criteria.zeros
     noise, own = compared.noise, compared.own
@@ -32,8 +38,7 @@ def zeroed_again(compared: Compared) -> int | None:
         return None
     # Rows beside it may read near zero too: where it happened the levels lie furthest apart.
     apart = np.nansum(np.abs(after - before) / np.where(compared.working, shift, np.inf), axis=1)
-    row = int(rows[np.argmax(np.where(found, apart, -1.0))])
-    return None if _one_cause(compared, row) else row
+    return int(rows[np.argmax(np.where(found, apart, -1.0))])
 
 
 def _one_cause(compared: Compared, row: int) -> bool:

@@ -44,7 +44,7 @@ class EndFlexibility(Effect):
             "details in the drawings"
         ),
         test=(
-            "{vehicle}, on {place}, with tilt sensors on both sides of the joint: their "
+            "{load}, on {place}, with tilt sensors on both sides of the joint: their "
             "difference is how far it turns"
         ),
     )

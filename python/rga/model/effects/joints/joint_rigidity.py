@@ -29,7 +29,7 @@ class JointRigidity(Effect):
             "for cracks at their ends"
         ),
         check="gauges off the axis of their member: they read this bending",
-        test="{vehicle}, with gauges on both faces at the ends of a member of {place}",
+        test="{load}, with gauges on both faces at the ends of a member of {place}",
     )
     usual = f"stiffness {USUAL} times the mean EI/L of the members: a judgement"
     structural = True

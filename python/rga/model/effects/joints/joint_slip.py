@@ -26,7 +26,7 @@ class JointSlip(Effect):
         ),
         check="the tightening of its bolts",
         test=(
-            "a vehicle driven slowly forth and back, with a gauge on {place}: the readings make a"
+            "a known load moved slowly forth and back, with a gauge on {place}: the readings make a"
             " loop"
         ),
     )

@@ -21,7 +21,7 @@ class RigidEndZone(Effect):
     action = Action(
         inspect="size and thickness of the gusset plates of {place}",
         check="the lengths between gussets in the drawings",
-        test="{vehicle}, with gauges in the middle of a member of {place} and beside its gusset",
+        test="{load}, with gauges in the middle of a member of {place} and beside its gusset",
     )
     usual = f"length {USUAL} m: a judgement"
     structural = True

@@ -19,7 +19,7 @@ class DeadLoad(Effect):
     kind: Literal["dead_load"] = "dead_load"
     action = Action(
         inspect="what was put on or taken off {place}: surfacing, ballast, pipes, stored goods",
-        check="works on the bridge about the onset",
+        check="works on the structure about the onset",
         test="level the span against earlier levels",
     )
     usual = f"force per length {USUAL} N/m: a judgement"

@@ -26,8 +26,8 @@ class LoadEccentricity(Effect):
     kind: Literal["load_eccentricity"] = "load_eccentricity"
     action = Action(
         inspect="which lane or side the traffic or crowd keeps to",
-        check="the place of {place} across the bridge",
-        test="the same vehicle on either side",
+        check="the place of {place} across the structure",
+        test="the same known load on either side",
     )
     usual = f"share {USUAL}: a judgement"
     loads_by_geometry = True

@@ -19,9 +19,9 @@ class LoadScale(Effect):
     kind: Literal["load_scale"] = "load_scale"
     action = Action(
         check=(
-            "the weights that are assumed for {place}, by a weighbridge, and the dynamic increment"
+            "the weights that are assumed for {place}, by weighing them, and the dynamic increment"
         ),
-        test="a vehicle of known weight at a crawl",
+        test="a known weight, moved at a crawl",
     )
     usual = f"factor {USUAL}: a judgement"
     effect: Effects

@@ -23,7 +23,7 @@ class AddedAxialArea(Effect):
             "and what ties them to it"
         ),
         check="whether the drawings show a deck or floor tied to {place}",
-        test="{vehicle}, with gauges on {place} and on what may share its force",
+        test="{load}, with gauges on {place} and on what may share its force",
     )
     usual = f"area {USUAL} times the mean area of the group: a judgement"
     structural = True

@@ -30,7 +30,7 @@ class BendingStiffness(Effect):
             "the second moment of area of {place} in the drawings, and which way its section lies"
         ),
         test=(
-            "{vehicle}, across {place}, with gauges on both of its flanges: their difference over"
+            "{load}, across {place}, with gauges on both of its flanges: their difference over"
             " the bending moment is 1/EI"
         ),
     )

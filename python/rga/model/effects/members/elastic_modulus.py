@@ -18,12 +18,12 @@ class ElasticModulus(Effect):
 
     kind: Literal["elastic_modulus"] = "elastic_modulus"
     action = Action(
-        inspect="nothing on the bridge: all members of {place} answer alike",
+        inspect="nothing on the structure: all members of {place} answer alike",
         check=(
             "the modulus and the sections in the drawings, the weights of the loads, and the "
             "calibration of all gauges together: a common factor is in one of them"
         ),
-        test="{vehicle}: known weights separate the stiffness from the load",
+        test="{load}: known weights separate the stiffness from the load",
     )
     usual = (
         f"factor {USUAL}: a judgement; the modulus of steel has a coefficient of variation of 3 % "

@@ -36,8 +36,7 @@ class FloorParticipation(Effect):
             "whether the drawings show expansion joints in the floor, and whether these still move"
         ),
         test=(
-            "{vehicle}, with gauges on the stringers beside {place} and on the end panels of the "
-            "chord"
+            "{load}, with gauges on the stringers beside {place} and on the end panels of the chord"
         ),
     )
     usual = (

@@ -24,11 +24,11 @@ class MemberStiffness(Effect):
             "connections; measure the remaining thickness"
         ),
         check=(
-            "the section of {place} in the drawings against the bridge, and the gauge on it if "
+            "the section of {place} in the drawings against the structure, and the gauge on it if "
             "there is one"
         ),
         test=(
-            "{vehicle}, near {place}, with a gauge on it: where area is lost its force hardly "
+            "{load}, near {place}, with a gauge on it: where area is lost its force hardly "
             "changes and its strain grows"
         ),
     )
@@ -37,6 +37,7 @@ class MemberStiffness(Effect):
         "be lost at one place and hardly all along a group"
     )
     structural = True
+    takes_section = True
     member: Members = None
     group: Groups = None
     factor: Annotated[Value, Parameter("-", 1.0)] = 1.0

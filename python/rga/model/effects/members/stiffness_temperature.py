@@ -34,7 +34,7 @@ class StiffnessTemperature(Effect):
     action = Action(
         inspect="joints and surfacing of {place} when it is cold and when it is warm",
         check="the temperature sensor, and whether the deck or its surfacing bears a share",
-        test="the same vehicle on a cold and on a warm day",
+        test="the same known load on a cold and on a warm day",
     )
     usual = f"rate {USUAL} 1/K: a judgement"
     structural = True

@@ -22,7 +22,7 @@ class TensionOnly(Effect):
     action = Action(
         inspect="{place}: slack rods or cables, turnbuckles, pins",
         check="its tension (by its frequency)",
-        test="{vehicle}, with a gauge on {place}: it stays idle until the slack is taken up",
+        test="{load}, with a gauge on {place}: it stays idle until the slack is taken up",
     )
     structural = True
     member: Members = None

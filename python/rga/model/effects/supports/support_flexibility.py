@@ -38,7 +38,7 @@ class SupportFlexibility(Effect):
             "ground"
         ),
         check="any displacement sensor whose reference stands on the same pier",
-        test="{vehicle}, over the support {place}, with its movement measured against firm ground",
+        test="{load}, over the support {place}, with its movement measured against firm ground",
     )
     usual = f"stiffness {ALONG} times the mean EA/L of the members: a judgement; {BASE_WORDS}"
     structural = True

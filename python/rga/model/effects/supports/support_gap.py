@@ -32,7 +32,7 @@ class SupportGap(Effect):
         ),
         check="the gap with a feeler gauge, unloaded and cold",
         test=(
-            "{vehicle}, near {place}, with its movement measured: the answer changes when the gap"
+            "{load}, near {place}, with its movement measured: the answer changes when the gap"
             " closes"
         ),
     )

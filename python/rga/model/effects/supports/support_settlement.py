@@ -22,7 +22,7 @@ class SupportSettlement(Effect):
     kind: Literal["support_settlement"] = "support_settlement"
     action = Action(
         inspect="pier or abutment at {place}: scour, cracks, tilt, and the ground about it",
-        check="levels of the bearings against a bench mark away from the bridge",
+        check="levels of the bearings against a bench mark away from the structure",
         test="level the bearings again after some weeks: has it stopped?",
     )
     usual = (

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.model.schema import Model, Sensor
-from rga.report.text.quantities import MINUS
+from rga.quantities import MINUS
 
 LETTERS = "xyz"
 MOST_VIEWS = 4

@@ -1,4 +1,4 @@
-"""The time axis that the figures of a run share: times as the record writes them."""
+"""The time axis that figures of a record share: times as the record writes them."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,9 +10,8 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.quantities import MINUS, duration
 from rga.records import Record
-from rga.report.pages.cards import moment
-from rga.report.text.quantities import MINUS, duration, short
 
 Rows = NDArray[np.intp]
 DAY = 86400.0
@@ -79,19 +78,6 @@ def time_axis(record: Record) -> TimeAxis:
     factor = length / span if span > 0 else 1.0
     at = (record.start + record.time) * factor
     return TimeAxis(at, step * factor, f"time of the record [{unit}]", False)
-
-
-def when(time: str | float) -> str:
-    """A time as the record writes it; many seconds also in a unit that can be read.
-
-    >>> when("2024-05-01T12:00:00"), when(172800.0).replace("\u00a0", " ")
-    ('2024-05-01 12:00:00', '172\u202f800 s (48 h)')
-    """
-    said = moment(time)
-    if isinstance(time, str):
-        return said
-    length, unit = duration(abs(time))
-    return said if unit == "s" else f"{said} ({'' if time >= 0 else MINUS}{short(length)} {unit})"
 
 
 def thinned(values: FloatArray, most: int) -> Rows:

@@ -1,0 +1,1 @@
+"""Checks of a model by itself: a file each."""

@@ -1,0 +1,99 @@
+"""`rga draw`: a model as a drawing."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from rga.cli.options import ModelFile, setting
+
+
+class NamedPart(StrEnum):
+    """Parts of a model that have names, one kind or all."""
+
+    nodes = "nodes"
+    members = "members"
+    sensors = "sensors"
+    supports = "supports"
+    all = "all"
+
+
+Drawing = Annotated[
+    Path,
+    typer.Option(
+        "-o", "--output", metavar="FILE",
+        help="File for the drawing: .svg, .png, or .html for a page that turns with the mouse.",
+    ),
+]  # fmt: skip
+Contexts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--contexts", metavar="NAME=VALUE,...",
+        help="Contexts of loads, displacements and forces; the others stand at mid-range.",
+    ),
+]  # fmt: skip
+Names = Annotated[
+    list[NamedPart] | None, typer.Option("--names", help="Parts to be named; repeatable.")
+]
+Loads = Annotated[
+    list[str] | None,
+    typer.Option("--load", metavar="EFFECT", help="A load to draw instead of all; repeatable."),
+]
+Deformed = Annotated[bool, typer.Option("--deformed", help="The deformed shape.")]
+Scale = Annotated[
+    float | None,
+    typer.Option("--scale", metavar="TIMES", help="By which displacements are enlarged."),
+]
+Forces = Annotated[
+    Literal["N", "V", "M", "T", "Vy", "Vz", "My", "Mz"] | None,
+    typer.Option("--forces", help="The diagram of a section force; V and M are in the plane."),
+]
+LocalAxes = Annotated[bool, typer.Option("--axes", help="Local axes of the members.")]
+Sensors = Annotated[
+    bool | None,
+    typer.Option("--sensors/--no-sensors", help="Sensors; left out with displacements or forces."),
+]
+Dark = Annotated[bool, typer.Option("--dark", help="For a dark background.")]
+Width = Annotated[
+    float, typer.Option("--width", metavar="INCHES", help="Of a sheet; 3.75 suits a phone.")
+]
+
+
+def draw(
+    model: ModelFile,
+    output: Drawing = Path("drawing.svg"),
+    contexts: Contexts = None,
+    names: Names = None,
+    load: Loads = None,
+    deformed: Deformed = False,
+    scale: Scale = None,
+    forces: Forces = None,
+    axes: LocalAxes = False,
+    sensors: Sensors = None,
+    dark: Dark = False,
+    width: Width = 10.0,
+) -> None:
+    """Draw a model: members, supports, loads and sensors, its deformed shape and forces."""
+    from rga.drawing import draw as write
+    from rga.drawing.content import NAMED
+    from rga.model import load_model
+
+    pairs = [pair for text in contexts or [] for pair in text.split(",") if pair.strip()]
+    given = dict(setting(pair, "--contexts") for pair in pairs)
+    chosen = [part.value for part in names or []]
+    drawn = write(
+        load_model(model),
+        output,
+        width=width,
+        names=NAMED if "all" in chosen else chosen,
+        sensors=sensors,
+        loads=load,
+        local_axes=axes,
+        deformed=deformed,
+        scale=scale,
+        forces=forces,
+        contexts=given,
+        dark=dark,
+    )
+    typer.echo(f"The drawing is {drawn}.")

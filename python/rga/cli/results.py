@@ -1,0 +1,45 @@
+"""`rga results`: displacements, reactions, section forces and stresses."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rga.cli.options import ModelFile, OutputFile
+
+Contexts = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="CONTEXTS",
+        help="Context variables (CSV or Parquet), with time where it matters; left out where no "
+        "context drives the model.",
+    ),
+]
+Stations = Annotated[
+    int, typer.Option("--stations", min=2, help="Places along each member, its ends among them.")
+]
+
+
+def results(
+    model: ModelFile, output: OutputFile, contexts: Contexts = None, stations: Stations = 11
+) -> None:
+    """Write displacements, rotations, reactions, N, V, M and stresses (CSV or Parquet)."""
+    from rga.model import load_model
+    from rga.records import load_contexts
+    from rga.simulation import results as results_of
+
+    structure = load_model(model)
+    given = load_contexts(contexts, structure).values if contexts else {}
+    found = results_of(structure, given, stations=stations)
+    found.write(output)
+    typer.echo(
+        f"{len(found.displacements)} rows of {len(structure.nodes)} nodes, {len(found.held)} "
+        f"reactions and {len(structure.members)} members at {stations} stations are in {output}."
+    )
+    worst = found.members().drop_nulls("utilisation").sort("utilisation", descending=True)
+    if len(worst):
+        first = worst.row(0, named=True)
+        typer.echo(
+            f"The most used member is {first['member']}: {first['utilisation']:.0%} of its yield "
+            f"strength, {first['stress min'] / 1e6:.4g} to {first['stress max'] / 1e6:.4g} MPa."
+        )

@@ -1,0 +1,1 @@
+"""A page that shows a model from all sides, in one file."""

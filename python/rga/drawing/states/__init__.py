@@ -1,0 +1,1 @@
+"""What a structure does under given contexts, ready to be drawn."""

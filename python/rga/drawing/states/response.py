@@ -1,0 +1,65 @@
+"""What a structure does at given contexts."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.drawing.scene.scene import Scene
+from rga.drawing.states.contexts import context_words
+from rga.drawing.states.deformed import Deformed, deformed
+from rga.drawing.states.diagrams import Diagram, Quantity, section_diagram
+from rga.simulation import Simulator, results
+
+#: places along each member at which forces are drawn, where some member bends, and where none does
+BENT, STRAIGHT = 21, 3
+#: members of a structure beyond which the places are fewer
+MANY, FEW = 1000, 9
+
+
+@dataclass(frozen=True)
+class DrawnResponse:
+    """The response of a structure as it is drawn.
+
+    Attributes:
+        deformed: its shape; None where it was not asked for.
+        diagrams: of section forces.
+        contexts: at which, in words.
+    """
+
+    deformed: Deformed | None
+    diagrams: tuple[Diagram, ...]
+    contexts: str
+
+
+def drawn_response(
+    scene: Scene,
+    contexts: Mapping[str, float],
+    quantities: Sequence[Quantity],
+    scale: float | None = None,
+    shape: bool = True,
+) -> DrawnResponse:
+    """Solve a structure, and make its shape and its diagrams.
+
+    Args:
+        scene: the structure.
+        contexts: of one row, every one that the model needs.
+        quantities: section forces.
+        scale: by which displacements are enlarged; None: a round one that shows them.
+        shape: the deformed shape is wanted.
+
+    Raises:
+        InputError: a context is missing or not finite.
+        UnstableStructureError: the structure can move; names node and direction.
+    """
+    model = scene.model
+    bent = FEW if len(scene.ends) > MANY else BENT
+    stations = (bent if scene.frame.any() else STRAIGHT) if quantities else 2
+    found = results(model, contexts, stations=stations)
+    positions = np.tile(found.stations, (len(scene.ends), 1))
+    forces = found.section_forces[0]
+    return DrawnResponse(
+        deformed=deformed(scene, found.displacements[0], scale) if shape else None,
+        diagrams=tuple(section_diagram(scene, one, positions, forces) for one in quantities),
+        contexts=context_words(model, contexts, Simulator(model).needed),
+    )

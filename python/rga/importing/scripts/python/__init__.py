@@ -1,0 +1,6 @@
+"""The part of Python that builds models, evaluated from its syntax tree; nothing is imported."""
+
+from rga.importing.scripts.python.interpreter import PythonInterpreter
+from rga.importing.scripts.python.opened import Opened
+
+__all__ = ["Opened", "PythonInterpreter"]

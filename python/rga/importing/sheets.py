@@ -1,0 +1,172 @@
+"""Sheets of tables: columns whose heads state units in brackets, rows with names."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rga.errors import InputError
+from rga.importing.units import to_si
+
+HEAD = re.compile(r"^(?P<name>[^\[]*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*$", re.DOTALL)
+#: rows of the longest sheet, and cells of the longest row
+MOST_ROWS, MOST_CELLS = 200_000, 1_000
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A sheet.
+
+    Attributes:
+        name: of it.
+        columns: place of each column by its name without unit, in small letters.
+        units: of the columns that state one.
+        cells: rows below the heads, with their numbers in the file.
+    """
+
+    name: str
+    columns: dict[str, int]
+    units: dict[str, str]
+    cells: list[tuple[int, Sequence[Any]]]
+
+    def __iter__(self) -> "Iterator[SheetRow]":
+        for number, cells in self.cells:
+            yield SheetRow(self, number, cells)
+
+    def has(self, name: str) -> bool:
+        """Whether there is a column."""
+        return name.lower() in self.columns
+
+
+@dataclass(frozen=True)
+class SheetRow:
+    """A row of a sheet."""
+
+    sheet: Sheet
+    number: int
+    cells: Sequence[Any]
+
+    @property
+    def where(self) -> str:
+        """Its place in words: sheet, row, and its name where it has one."""
+        name = self.text("name")
+        return f"{self.sheet.name}, row {self.number}" + (f" ({name})" if name else "")
+
+    def raw(self, name: str) -> Any:
+        """A cell; None where it is empty, or there is no such column."""
+        place = self.sheet.columns.get(name.lower())
+        if place is None or place >= len(self.cells):
+            return None
+        cell = self.cells[place]
+        return None if isinstance(cell, str) and not cell.strip() else cell
+
+    def text(self, name: str, default: str = "") -> str:
+        """A cell as text; a whole number without decimals."""
+        cell = self.raw(name)
+        if cell is None:
+            return default
+        if isinstance(cell, float) and cell.is_integer():
+            cell = int(cell)
+        return str(cell).strip()
+
+    def needed(self, name: str) -> str:
+        """A cell as text that must be there.
+
+        Raises:
+            InputError: it is empty.
+        """
+        found = self.text(name)
+        if not found:
+            raise InputError(f"{name!r} is empty", self.where, "fill it")
+        return found
+
+    def names(self, name: str) -> list[str]:
+        """Names in a cell, parted by semicolons."""
+        return [part.strip() for part in self.text(name).split(";") if part.strip()]
+
+    def number_of(
+        self, name: str, si: str = "", unit: str | None = None, default: float | None = None
+    ) -> float:
+        """A cell as a number in SI units.
+
+        Args:
+            name: of the column.
+            si: the unit of the result; nothing: a number without one.
+            unit: of a column that states none; None: it must state one.
+            default: where the cell is empty; None: it must be filled.
+
+        Raises:
+            InputError: it is empty, no number, or without a unit.
+        """
+        cell = self.raw(name)
+        if cell is None:
+            if default is None:
+                raise InputError(f"{name!r} is empty", self.where, "fill it")
+            return default
+        return read_number(cell, name, self.where) * self.scale(name, si, unit)
+
+    def scale(self, name: str, si: str, unit: str | None = None) -> float:
+        """SI units per unit of a column."""
+        if not si:
+            return 1.0
+        stated = self.sheet.units.get(name.lower()) or unit
+        if stated is None:
+            raise InputError(
+                f"the column {name!r} states no unit",
+                self.sheet.name,
+                f"write it in the head: {name} [{si}]",
+            )
+        return to_si(stated, si, f"{self.sheet.name}, column {name!r}")
+
+
+def read_number(cell: Any, name: str, where: str) -> float:
+    """A cell as a finite number.
+
+    Raises:
+        InputError: it is none.
+    """
+    try:
+        number = float(cell) if not isinstance(cell, bool) else float("nan")
+    except (TypeError, ValueError):
+        number = float("nan")
+    if not abs(number) < 1e300:
+        raise InputError(f"{name!r} is {str(cell)[:40]!r}, no number", where, "write a number")
+    return number
+
+
+def sheet_of(name: str, rows: Iterator[Sequence[Any]]) -> Sheet | None:
+    """A sheet of its rows, the first of which that is not empty has the heads; None: it is empty.
+
+    Raises:
+        InputError: a column stands twice, or there are too many rows.
+    """
+    columns: dict[str, int] = {}
+    units: dict[str, str] = {}
+    cells: list[tuple[int, Sequence[Any]]] = []
+    for number, row in enumerate(rows, start=1):
+        if not any(cell is not None and str(cell).strip() for cell in row):
+            continue
+        if len(row) > MOST_CELLS or len(cells) >= MOST_ROWS:
+            raise InputError(
+                f"a sheet of more than {MOST_ROWS} rows or {MOST_CELLS} columns",
+                f"{name}, row {number}",
+                "give the part that describes the structure",
+            )
+        if columns:
+            cells.append((number, row))
+            continue
+        for place, cell in enumerate(row):
+            head = HEAD.match(str(cell or ""))
+            title = " ".join(head["name"].lower().split()) if head else ""
+            if not head or not title:
+                continue
+            if title in columns:
+                raise InputError(
+                    f"the column {title!r} stands twice", f"{name}, row {number}", "name one anew"
+                )
+            columns[title] = place
+            if head["unit"]:
+                units[title] = head["unit"].strip()
+        if not columns:
+            raise InputError("the heads of columns are no text", name, "name the columns")
+    return Sheet(name, columns, units, cells) if columns else None

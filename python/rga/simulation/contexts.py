@@ -1,0 +1,67 @@
+"""Contexts as a caller gives them: by name, or as a table with a column for each."""
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rga.errors import InputError
+from rga.model.effect import seconds
+
+
+class ColumnTable(Protocol):
+    """A table with named columns, as polars and pandas have them."""
+
+    @property
+    def columns(self) -> Any: ...
+
+    def __getitem__(self, column: Any, /) -> Any: ...
+
+
+#: context variables by name, each a value a row or one for all; or a table of them
+Contexts: TypeAlias = Mapping[str, ArrayLike] | ColumnTable
+
+
+def by_name(given: Contexts) -> Mapping[str, ArrayLike]:
+    """Contexts by name. Times that are dates, or text of ISO 8601, become seconds since 1970.
+
+    Args:
+        given: names with values, or a table with a column for each: polars, pandas or alike.
+
+    Raises:
+        InputError: this is neither, or a time cannot be read.
+
+    >>> import polars as pl
+    >>> table = by_name(pl.DataFrame({"time": ["2024-01-01", "2024-01-02"], "load": [1, 2]}))
+    >>> np.diff(table["time"]), table["load"].tolist()
+    (array([86400.]), [1, 2])
+    """
+    if isinstance(given, Mapping):
+        named = dict(given)
+    elif hasattr(given, "columns") and hasattr(given, "__getitem__"):
+        named = {str(column): np.asarray(given[column]) for column in given.columns}
+    else:
+        raise InputError(
+            f"contexts are a {type(given).__name__}",
+            "contexts",
+            "give names with values, or a table with columns",
+        )
+    if "time" in named:
+        named["time"] = _clock(np.asarray(named["time"]))
+    return named
+
+
+def _clock(time: Any) -> Any:
+    """Times in seconds, where they are dates."""
+    if np.issubdtype(time.dtype, np.datetime64):
+        return time.astype("datetime64[us]").astype(float) / 1e6
+    moments = time.ravel().tolist()
+    if time.dtype.kind not in "OU" or not all(isinstance(one, str | datetime) for one in moments):
+        return time
+    texts = [one if isinstance(one, str) else one.isoformat() for one in moments]
+    try:
+        return np.array([seconds(one) for one in texts])
+    except ValueError as error:
+        raise InputError(str(error), "contexts, time", "write seconds or ISO 8601") from None

@@ -1,0 +1,311 @@
+"""Results of a structure: displacements, reactions, section forces and stresses."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import polars as pl
+from numpy.typing import ArrayLike
+
+from rga._core import OutputKind
+from rga.arrays import FloatArray, OutputArrays, by_name
+from rga.errors import InputError
+from rga.files import write_whole
+from rga.model.effect import Values
+from rga.model.schema import DOFS, Model
+from rga.model.structure import Load, Structure, build_structure
+from rga.simulation.paths.response import respond
+from rga.simulation.simulator import Response, Simulator
+from rga.simulation.stresses import Stresses, section_stresses
+
+#: components of a section force, and of a reaction
+SECTION_FORCES = ("N", "Vy", "Vz", "T", "My", "Mz")
+REACTIONS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+#: numbers that one call may return: 0.8 GB
+MOST = 100_000_000
+
+
+@dataclass(frozen=True)
+class Results:
+    """What a structure does under contexts, in SI units.
+
+    Section forces are what the part beyond a section does to the part before it, in the local axes
+    of the member: N is positive in tension, My stretches fibres at +z and Mz fibres at -y, so
+    that the stress at (y, z) is N / A + My z / Iy - Mz y / Iz. For a level member with the default
+    axes z points up: a sagging beam has a negative My.
+
+    Attributes:
+        model: the model.
+        contexts: the contexts, float[rows] each, `time` [s] among them.
+        stations: places along every member, 0..1, float[stations].
+        displacements: ux, uy, uz [m], rx, ry, rz [rad] of the nodes, float[rows, nodes, 6].
+        held: nodes that supports or springs to the ground hold.
+        reactions: Fx, Fy, Fz [N], Mx, My, Mz [N m] of these, float[rows, held, 6].
+        section_forces: N, Vy, Vz [N], T, My, Mz [N m], float[rows, members, stations, 6].
+        parameters: of all effects, by name, float[rows] each.
+    """
+
+    model: Model
+    contexts: Values
+    stations: FloatArray
+    displacements: FloatArray
+    held: tuple[str, ...]
+    reactions: FloatArray
+    section_forces: FloatArray
+    parameters: dict[str, Values]
+
+    @cached_property
+    def stresses(self) -> Stresses:
+        """Stresses at the fibres of the sections, by member."""
+        return section_stresses(
+            self.model, list(self.model.members), self.section_forces, self.parameters
+        )
+
+    def members(self) -> pl.DataFrame:
+        """The extremes of every member over all rows and stations, one row a member.
+
+        Columns: member, N min, N max, V max [N], M max [N m], stress min, stress max [Pa], and the
+        utilisation where the material states a yield strength, else null. V and M are the
+        larger of the two planes, without sign.
+        """
+        forces, lowest, highest = self.section_forces, *self.stresses.extremes()
+        axial = forces[..., 0]
+        strength = [
+            self.model.materials[member.material].yield_strength
+            for member in self.model.members.values()
+        ]
+        worst = np.maximum(np.abs(lowest), np.abs(highest))
+        return pl.DataFrame(
+            {
+                "member": list(self.model.members),
+                "N min": axial.min(axis=(0, 2)),
+                "N max": axial.max(axis=(0, 2)),
+                "V max": np.abs(forces[..., 1:3]).max(axis=(0, 2, 3)),
+                "M max": np.abs(forces[..., 4:]).max(axis=(0, 2, 3)),
+                "stress min": lowest,
+                "stress max": highest,
+                "utilisation": [
+                    None if limit is None else float(size / limit)
+                    for size, limit in zip(worst, strength, strict=True)
+                ],
+            }
+        )
+
+    def to_frame(self) -> pl.DataFrame:
+        """All results in one table: row, time, quantity, of, at, value, unit.
+
+        `of` is a node or a member, `at` a place along a member, else null. Quantities are those of
+        the attributes; a stress is named after its fibre.
+        """
+        nodes, members = list(self.model.nodes), list(self.model.members)
+        force, moment = ["N"] * 3, ["N m"] * 3
+        every_fibre = dict.fromkeys(
+            fibre for fibres in self.stresses.of_members.values() for fibre in fibres
+        )
+        parts = [
+            self._long(self.displacements, nodes, DOFS, ["m"] * 3 + ["rad"] * 3),
+            self._long(self.reactions, list(self.held), REACTIONS, force + moment),
+            self._long(self.section_forces, members, SECTION_FORCES, force + moment),
+        ]
+        for fibre in every_fibre:
+            having = [name for name in members if fibre in self.stresses.of_members[name]]
+            values = np.stack([self.stresses.of_members[name][fibre] for name in having], axis=1)
+            parts.append(self._long(values[..., None], having, (f"stress {fibre}",), ["Pa"]))
+        return pl.concat(parts)
+
+    def write(self, path: str | Path) -> None:
+        """Write the table of `to_frame` as CSV or Parquet.
+
+        Raises:
+            InputError: another format, or a place that cannot be written to.
+        """
+        path = Path(path)
+        frame = self.to_frame()
+        if path.suffix.lower() == ".csv":
+            content = frame.write_csv().encode()
+        elif path.suffix.lower() == ".parquet":
+            buffer = BytesIO()
+            frame.write_parquet(buffer)
+            content = buffer.getvalue()
+        else:
+            raise InputError(
+                f"{path.suffix!r} is no format of results", str(path), "name a .csv or .parquet"
+            )
+        write_whole({path: content})
+
+    def _long(
+        self, values: FloatArray, places: list[str], names: tuple[str, ...], units: list[str]
+    ) -> pl.DataFrame:
+        """Values float[rows, places, (stations,) names] as a table with one value a line."""
+        rows, count = len(values), len(places)
+        at = self.stations if values.ndim == 4 else np.array([np.nan])
+        # One axis each of rows, places, stations and quantities.
+        shape = (rows, count, len(at), len(names))
+
+        def spread(column: Any, axis: int) -> Any:
+            along = [1, 1, 1, 1]
+            along[axis] = -1
+            return np.broadcast_to(np.reshape(column, along), shape).ravel()
+
+        return pl.DataFrame(
+            {
+                "row": spread(np.arange(1, rows + 1), 0),
+                "time": spread(self.contexts["time"], 0),
+                "quantity": spread(np.array(names), 3),
+                "of": spread(np.array(places), 1),
+                "at": spread(at, 2),
+                "value": values.ravel(),
+                "unit": spread(np.array(units), 3),
+            }
+        ).with_columns(pl.col("at").fill_nan(None))
+
+
+def results(
+    model: Model, contexts: Mapping[str, ArrayLike] | None = None, *, stations: int = 11
+) -> Results:
+    """Displacements, reactions, section forces and stresses under contexts.
+
+    Args:
+        model: the structure with its effects.
+        contexts: as for `Simulator.predict`; None for a model that no context drives.
+        stations: places along each member, its two ends among them.
+
+    Raises:
+        InputError: as `Simulator.predict`; fewer than two stations, or more numbers than fit.
+        UnstableStructureError: the structure can move; names node and direction.
+    """
+    held = held_nodes(model)
+    places = _places(stations)
+
+    def wanted(structure: Structure) -> OutputArrays:
+        at_held = [structure.nodes[node] for node in held]
+        return _joined(
+            node_outputs(
+                list(structure.nodes.values()), OutputKind.DISPLACEMENT, OutputKind.ROTATION
+            ),
+            node_outputs(at_held, OutputKind.REACTION_FORCE, OutputKind.REACTION_MOMENT),
+            section_outputs(list(structure.members.values()), places),
+        )
+
+    response = _respond(model, contexts or {}, wanted)
+    found = response.quantities
+    rows, nodes, members = len(found), len(model.nodes), len(model.members)
+    motions, reactions, forces = np.split(found, np.cumsum([6 * nodes, 6 * len(held)]), axis=1)
+    return Results(
+        model=model,
+        contexts=response.contexts,
+        stations=places,
+        displacements=motions.reshape(rows, nodes, 6),
+        held=held,
+        reactions=reactions.reshape(rows, len(held), 6),
+        section_forces=forces.reshape(rows, members, stations, 6),
+        parameters=response.values,
+    )
+
+
+def forces_of_members(
+    model: Model, contexts: Mapping[str, ArrayLike], members: Sequence[str], *, stations: int = 11
+) -> tuple[FloatArray, dict[str, Values]]:
+    """Section forces of some members alone, where those of all would be too many.
+
+    Args:
+        model: the structure with its effects.
+        contexts: as for `results`, with the same errors.
+        members: names.
+        stations: as for `results`.
+
+    Returns:
+        N, Vy, Vz [N], T, My, Mz [N m], float[rows, members, stations, 6], and the parameters of all
+        effects, by name.
+    """
+    places = _places(stations)
+
+    def wanted(structure: Structure) -> OutputArrays:
+        return section_outputs([structure.members[name] for name in members], places)
+
+    response = _respond(model, contexts, wanted)
+    shape = (len(response.quantities), len(members), stations, 6)
+    return response.quantities.reshape(shape), response.values
+
+
+def held_nodes(model: Model) -> tuple[str, ...]:
+    """Nodes that supports or springs to the ground hold, in the order of the model."""
+    supported = {support.node for support in model.supports.values()}
+    supported |= {spring.node for spring in model.springs if spring.to is None}
+    return tuple(node for node in model.nodes if node in supported)
+
+
+def node_outputs(nodes: Sequence[int], first: OutputKind, then: OutputKind) -> OutputArrays:
+    """Two vectors of each node, by its number: x, y, z of the first kind, then of the other."""
+    count = 6 * len(nodes)
+    return {
+        "kind": np.tile(np.repeat([int(first), int(then)], 3), len(nodes)).astype(np.int64),
+        "index": np.repeat(np.array(nodes, dtype=np.int64), 6),
+        "other": np.full(count, -1),
+        "vector": np.tile(np.eye(3), (count // 3, 1)),
+        "total": np.zeros(count, dtype=bool),
+    }
+
+
+def section_outputs(members: Sequence[int], places: FloatArray) -> OutputArrays:
+    """Six forces at each place along each member, by its number."""
+    count = 6 * len(members) * len(places)
+    vector = np.zeros((count, 3))
+    vector[:, 0] = np.tile(np.repeat(places, 6), len(members))
+    return {
+        "kind": np.full(count, int(OutputKind.SECTION_FORCE)),
+        "index": np.repeat(np.array(members, dtype=np.int64), 6 * len(places)),
+        "other": np.tile(np.arange(6), len(members) * len(places)),
+        "vector": vector,
+        "total": np.zeros(count, dtype=bool),
+    }
+
+
+def _places(stations: int) -> FloatArray:
+    if stations < 2:
+        raise InputError(f"{stations} stations are too few", "results", "give two or more")
+    return np.linspace(0.0, 1.0, stations)
+
+
+def _joined(*parts: OutputArrays) -> OutputArrays:
+    return cast(
+        OutputArrays, {key: np.concatenate([by_name(p)[key] for p in parts]) for key in parts[0]}
+    )
+
+
+def _respond(
+    model: Model,
+    contexts: Mapping[str, ArrayLike],
+    wanted: Callable[[Structure], OutputArrays],
+) -> Response:
+    """The response of a model of which other things are read than what its sensors show."""
+    bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
+    silent = model.model_copy(update={"sensors": {}, "effects": bare})
+    structure = build_structure(silent)
+    outputs = wanted(structure)
+    count = len(outputs["kind"])
+    structure.outputs, structure.per_si = outputs, np.ones(count)
+    rows = max((np.size(column) for column in contexts.values()), default=1)
+    if rows * count > MOST:
+        raise InputError(
+            f"{rows} rows of {count} results are more than fit into memory",
+            "results",
+            f"give {MOST // count} rows or fewer at a time, or fewer stations",
+        )
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        response = Simulator(silent, structure).respond(contexts)
+    if not response.plan.patterns:
+        # Without a load nothing was solved: a structure that can move would look calm.
+        respond(structure, [Load(np.ones(1))], outputs)
+    if not np.isfinite(response.quantities).all():
+        row = int(np.argwhere(~np.isfinite(response.quantities))[0, 0])
+        raise InputError(
+            "a result is no finite number",
+            f"contexts, row {row + 1}",
+            "check the sizes of contexts and effects",
+        )
+    return response

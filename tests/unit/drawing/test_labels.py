@@ -1,0 +1,32 @@
+"""Labels that do not cover each other."""
+
+from itertools import combinations
+
+import numpy as np
+
+from rga.drawing.labels import Room, overlap
+
+
+class TestRoom:
+    def test_labels_in_a_crowd_do_not_overlap(self) -> None:
+        points = np.random.default_rng(0).random((60, 2)) * 3
+        room = Room()
+        placed = [room.place(f"node {k}", at) for k, at in enumerate(points)]
+        boxes = [one.box for one in placed if one is not None]
+        assert len(boxes) > 20
+        assert not any(overlap(one, other) for one, other in combinations(boxes, 2))
+
+    def test_nothing_is_put_outside_the_limits(self) -> None:
+        room = Room(limits=(0.0, 0.0, 1.0, 1.0))
+        inside = room.place("S1", (1.0, 1.0))
+        assert inside is not None
+        assert max(inside.box) <= 1.0
+        assert room.place("a name far too long for so little room", (0.5, 0.5)) is None
+
+    def test_a_label_stands_clear_of_a_line_where_it_can(self) -> None:
+        line = np.column_stack([np.linspace(0.0, 1.0, 50), np.full(50, 0.1)])
+        placed = Room(lines=line).place("chord", (0.0, 0.05))
+        assert placed is not None
+        left, bottom, right, top = placed.box
+        covered = (line > (left, bottom)) & (line < (right, top))
+        assert not covered.all(axis=1).any()
