@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
+from rga.records.logger_data import LoggerData, check_alike, later, since
 from rga.records.mapping import Beside
-from rga.records.measured import Measured, check_alike, later, since
 
 #: usual steps between two rows, beyond which nothing is put between them
 GAP = 1.5
 
 
-def side_by_side(record: Measured, other: Measured, how: Beside) -> Measured:
+def side_by_side(record: LoggerData, other: LoggerData, how: Beside) -> LoggerData:
     """A record with the channels of another logger.
 
     Args:
@@ -70,7 +70,7 @@ def side_by_side(record: Measured, other: Measured, how: Beside) -> Measured:
         said += f", at most {furthest:g} s away"
     if not matched.any():
         raise _no_match(record, other)
-    return Measured(
+    return LoggerData(
         where=record.where,
         clock=clock,
         values={**own, **taken},
@@ -141,7 +141,7 @@ def _means(times: FloatArray, values: FloatArray, grid: FloatArray, width: float
     return np.asarray(means + middle)
 
 
-def _no_match(record: Measured, other: Measured) -> InputError:
+def _no_match(record: LoggerData, other: LoggerData) -> InputError:
     begins, ends = since(record.clock, other.clock), other.clock.seconds[-1]
     return InputError(
         f"no row of {other.where} lies near one of {record.where}: it begins {begins:g} s after "

@@ -12,8 +12,8 @@ from rga.records.beside import side_by_side
 from rga.records.channels import quoted
 from rga.records.frames import RecordSource, is_frame, table_of_frame
 from rga.records.lead_in import find_lead_in
+from rga.records.logger_data import LoggerData, in_time, measured
 from rga.records.mapping import FileMapping, RecordMapping, read_mapping
-from rga.records.measured import Measured, in_time, measured
 from rga.records.read import read_table
 from rga.records.record import Record
 from rga.records.sources import files_in, find_sources
@@ -59,7 +59,7 @@ def load_record(
     return _record(main, chosen, model)
 
 
-def _logger(paths: Sequence[Path], mapping: FileMapping, model: Model) -> Measured:
+def _logger(paths: Sequence[Path], mapping: FileMapping, model: Model) -> LoggerData:
     """Files of one logger."""
     named = (channel.column for channel in mapping.channels.values())
     known = {*model.sensors, *model.context, *mapping.time.columns, *mapping.unused}
@@ -67,7 +67,7 @@ def _logger(paths: Sequence[Path], mapping: FileMapping, model: Model) -> Measur
     return in_time([measured(read_table(path, mapping, known), mapping, model) for path in paths])
 
 
-def _record(found: Measured, mapping: RecordMapping, model: Model) -> Record:
+def _record(found: LoggerData, mapping: RecordMapping, model: Model) -> Record:
     where = found.where
     left_out = {*mapping.unused}.union(*(other.unused for other in mapping.beside))
     sensors = tuple(name for name in model.sensors if name in found.values)

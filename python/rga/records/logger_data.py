@@ -18,7 +18,7 @@ from rga.records.times import Clock, read_clock
 
 
 @dataclass(frozen=True)
-class Measured:
+class LoggerData:
     """Values of channels in the units of a model, and their time.
 
     Attributes:
@@ -40,7 +40,7 @@ class Measured:
     sha256: str
 
 
-def measured(table: Table, mapping: FileMapping, model: Model) -> Measured:
+def measured(table: Table, mapping: FileMapping, model: Model) -> LoggerData:
     """A table in the units and names of a model.
 
     Raises:
@@ -54,10 +54,10 @@ def measured(table: Table, mapping: FileMapping, model: Model) -> Measured:
     named = [] if table.format == "plain text" else [f"{table.path.name} is read as {table.format}"]
     notes = (*named, *table.notes, *clock.notes, *told_of(table, mapping, sources, model))
     unused = unused_in(table, mapping, model)
-    return Measured(str(table.path), clock, values, unused, notes, table.warnings, table.sha256)
+    return LoggerData(str(table.path), clock, values, unused, notes, table.warnings, table.sha256)
 
 
-def in_time(parts: Sequence[Measured]) -> Measured:
+def in_time(parts: Sequence[LoggerData]) -> LoggerData:
     """Files of one logger, one after the other; their order is that of their times.
 
     Raises:
@@ -76,7 +76,7 @@ def in_time(parts: Sequence[Measured]) -> Measured:
     for name in names:
         without = [part.where for part in parts if name not in part.values]
         warnings += [f"{name} is missing in {', '.join(without)}"] if without else []
-    return Measured(
+    return LoggerData(
         where=parts[0].where,
         clock=replace(
             first,
@@ -122,7 +122,7 @@ def later(clock: Clock, seconds: FloatArray) -> Clock:
     return replace(clock, seconds=seconds - seconds[0], start=start)
 
 
-def check_alike(one: Measured, other: Measured) -> None:
+def check_alike(one: LoggerData, other: LoggerData) -> None:
     """Refuses times that cannot be set against each other.
 
     Raises:
@@ -144,7 +144,7 @@ def _kind(clock: Clock) -> str:
     return "time stamps with a zone" if zoned else "time stamps without a zone"
 
 
-def _following(before: Measured, after: Measured) -> Measured:
+def _following(before: LoggerData, after: LoggerData) -> LoggerData:
     """A file that goes on where another ends; a row that both have is taken once.
 
     Raises:
