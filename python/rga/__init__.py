@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rga.outputs import write_findings
     from rga.planning.planner import plan
     from rga.planning.result import Plan
-    from rga.records import Record, load_record
+    from rga.records import Record, RecordMapping, load_record
     from rga.simulation import Results, Simulator, results
     from rga.twin import Twin
 
@@ -37,6 +37,7 @@ _HOMES = {
     "ModelBuilder": "rga.building",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
+    "RecordMapping": "rga.records",
     "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
@@ -67,6 +68,7 @@ __all__ = [
     "ModelBuilder",
     "Plan",
     "Record",
+    "RecordMapping",
     "Results",
     "Simulator",
     "Twin",

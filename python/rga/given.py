@@ -1,21 +1,22 @@
-"""A record as a caller gives it: itself, or the file that holds it."""
+"""A record as a caller gives it: itself, or the files or the data frame that hold it."""
 
 from pathlib import Path
 
 from rga.errors import InputError
 from rga.model import Model
-from rga.records import Record, RecordMapping, load_record
+from rga.records import Record, RecordMapping, RecordSource, load_record
+from rga.records.frames import is_frame
 
 
 def as_record(
-    given: Record | str | Path,
+    given: Record | RecordSource,
     model: Model,
     mapping: str | Path | RecordMapping | None = None,
 ) -> Record:
-    """A record, read against a model where its file is given.
+    """A record, read against a model where its files or a data frame are given.
 
     Args:
-        given: the record, or the path of its file.
+        given: the record, or what `load_record` takes.
         model: that names its channels.
         mapping: how to read the file, as `load_record` takes it.
 
@@ -24,7 +25,7 @@ def as_record(
     """
     if isinstance(given, Record):
         return given
-    if isinstance(given, str | Path):
+    if isinstance(given, (str, Path, list, tuple)) or is_frame(given):
         return load_record(given, model, mapping)
     what = f"a {type(given).__name__} is no record"
     raise InputError(what, "record", "give a Record, or the path of its file")

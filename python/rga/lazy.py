@@ -19,6 +19,7 @@ EXTRAS = {
     "weasyprint": "pdf",
     "ezdxf": "formats",
     "openpyxl": "formats",
+    "nptdms": "formats",
 }
 
 

@@ -65,7 +65,7 @@ def test_there_are_some_on_the_pages_that_show_commands() -> None:
         ("rga diagnoze MODEL RECORD", "no command diagnoze"),
         ("rga diagnose MODEL RECORD --colour", "no option --colour"),
         ("rga benchmark loi --colour", "no option --colour"),
-        ("rga diagnose MODEL RECORD RECORD -o DIR", "3 arguments of 2"),
+        ("rga replay DIR DIR --row 3", "2 arguments of 1"),
         ("rga diagnose MODEL RECORD -o DIR  # the diagnosis --alone", None),
     ],
 )

@@ -15,7 +15,7 @@ from rga.checking.registry import OF_MODEL, OF_RECORD
 from rga.errors import InputError
 from rga.given import as_record
 from rga.model import Model, as_model
-from rga.records import Record, RecordMapping
+from rga.records import Record, RecordMapping, RecordSource
 
 T = TypeVar("T")
 ORDER = ("error", "warning", "note")
@@ -23,7 +23,7 @@ ORDER = ("error", "warning", "note")
 
 def check(
     model: Model | str | Path,
-    record: Record | str | Path | None = None,
+    record: Record | RecordSource | None = None,
     *,
     mapping: str | Path | RecordMapping | None = None,
 ) -> CheckResult:
@@ -65,7 +65,7 @@ def check(
 
 
 def _of_record(
-    over: OverRanges, record: Record | str | Path, mapping: str | Path | RecordMapping | None
+    over: OverRanges, record: Record | RecordSource, mapping: str | Path | RecordMapping | None
 ) -> list[Finding]:
     try:
         given = as_record(record, over.model, mapping)

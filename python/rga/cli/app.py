@@ -16,6 +16,7 @@ from rga.cli.doctor import doctor
 from rga.cli.draw import draw
 from rga.cli.example import example
 from rga.cli.import_model import import_model
+from rga.cli.import_record import import_record
 from rga.cli.plan import plan
 from rga.cli.replay import replay, rollback
 from rga.cli.results import results
@@ -35,7 +36,7 @@ app = typer.Typer(
 )
 for command in (
     check, run, diagnose, diagnose_many, plan, draw, whatif, replay, rollback, simulate, results,
-    dataset, verify, schema, example, doctor,
+    dataset, verify, schema, example, import_record, doctor,
 ):  # fmt: skip
     app.command()(command)
 app.command("import")(import_model)

@@ -8,8 +8,8 @@ import typer
 from rga.cli.options import JsonTarget, MappingFile, ModelFile
 
 Record = Annotated[
-    Path | None,
-    typer.Argument(metavar="[RECORD]", help="Record (CSV or Parquet) to check beside the model."),
+    list[Path] | None,
+    typer.Argument(metavar="[RECORD]...", help="Record to check beside the model, as in diagnose."),
 ]
 
 
@@ -23,7 +23,7 @@ def check(
     from rga.checking import check as look
     from rga.cli.output import write_json
 
-    checked = look(model, record, mapping=mapping)
+    checked = look(model, record or None, mapping=mapping)
     if json is not None:
         write_json(checked.content(), json)
     if json != "-":

@@ -11,7 +11,7 @@ from rga.cli.options import (
     ModelFile,
     OutputDirectory,
     PrintPdf,
-    RecordFile,
+    RecordFiles,
     Seed,
 )
 from rga.errors import ReportError
@@ -19,7 +19,7 @@ from rga.errors import ReportError
 
 def diagnose(
     model: ModelFile,
-    record: RecordFile,
+    record: RecordFiles,
     output: OutputDirectory,
     mapping: MappingFile = None,
     criteria: CriteriaFile = None,
@@ -34,7 +34,7 @@ def diagnose(
 def diagnose_into(
     output: Path,
     model: Path,
-    record: Path,
+    record: list[Path],
     mapping: Path | None,
     criteria: Path | None,
     seed: int,
@@ -46,15 +46,13 @@ def diagnose_into(
 
     from rga.cli.output import whole_directory, write_json
     from rga.cli.progress import shown_progress
+    from rga.cli.reading import read_record
     from rga.findings.criteria import load_criteria
     from rga.model import load_model
-    from rga.records import load_record
 
     structure = load_model(model)
-    measured = load_record(record, structure, mapping)
     chosen = None if criteria is None else load_criteria(criteria)
-    for warning in measured.warnings:
-        typer.echo(f"warning: {warning}", err=True)
+    measured = read_record(record, structure, mapping)
     # Not needed before the input is known to be good, and slow to import.
     from rga.diagnosis import diagnose
     from rga.report.pdf import write_pdf

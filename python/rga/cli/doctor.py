@@ -10,7 +10,7 @@ NEEDED = (
 )  # fmt: skip
 OPTIONAL = (
     "torch", "safetensors", "sqlalchemy", "alembic", "filelock", "psycopg", "distributed",
-    "scikit-sparse", "PyNiteFEA", "ezdxf", "openpyxl",
+    "scikit-sparse", "PyNiteFEA", "ezdxf", "openpyxl", "npTDMS",
 )  # fmt: skip
 CPU_FEATURES = ("sse4_2", "avx", "avx2", "fma", "avx512f", "neon", "asimd", "sve")
 

@@ -10,7 +10,13 @@ from rga.errors import InputError
 ModelFile = Annotated[
     Path, typer.Argument(metavar="MODEL", help="Model file (JSON, TOML or YAML).")
 ]
-RecordFile = Annotated[Path, typer.Argument(metavar="RECORD", help="Record (CSV or Parquet).")]
+RecordFiles = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="RECORD...",
+        help="Record: a logger's file, several in time, or a folder with import.toml.",
+    ),
+]
 MappingFile = Annotated[
     Path | None,
     typer.Option(

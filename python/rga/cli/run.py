@@ -13,7 +13,7 @@ from rga.cli.options import (
     ModelFile,
     OutputDirectory,
     PrintPdf,
-    RecordFile,
+    RecordFiles,
     Seed,
 )
 
@@ -47,7 +47,7 @@ RepositoryUrl = Annotated[
 
 def run(
     model: ModelFile,
-    record: RecordFile,
+    record: RecordFiles,
     output: OutputDirectory,
     mapping: MappingFile = None,
     seed: Seed = 0,
@@ -63,14 +63,14 @@ def run(
     """
     from rga.cli.output import write_json
     from rga.cli.progress import shown_progress
+    from rga.cli.reading import read_record
     from rga.cli.settings import read_settings
     from rga.model import load_model
-    from rga.records import load_record
 
     structure = load_model(model)
-    measured = load_record(record, structure, mapping)
+    measured = read_record(record, structure, mapping)
     chosen = read_settings(settings, level)
-    for warning in [*measured.warnings, *_replaced(output, structure, measured, seed)]:
+    for warning in _replaced(output, structure, measured, seed):
         typer.echo(f"warning: {warning}", err=True)
     # Not needed before the input is known to be good, and slow to import.
     from rga.jobs.run import run as run_twin

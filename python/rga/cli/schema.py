@@ -15,13 +15,15 @@ class Format(StrEnum):
     record = "record"
     findings = "findings"
     criteria = "criteria"
+    import_toml = "import"
+    settings = "settings"
 
 
 def schema(
-    of: Annotated[Format, typer.Argument(metavar="model|record|findings|criteria")],
+    of: Annotated[Format, typer.Argument(metavar="model|record|findings|criteria|import|settings")],
     json: JsonTarget = "-",
 ) -> None:
-    """Print the JSON Schema of a model file, a record, the findings or the criteria."""
+    """Print the JSON Schema of a file; `import` is import.toml, `settings` are those of a run."""
     from rga.cli.output import write_json
 
     if of is Format.model:
@@ -36,6 +38,14 @@ def schema(
         from rga.findings import Findings
 
         content = Findings.model_json_schema()
+    elif of is Format.import_toml:
+        from rga.records.mapping import mapping_schema
+
+        content = mapping_schema()
+    elif of is Format.settings:
+        from rga.twin.settings import Settings
+
+        content = Settings.model_json_schema()
     else:
         from rga.findings.criteria import Criteria
 

@@ -51,7 +51,7 @@ from rga.findings.criteria import Criteria, as_criteria
 from rga.given import as_record
 from rga.model import Model, as_model
 from rga.provenance import versions
-from rga.records import Record, RecordMapping
+from rga.records import Record, RecordMapping, RecordSource
 from rga.simulation import Simulator
 
 Progress = Callable[[str, float], None]
@@ -61,7 +61,7 @@ SHOW_SCATTER = 20
 
 def diagnose(
     model: Model | str | Path,
-    record: Record | str | Path,
+    record: Record | RecordSource,
     *,
     mapping: str | Path | RecordMapping | None = None,
     parts: Model | None = None,

@@ -8,7 +8,7 @@ from rga.errors import InputError
 from rga.given import as_record
 from rga.model import Model, as_model
 from rga.outputs import write_run
-from rga.records import Record, RecordMapping
+from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.calibration.estimator import Learn
 from rga.twin.outcome import Outcome
 from rga.twin.runner import Progress, Running, taken_up
@@ -19,7 +19,7 @@ FILE = "twin.sqlite"
 
 def run(
     model: Model | str | Path,
-    record: Record | str | Path,
+    record: Record | RecordSource,
     directory: str | Path,
     *,
     mapping: str | Path | RecordMapping | None = None,

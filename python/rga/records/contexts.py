@@ -10,9 +10,10 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.model.effect import seconds
-from rga.records.clock import read_clock
 from rga.records.mapping import TimeColumns
 from rga.records.read import read_table
+from rga.records.times import read_clock
+from rga.records.units import conversion
 
 
 @dataclass(frozen=True)
@@ -29,14 +30,14 @@ class ContextTable:
 
 
 def load_contexts(path: str | Path, model: Model) -> ContextTable:
-    """Read contexts (CSV or Parquet): columns named after context variables, and `time` if needed.
+    """Read contexts, of any format: columns named after context variables, and `time` if needed.
 
     Columns named after sensors are passed over, so that a record serves as well.
 
     Raises:
         InputError: an unknown column, a missing value, or a file that cannot be read.
     """
-    table = read_table(path)
+    table = read_table(path, known=(*model.context, *model.sensors))
     names = [name for name in table.frame.columns if name not in model.sensors]
     unknown = [name for name in names if name != "time" and name not in model.context]
     if unknown:
@@ -54,7 +55,11 @@ def load_contexts(path: str | Path, model: Model) -> ContextTable:
             as_number = clock.time_format == "seconds"
             kept[name] = pl.Series(values[name]) if as_number else table.frame[name]
             continue
-        values[name] = table.numbers(name)
+        factor, offset = 1.0, 0.0
+        if unit := table.units.get(name):
+            where = f"{table.path}, column {name!r}"
+            factor, offset = conversion(unit, name, model, where)
+        values[name] = table.numbers(name) * factor + offset
         kept[name] = pl.Series(values[name])
         missing = np.isnan(values[name])
         if missing.any():

@@ -3,18 +3,40 @@
 import re
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from rga.errors import InputError
 
 MAPPING_NAME = "import.toml"
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
+_Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_Line = Annotated[int, Field(ge=1, strict=True)]
+_Sign = Annotated[str, Field(min_length=1, max_length=1)]
 
 
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def _as_words(stated: Any) -> Any:
+    """Codes for a missing value as text: -9999 and "-9999" say the same."""
+    if isinstance(stated, (list, tuple)):
+        numbers = (int, float)
+        return [
+            f"{one:g}" if isinstance(one, numbers) and not isinstance(one, bool) else one
+            for one in stated
+        ]
+    return stated
 
 
 class TimeColumns(_Table):
@@ -22,13 +44,17 @@ class TimeColumns(_Table):
 
     Attributes:
         columns: the columns that hold it, in the order in which `format` reads them.
-        format: strptime pattern of the columns joined by a blank; None: ISO 8601 or seconds.
+        format: strptime pattern of the columns joined by a blank; `excel` for day numbers of a
+            spreadsheet, `unix`, `unix_ms`, `unix_us` or `unix_ns` for time since 1970; None: ISO
+            8601, seconds, or what the file itself tells beyond doubt.
         sampling_rate_hz: counts time by rows instead, from the first stamp on.
+        zone: of stamps without one: a name such as "Europe/Berlin", or "+01:00".
     """
 
     columns: list[str] = ["time"]
     format: str | None = None
-    sampling_rate_hz: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    sampling_rate_hz: _Positive | None = None
+    zone: str | None = None
 
     @model_validator(mode="after")
     def _some_time(self) -> "TimeColumns":
@@ -38,34 +64,72 @@ class TimeColumns(_Table):
 
 
 class Channel(_Table):
-    """One channel: its column (its own name if left out), its unit there, and its sign."""
+    """One channel: how the file has it.
+
+    Attributes:
+        column: its name in the file; its own name if left out.
+        unit: in which the file has it; the file's own or the model's if left out.
+        sign: -1 where the file counts the other way.
+        missing: what stands for a missing value in this channel, beside those of the file.
+    """
 
     column: str | None = None
     unit: str | None = None
     sign: Literal[1, -1] = 1
+    missing: list[str] = []
+
+    _missing_as_words = field_validator("missing", mode="before")(_as_words)
 
 
-class RecordMapping(_Table):
-    """What a logger's file means, as `import.toml` says it.
+class FileMapping(_Table):
+    """How files of one logger are read; what a file tells of itself needs no key.
 
     Attributes:
-        delimiter: what separates the columns of a text file.
-        header: pattern of the column names, such as "{channel} ({unit})"; None: channel names.
+        files: the files, in time, beside import.toml; names may have * for any text.
+        delimiter: what separates the columns of a text file; None: found.
+        encoding: of a text file, such as "cp1252"; None: found.
+        decimal, thousands: signs in numbers; None: found.
+        header_line: line of the column names, counted from 1; None: found.
+        units_line: line of the units; None: found below the names, or in them.
+        data_line: line of the first row; None: below names and units.
+        block: which of several tables of a file, counted from 1.
+        missing: what stands for a missing value, such as "-9999".
+        header: pattern of the column names, such as "{channel} ({unit})"; None: channel names, or
+            names with the unit in brackets behind them.
         time: where the time stands.
         channels: by sensor or context variable of the model, where the file differs from it.
         unused: channel -> reason why it is left out; a sensor without a column stands here too.
-        zero: interval [s since the first row] whose mean is taken off, or "lead-in": found.
 
-    >>> RecordMapping(header="{channel} ({unit})").channel_of("d5 (mm)")
+    >>> FileMapping(header="{channel} ({unit})").channel_of("d5 (mm)")
     ('d5', 'mm')
     """
 
-    delimiter: Annotated[str, Field(min_length=1, max_length=1)] = ","
+    files: list[str] = []
+    delimiter: _Sign | None = None
+    encoding: str | None = None
+    decimal: Literal[".", ","] | None = None
+    thousands: _Sign | None = None
+    header_line: _Line | None = None
+    units_line: _Line | None = None
+    data_line: _Line | None = None
+    block: _Line | None = None
+    missing: list[str] = []
     header: str | None = None
     time: TimeColumns = TimeColumns()
     channels: dict[str, Channel] = {}
     unused: dict[str, Annotated[str, Field(min_length=1)]] = {}
-    zero: Literal["lead-in"] | tuple[_Finite, _Finite] | None = None
+
+    _missing_as_words = field_validator("missing", mode="before")(_as_words)
+
+    @field_validator("encoding")
+    @classmethod
+    def _known(cls, encoding: str | None) -> str | None:
+        if encoding is not None:
+            try:
+                "".encode(encoding)
+            except LookupError:
+                raise ValueError(f"{encoding!r} is no encoding that is known") from None
+        return encoding
 
     @field_validator("header")
     @classmethod
@@ -75,9 +139,13 @@ class RecordMapping(_Table):
         return header
 
     @model_validator(mode="after")
-    def _zero_grows(self) -> "RecordMapping":
-        if isinstance(self.zero, tuple) and not self.zero[0] < self.zero[1]:
-            raise ValueError("zero must be [from, to] with from < to")
+    def _lines_follow(self) -> "FileMapping":
+        header, data = self.header_line or 1, self.data_line
+        if data is not None and data <= max(header, self.units_line or 1):
+            raise ValueError("data_line must be below header_line and units_line")
+        if self.decimal is not None and self.decimal in (self.thousands, self.delimiter):
+            other = "thousands" if self.decimal == self.thousands else "delimiter"
+            raise ValueError(f"decimal and {other} are the same sign")
         return self
 
     def channel_of(self, column: str) -> tuple[str, str | None]:
@@ -91,26 +159,104 @@ class RecordMapping(_Table):
         return column, None
 
 
+class Beside(FileMapping):
+    """Files of another logger, whose rows are matched to those of the record.
+
+    Attributes:
+        match: `nearest`: the row nearest in time; `interpolate`: between the rows before and after;
+            `mean`: the mean of the rows about each row of the slower logger, which then has the
+            rows of the record.
+        tolerance_s: greatest distance in time of a match; None: half the usual step of the slower
+            of the two for `nearest`, one and a half of this logger for `interpolate`.
+        shift_s: added to the times of this logger, whose clock is late by as much.
+    """
+
+    match: Literal["nearest", "interpolate", "mean"] = "nearest"
+    tolerance_s: _Positive | None = None
+    shift_s: _Finite = 0.0
+
+    @model_validator(mode="after")
+    def _some_files(self) -> "Beside":
+        if not self.files:
+            raise ValueError('files of the other logger are needed: files = ["..."]')
+        return self
+
+
+class RecordMapping(FileMapping):
+    """What a logger's file means, as `import.toml` says it.
+
+    Attributes:
+        zero: interval [s since the first row] whose mean is taken off, or "lead-in": found.
+        beside: files of other loggers, side by side with those of this one.
+    """
+
+    zero: Literal["lead-in"] | tuple[_Finite, _Finite] | None = None
+    beside: list[Beside] = []
+
+    _folder: Path = PrivateAttr(default=Path())
+
+    @model_validator(mode="after")
+    def _zero_grows(self) -> "RecordMapping":
+        if isinstance(self.zero, tuple) and not self.zero[0] < self.zero[1]:
+            raise ValueError("zero must be [from, to] with from < to")
+        return self
+
+    @property
+    def folder(self) -> Path:
+        """Where the files stand that it names: its own folder."""
+        return self._folder
+
+
+def mapping_schema() -> dict[str, Any]:
+    """JSON Schema of a mapping, `import.toml`.
+
+    >>> mapping_schema()["title"]
+    'import.toml'
+    """
+    schema = RecordMapping.model_json_schema()
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": draft, **schema, "title": MAPPING_NAME}
+
+
 def read_mapping(path: str | Path) -> RecordMapping:
     """Read a mapping file.
 
     Raises:
         InputError: the file is missing, is no TOML, or has an unknown key or a wrong value.
     """
+    path = Path(path)
     try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-        return RecordMapping.model_validate(content)
+        content = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         reason = error.strerror or "unreadable"
         raise InputError(
             f"the mapping cannot be read, {reason.lower()}", str(path), "check the path"
         ) from None
+    except ValueError:
+        raise InputError("the mapping is no UTF-8", str(path), "save it as UTF-8") from None
+    return mapping_of(content, path)
+
+
+def mapping_of(content: str, path: Path) -> RecordMapping:
+    """The mapping that a text says.
+
+    Args:
+        content: TOML.
+        path: where it stands, or is to stand: files are named from there.
+
+    Raises:
+        InputError: it is no TOML, or has an unknown key or a wrong value.
+    """
+    try:
+        mapping = RecordMapping.model_validate(tomllib.loads(content))
     except ValidationError as error:
         raise _explained(error, str(path)) from None
-    except ValueError as error:  # no TOML, or no UTF-8
+    except (ValueError, RecursionError) as error:
         raise InputError(
             f"the mapping is no TOML: {' '.join(str(error).split())}", str(path), "mend the syntax"
         ) from None
+    mapping._folder = path.parent
+    return mapping
 
 
 def find_mapping(record: Path, model: Path | None) -> Path | None:
@@ -124,7 +270,10 @@ def _explained(error: ValidationError, where: str) -> InputError:
     key = ".".join(str(part) for part in first["loc"])
     if first["type"] == "extra_forbidden":
         tables: dict[str, type[_Table]] = {"time": TimeColumns, "channels": Channel}
-        known = ", ".join(tables.get(str(first["loc"][0]), RecordMapping).model_fields)
+        kind: type[_Table] = Beside if first["loc"][0] == "beside" else RecordMapping
+        for part in first["loc"][:-1]:
+            kind = tables.get(str(part), kind)
+        known = ", ".join(kind.model_fields)
         return InputError(f"the key {key!r} is unknown", where, f"known are {known}")
     message = first["msg"].removeprefix("Value error, ")
     return InputError(f"{key or 'mapping'}: {message}", where, "correct the value")

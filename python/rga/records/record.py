@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Record:
-    """Measured data in the units of the model.
+    """LoggerData data in the units of the model.
 
     Attributes:
         time: float[n], seconds since the first row of the file; strictly increasing.
@@ -31,6 +31,7 @@ class Record:
         unused: channels that are left out, with the reason.
         zero: interval [s since the first row] whose mean was taken off every channel, if any.
         warnings: what the reader should know of the data, in words.
+        notes: what was understood of the files, and what was assumed, in words.
         sha256: hash of the file.
 
     >>> record = Record(np.arange(3.0), 10.0, "seconds", ("D1",), np.zeros((3, 1)))
@@ -49,6 +50,7 @@ class Record:
     unused: dict[str, str] = field(default_factory=dict)
     zero: tuple[float, float] | None = None
     warnings: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
     sha256: str = ""
 
     def __len__(self) -> int:

@@ -107,10 +107,10 @@ def test_warnings_leave_the_exit_code_alone(files: Path, rga: Callable[..., Any]
 
 
 def test_a_mapping_is_used(files: Path, rga: Callable[..., Any]) -> None:
-    text = (files / "record.csv").read_text(encoding="utf-8").replace(",", ";")
+    text = (files / "record.csv").read_text(encoding="utf-8").replace("time", "z", 1)
     (files / "record.csv").write_text(text, encoding="utf-8")
     assert rga("check", files / "model.json", files / "record.csv").code == 2
-    (files / "how.toml").write_text('delimiter = ";"', encoding="utf-8")
+    (files / "how.toml").write_text('[time]\ncolumns = ["z"]', encoding="utf-8")
     outcome = rga(
         "check", files / "model.json", files / "record.csv", "--import", files / "how.toml"
     )

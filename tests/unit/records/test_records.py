@@ -245,6 +245,10 @@ def test_contexts_pass_over_sensors_and_keep_time(tmp_path: Path, model: Model) 
     contexts = load_contexts(path, model)
     assert contexts.frame.columns == ["time", "temperature"]
     assert contexts.values["time"].tolist() == [86400, 2 * 86400]
+    units = write(tmp_path / "k.csv", "temperature;load\n°F;kN\n50;1,5\n68;2,5\n")
+    read = load_contexts(units, model).values
+    np.testing.assert_allclose(read["temperature"], [10, 20])
+    np.testing.assert_allclose(read["load"], [1500, 2500])
     with pytest.raises(InputError, match="no value"):
         load_contexts(write(tmp_path / "e.csv", "temperature,load\n5,1\n,2\n"), model)
     with pytest.raises(InputError, match="no context variable 'wind'"):

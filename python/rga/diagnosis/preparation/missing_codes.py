@@ -54,5 +54,5 @@ def _words(record: Record, code: float, channels: list[int]) -> str:
     return (
         f"{code:g} stands in {rows} rows of {names}{f' and {more} more channels' * (more > 0)}, "
         "far away from all else that they read, as a logger's code for a missing reading does: "
-        "leave these cells empty"
+        "name it under missing in import.toml, or leave these cells empty"
     )

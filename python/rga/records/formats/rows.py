@@ -1,0 +1,130 @@
+"""Rows of a table of text as columns of stripped cells."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import polars as pl
+
+from rga.errors import InputError
+
+
+def read_rows(
+    body: bytes,
+    delimiter: str,
+    names: Sequence[str],
+    path: Path,
+    first: int,
+    header: int | None = None,
+    *,
+    ragged: bool = False,
+) -> pl.DataFrame:
+    """Rows as columns of text, null where a cell is empty.
+
+    Args:
+        body: the rows, UTF-8 with line feeds.
+        delimiter: between cells; a blank: runs of white space.
+        names: of the columns; an empty one for a column that must be empty.
+        path: the file, for an error.
+        first: line of the file at which the rows begin, counted from 0.
+        header: line of the names, counted from 0.
+        ragged: rows may leave out cells at their end.
+
+    Raises:
+        InputError: a row has more or fewer cells than there are names.
+    """
+    body = body.rstrip(b"\n\x1a\x00 ")
+    if not body:
+        return pl.DataFrame(schema=dict.fromkeys(filter(None, names), pl.String))
+    if delimiter == " ":
+        body = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", body))
+        delimiter = "\t"
+    if b"\x01" in body:
+        line = body.count(b"\n", 0, body.index(b"\x01")) + first + 1
+        raise InputError(
+            "the line holds bytes that are no text", f"{path}, line {line}", "take them out"
+        )
+    quoted = b'"' in body
+    count = len(names)
+    lengths = _lengths(body, delimiter, quoted)
+    most = int(lengths.max() or 0) if len(lengths) else 0  # type: ignore[arg-type]
+    wide = max(count, most)
+    if most > 10 * count + 1000:
+        raise InputError(
+            f"a line has {most} fields, the header has {count}", str(path), "mend the line"
+        )
+    ids = [f"c{number}" for number in range(wide)]
+    head = delimiter.join(ids).encode() + b"\n"
+    try:
+        frame = pl.read_csv(
+            head + body,
+            separator=delimiter,
+            infer_schema=False,
+            quote_char='"' if quoted else None,
+        )
+    except pl.exceptions.PolarsError as error:
+        problem = next(iter(str(error).splitlines()), type(error).__name__)
+        raise InputError(f"the table cannot be read: {problem}", str(path), "mend it") from None
+    for column in frame.columns:  # one by one, so that there are never two of all
+        cells = pl.col(column).str.strip_chars(" \t\u00a0")
+        frame = frame.with_columns(pl.when(cells != "").then(cells).alias(column))
+    _check(frame, lengths, names, path, first, header, ragged=ragged)
+    kept = [one for one, name in zip(ids, names, strict=False) if name]
+    frame = frame.select(kept).rename(dict(zip(kept, [n for n in names if n], strict=True)))
+    filled = frame.select(pl.any_horizontal(pl.all().is_not_null())).to_series().arg_true()
+    # A file may end with blank lines; blank lines between rows are left to be found as missing.
+    return frame.head(int(filled[-1]) + 1 if len(filled) else 0)
+
+
+def _lengths(body: bytes, delimiter: str, quoted: bool) -> pl.Series:
+    """How many cells every line has, int[lines]; none where quotes hold line feeds; 0 if blank."""
+    lines = pl.read_csv(b"line\n" + body, separator="\x01", quote_char=None, infer_schema=False)[
+        "line"
+    ].fill_null("")
+    if quoted:
+        if (lines.str.count_matches('"', literal=True) % 2 != 0).any():
+            return pl.Series([], dtype=pl.Int64)
+        lines = lines.str.replace_all('"[^"]*"', "q")
+    counts = lines.str.count_matches(delimiter, literal=True).cast(pl.Int64) + 1
+    blank = lines.str.strip_chars() == ""
+    return pl.select(pl.when(blank).then(0).otherwise(counts)).to_series()
+
+
+def _check(
+    frame: pl.DataFrame,
+    lengths: pl.Series,
+    names: Sequence[str],
+    path: Path,
+    first: int,
+    header: int | None,
+    *,
+    ragged: bool,
+) -> None:
+    """Refuses a row with another number of cells than the rest, and values without a name."""
+    count = len(names)
+    for number, column in enumerate(frame.columns):
+        named = number < count and names[number]
+        if named or frame[column].is_null().all():
+            continue
+        row = int(frame[column].is_not_null().arg_true()[0])
+        if number < count and header is not None:
+            raise InputError(
+                f"column {number + 1} has no name", f"{path}, line {header + 1}", "name it"
+            )
+        raise _other_length(int(lengths[row]) if len(lengths) else count, count, path, first + row)
+    if ragged or not len(lengths):
+        return
+    # Rows may all end with a delimiter.
+    usual = lengths.filter(lengths > 0).mode().max() if (lengths > 0).any() else count
+    odd = ((lengths != usual) & (lengths > 0)).arg_true()
+    if len(odd):
+        row = int(odd[0])
+        raise _other_length(int(lengths[row]), count, path, first + row)
+
+
+def _other_length(length: int, count: int, path: Path, line: int) -> InputError:
+    return InputError(
+        f"the line has {length} fields, the header has {count}",
+        f"{path}, line {line + 1}",
+        "write all fields of the line, empty ones where values are missing",
+    )

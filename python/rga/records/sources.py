@@ -1,0 +1,70 @@
+"""What a user names as a record: a file, several, a folder, a mapping."""
+
+from collections.abc import Sequence
+from glob import has_magic
+from os.path import normpath
+from pathlib import Path
+
+from rga.errors import InputError
+from rga.records.mapping import MAPPING_NAME, RecordMapping, find_mapping, read_mapping
+
+
+def find_sources(
+    named: str | Path | Sequence[str | Path],
+    model: Path | None,
+    mapping: str | Path | RecordMapping | None,
+) -> tuple[list[Path], RecordMapping]:
+    """The files of a record, and its mapping.
+
+    Args:
+        named: a file, several in time, a pattern such as "2024-*.csv", a folder with an
+            `import.toml` that names its files, or an `import.toml`.
+        model: file of the model, beside which a mapping may stand.
+        mapping: the mapping, or its file; None: beside the record, else beside the model, if any.
+
+    Raises:
+        InputError: a file or the mapping is missing, or a folder does not say what its files are.
+    """
+    places = [Path(named)] if isinstance(named, (str, Path)) else [Path(one) for one in named]
+    if not places:
+        raise InputError("no file is named", "record", "name a file, several, or a folder")
+    first = places[0]
+    whole = len(places) == 1 and (first.is_dir() or first.suffix.lower() == ".toml")
+    if whole and first.suffix.lower() == ".toml" and not first.is_dir():
+        mapping = mapping or first
+    if not isinstance(mapping, RecordMapping):
+        inside = first / MAPPING_NAME if first.is_dir() else first
+        found = mapping or find_mapping(inside, model)
+        mapping = read_mapping(found) if found else RecordMapping()
+    if not whole:
+        return [path for place in places for path in _matching(place)], mapping
+    folder = mapping.folder if mapping.folder != Path() or not first.is_dir() else first
+    if not mapping.files:
+        held = sorted(p.name for p in folder.iterdir() if p.is_file() and p.suffix != ".toml")
+        shown = ", ".join(held[:8]) + (" ..." if len(held) > 8 else "")
+        raise InputError(
+            "nothing says which files are the record",
+            str(first),
+            f'state files = ["..."] in {MAPPING_NAME} there; the folder holds {shown or "none"}',
+        )
+    return files_in(folder, mapping.files), mapping
+
+
+def files_in(folder: Path, names: Sequence[str]) -> list[Path]:
+    """Files that a mapping names, in its folder.
+
+    Raises:
+        InputError: a pattern fits none.
+    """
+    return [path for name in names for path in _matching(Path(normpath(folder / name)))]
+
+
+def _matching(place: Path) -> list[Path]:
+    if place.exists() or not has_magic(str(place)):
+        return [place]
+    base = Path(place.anchor) if place.is_absolute() else Path()
+    parts = place.relative_to(base) if place.is_absolute() else place
+    found = sorted(path for path in base.glob(str(parts)) if path.is_file())
+    if not found:
+        raise InputError("no file has a name like this", str(place), "correct the pattern")
+    return found

@@ -1,0 +1,282 @@
+"""The time axis of a file: time stamps or seconds, checked to increase."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from functools import partial
+from typing import Literal
+
+import numpy as np
+import polars as pl
+
+from rga.arrays import FloatArray
+from rga.errors import InputError
+from rga.records.mapping import TimeColumns
+from rga.records.numbers import numbers_of
+from rga.records.table import StatedTime, Table
+from rga.records.times.written import moments_by, written_format
+from rga.records.times.zone import in_zone, zone_of
+from rga.records.units import unit_of
+
+#: times that are numbers: how much one is [s], and the moment at which they are 0
+COUNTED = {
+    "excel": (86400.0, datetime(1899, 12, 30)),
+    "unix": (1.0, datetime(1970, 1, 1, tzinfo=UTC)),
+    "unix_ms": (1e-3, datetime(1970, 1, 1, tzinfo=UTC)),
+    "unix_us": (1e-6, datetime(1970, 1, 1, tzinfo=UTC)),
+    "unix_ns": (1e-9, datetime(1970, 1, 1, tzinfo=UTC)),
+}
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Time of the rows.
+
+    Attributes:
+        seconds: float[n], since the first row.
+        start: the first time stamp, ISO 8601 text or seconds.
+        time_format: "iso" or "seconds".
+        columns: that hold it.
+        notes: what was understood of it, in words.
+    """
+
+    seconds: FloatArray
+    start: str | float
+    time_format: Literal["iso", "seconds"]
+    columns: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def read_clock(table: Table, time: TimeColumns) -> Clock:
+    """The time axis of a table.
+
+    Args:
+        table: the file's columns.
+        time: which columns hold the time, and how; what it leaves out is as the format says.
+
+    Raises:
+        InputError: a column or a time is missing, a time cannot be read, two notations are mixed,
+            or time repeats or runs backwards.
+    """
+    notes: list[str] = []
+    stated = _stated(table, time, notes)
+    for column in stated.columns:
+        if column not in table.frame.columns:
+            raise InputError(
+                f"there is no time column {column!r}",
+                f"{table.path}, columns {_listed(table.frame.columns)}",
+                "name it 'time', or give [time] columns (and the delimiter) in import.toml",
+            )
+    clock = _Reading(table, stated, time.zone or stated.zone, notes).clock()
+    rows = np.arange(table.frame.height, dtype=float)
+    if time.sampling_rate_hz is not None:
+        return replace(clock, seconds=np.asarray(rows / time.sampling_rate_hz))
+    if not stated.columns:
+        return replace(clock, seconds=np.asarray(rows * (stated.step or 0.0)))
+    _check_order(clock, table, " + ".join(stated.columns))
+    return clock
+
+
+def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
+    """What is stated of the time, by import.toml or by the format."""
+    own = table.time
+    if "columns" not in time.model_fields_set and own is not None:
+        if table.format == "plain text" and own.columns:
+            notes.append("the time stands in " + " and ".join(map(repr, own.columns)))
+        return replace(own, format=time.format or own.format)
+    columns = tuple(time.columns)
+    unit = unit_of(table.units.get(columns[0], "")) if len(columns) == 1 else None
+    size = unit.size if unit is not None and unit.dimension == "time" else 1.0
+    if own is not None and own.columns == columns:
+        return replace(own, format=time.format or own.format)
+    return StatedTime(columns, time.format, unit=size)
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """Time columns on their way to a clock; their rows may be in any order."""
+
+    table: Table
+    stated: StatedTime
+    zone: str | None
+    notes: list[str]
+
+    @property
+    def where(self) -> str:
+        return " + ".join(self.stated.columns)
+
+    def clock(self) -> Clock:
+        stated = self.stated
+        if not stated.columns:
+            return self._elapsed(np.zeros(self.table.frame.height))
+        series = [self.table.frame[column] for column in stated.columns]
+        for column, values in zip(stated.columns, series, strict=True):
+            if values.is_null().any():
+                raise InputError(
+                    "the time is missing",
+                    self.table.where(int(values.is_null().arg_true()[0]), column),
+                    "give every row its time, or take the row out",
+                )
+        if len(series) == 1 and series[0].dtype.is_temporal():
+            return self._temporal(series[0])
+        if stated.format in COUNTED:
+            return self._counted(series[0], *COUNTED[stated.format])
+        texts = [values.cast(pl.String).to_list() for values in series]
+        joined = [" ".join(parts) for parts in zip(*texts, strict=True)]
+        if stated.format is not None:
+            return self._written(joined, stated.format)
+        if len(series) == 1 and self._is_number(series[0]):
+            return self._elapsed(self._seconds(series[0]) * stated.unit)
+        if not _is_iso(joined[0]) and (found := written_format(joined)) is not None:
+            self.notes.append(f"times are read as {found}")
+            return self._written(joined, found)
+        wanted = "ISO 8601 like the first row, or seconds throughout"
+        if not _is_iso(joined[0]) and re.match(r"\d+[-/]\d+[-/]\d", joined[0]):
+            raise InputError(
+                f"day and month of {joined[0]!r} cannot be told apart",
+                self.table.where(0, self.where),
+                'state [time] format in import.toml, such as "%d/%m/%Y %H:%M:%S"',
+            )
+        clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted))
+        return clock if self.zone else replace(clock, start=joined[0])
+
+    def _temporal(self, series: pl.Series) -> Clock:
+        moments = series.cast(pl.Datetime("us", getattr(series.dtype, "time_zone", None)))
+        if self.zone is not None:
+            return self._placed(moments.to_list())
+        stamps = np.array(moments.to_physical().to_numpy(), dtype=float) / 1e6
+        return self._clock(stamps - stamps[0], moments[0].isoformat())
+
+    def _counted(self, series: pl.Series, unit: float, zero: datetime) -> Clock:
+        stamps = self._seconds(series) * unit
+        return self._clock(stamps - stamps[0], self._after(zero, float(stamps[0])))
+
+    def _written(self, joined: list[str], pattern: str) -> Clock:
+        moments = moments_by(joined, pattern)
+        if moments is None:
+            parse = partial(_by_format, pattern=pattern)
+            moments = self._moments(joined, parse, f"written as {pattern}")
+        return self._placed(moments)
+
+    def _elapsed(self, stamps: FloatArray) -> Clock:
+        """Time since what the format says is the start, or on a scale that it does not name."""
+        if self.stated.start is None:
+            return self._clock(stamps - stamps[0], float(stamps[0]))
+        try:
+            zero = datetime.fromisoformat(self.stated.start)
+        except ValueError:
+            raise InputError(
+                f"the start {self.stated.start!r} cannot be read",
+                str(self.table.path),
+                "export the file again",
+            ) from None
+        return self._clock(stamps - stamps[0], self._after(zero, float(stamps[0])))
+
+    def _after(self, zero: datetime, seconds: float) -> str:
+        """The time stamp that lies some seconds after another, in the zone if one is stated."""
+        try:
+            moment = zero + timedelta(seconds=round(seconds, 6))
+        except OverflowError:
+            raise InputError(
+                f"{seconds:g} s after {zero} is none of the years 1 to 9999",
+                self.table.where(0, self.where),
+                "correct the time, or [time] format in import.toml",
+            ) from None
+        if self.zone is not None and moment.tzinfo is None:
+            moment = moment.replace(tzinfo=zone_of(self.zone, str(self.table.path)))
+        return moment.isoformat()
+
+    def _placed(self, moments: list[datetime]) -> Clock:
+        """The clock of moments as they are written."""
+        if self.zone is None or moments[0].tzinfo is not None:
+            elapsed = np.array([(moment - moments[0]).total_seconds() for moment in moments])
+            if moments[0].tzinfo is None and self.stated.columns != ("time",):
+                self.notes.append("time stamps have no zone")
+            return self._clock(elapsed, moments[0].isoformat())
+        zone = zone_of(self.zone, str(self.table.path))
+        stamps, gap = in_zone(pl.Series(moments), zone, self.notes)
+        if gap is not None:
+            raise InputError(
+                f"the time {moments[gap]} does not exist in {self.zone}: summer time begins there",
+                self.table.where(gap, self.where),
+                'give the zone that the logger keeps to, such as zone = "+01:00"',
+            )
+        first = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=int(stamps[0]))
+        start = first.astimezone(zone)
+        return self._clock((stamps - stamps[0]) / 1e6, start.isoformat())
+
+    def _clock(self, seconds: FloatArray, start: str | float) -> Clock:
+        kind: Literal["iso", "seconds"] = "iso" if isinstance(start, str) else "seconds"
+        return Clock(seconds, start, kind, self.stated.columns, tuple(self.notes))
+
+    def _moments(
+        self, texts: Sequence[str], parse: Callable[[str], datetime], wanted: str
+    ) -> list[datetime]:
+        moments: list[datetime] = []
+        for row, text in enumerate(texts):
+            try:
+                moments.append(parse(text))
+            except ValueError:
+                raise InputError(
+                    f"the time {text!r} cannot be read",
+                    self.table.where(row, self.where),
+                    f"give it {wanted}",
+                ) from None
+            if (moments[row].tzinfo is None) != (moments[0].tzinfo is None):
+                raise InputError(
+                    "some times have a time zone and some have none",
+                    self.table.where(row, self.where),
+                    "write all times alike",
+                )
+        return moments
+
+    def _seconds(self, series: pl.Series) -> FloatArray:
+        read, bad = numbers_of(series, self.table.notation)
+        wrong = bad | ~np.isfinite(read)
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise InputError(
+                f"the time {str(series[row])!r} is not in seconds as in the first row",
+                self.table.where(row, self.where),
+                "write all times in seconds, or all in ISO 8601",
+            )
+        return read
+
+    def _is_number(self, series: pl.Series) -> bool:
+        read, bad = numbers_of(series.head(1), self.table.notation)
+        return not bad[0] and bool(np.isfinite(read[0]))
+
+
+def _by_format(text: str, pattern: str) -> datetime:
+    return datetime.strptime(text, pattern)
+
+
+def _is_iso(text: str) -> bool:
+    try:
+        datetime.fromisoformat(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _check_order(clock: Clock, table: Table, where: str) -> None:
+    step = np.diff(clock.seconds)
+    wrong = ~(step > 0)
+    if not wrong.any():
+        return
+    row = int(np.argmax(wrong)) + 1
+    if step[row - 1] == 0:
+        what = "the time is the same as in the row before"
+        remedy = "take the double row out, or give [time] sampling_rate_hz where stamps are coarse"
+    else:
+        what, remedy = "the time runs backwards", "sort the rows by time"
+        # An autumn night: the hour of summer time comes again.
+        if clock.time_format == "iso" and -3600 <= step[row - 1] < 0:
+            remedy += ', or state [time] zone = "..." where summer time ends here'
+    raise InputError(what, table.where(row, where), remedy)
+
+
+def _listed(names: list[str]) -> str:
+    shown = ", ".join(names[:6])
+    return shown if len(names) <= 6 else f"{shown}, ... ({len(names)} in all)"

@@ -1,0 +1,134 @@
+"""Times as loggers write them: formats, zones, the hour that comes twice, numbers of days."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+from rga.errors import InputError
+from rga.records.mapping import TimeColumns
+from rga.records.read import read_table
+from rga.records.times import Clock, read_clock
+from rga.records.times.clock import _by_format
+from rga.records.times.written import moments_by, written_format
+
+
+def clock(folder: Path, header: str, stamps: list[str], **stated: Any) -> Clock:
+    rows = "".join(f"{stamp};{k}\n" for k, stamp in enumerate(stamps))
+    (folder / "r.csv").write_text(f"{header};D1\n{rows}", encoding="utf-8")
+    return read_clock(read_table(folder / "r.csv"), TimeColumns(**stated))
+
+
+@pytest.mark.parametrize(
+    ("header", "stamps", "start", "step"),
+    [
+        (
+            "time",
+            ["2024-01-01T00:00:00.4", "2024-01-01T00:00:00.41"],
+            "2024-01-01T00:00:00.4",
+            0.01,
+        ),
+        ("Datum;Zeit", ["1.2.2024;10:00:00", "1.2.2024;10:00:10"], "2024-02-01T10:00:00", 10),
+        ("Timestamp", ["01/13/2024 1:00 PM", "01/13/2024 1:10 PM"], "2024-01-13T13:00:00", 600),
+        ("Date", ["13/01/24 10:00:00", "13/01/24 10:00:01"], "2024-01-13T10:00:00", 1),
+        ("Zeit", ["13.1.2024 10:00:00", "13.1.2024 10:00:00,5"], "2024-01-13T10:00:00", 0.5),
+        ("Time", ["03-Feb-2024 10:00:00", "03-Feb-2024 10:00:01"], "2024-02-03T10:00:00", 1),
+        ("t [ms]", ["0", "250"], 0.0, 0.25),
+        ("Zeit [min]", ["1,5", "2,0"], 90.0, 30),
+        (
+            "Date Time, GMT+02:00",
+            ["01/13/24 10:00", "01/13/24 10:10"],
+            "2024-01-13T10:00:00+02:00",
+            600,
+        ),
+    ],
+)
+def test_what_can_be_nothing_but_the_time_needs_no_key(
+    header: str, stamps: list[str], start: str | float, step: float, tmp_path: Path
+) -> None:
+    found = clock(tmp_path, header, stamps)
+    assert found.start == start
+    np.testing.assert_allclose(found.seconds, [0, step])
+
+
+def test_day_and_month_that_cannot_be_told_apart_are_asked_for(tmp_path: Path) -> None:
+    stamps = ["03/04/2024 10:00", "03/04/2024 10:10"]
+    with pytest.raises(InputError, match="cannot be told apart"):
+        clock(tmp_path, "Timestamp", stamps)
+    found = clock(tmp_path, "Timestamp", stamps, format="%d/%m/%Y %H:%M")
+    assert found.start == "2024-04-03T10:00:00"
+    months = [f"{month:02d}/01/2024 00:00" for month in range(1, 13)]
+    assert written_format(months) is None
+    hours = [f"01/{day:02d}/2024 {hour:02d}:00" for day in range(1, 12) for hour in range(24)]
+    assert written_format(hours) == "%m/%d/%Y %H:%M"
+
+
+@pytest.mark.parametrize(
+    "pattern", ["%d-%m-%Y %H:%M:%S.%f", "%d.%m.%y %I:%M:%S %p", "%Y/%m/%d %H:%M", "%d-%b-%Y"]
+)
+def test_many_stamps_at_once_are_as_each_alone(pattern: str) -> None:
+    start = pl.datetime(2024, 1, 31, 11, 59, 58, 987_654)
+    frame = pl.select(pl.datetime_range(start, pl.datetime(2024, 3, 1), "7h13m1s7us"))
+    texts = [moment.strftime(pattern) for moment in frame.to_series()]
+    assert moments_by(texts, pattern) == [_by_format(text, pattern) for text in texts]
+    assert moments_by([*texts, "?"], pattern) is None
+
+
+NIGHT = ["00:30", "01:00", "01:30", "02:00", "02:30", "02:00", "02:30", "03:00"]
+
+
+def test_the_hour_that_comes_twice_is_told_apart_by_the_rows(tmp_path: Path) -> None:
+    stamps = [f"2023-10-29 {at}" for at in NIGHT]
+    found = clock(tmp_path, "time", stamps, zone="Europe/Berlin")
+    assert found.start == "2023-10-29T00:30:00+02:00"
+    assert (np.diff(found.seconds) == 1800).all()
+    assert "comes twice on 2023-10-29" in found.notes[0]
+    with pytest.raises(InputError, match="state \\[time\\] zone"):
+        clock(tmp_path, "time", stamps)
+
+
+def test_an_hour_that_is_there_once_is_said(tmp_path: Path) -> None:
+    stamps = [f"2023-10-29 {at}" for at in ("01:00", "02:00", "03:00")]
+    found = clock(tmp_path, "time", stamps, zone="Europe/Berlin")
+    assert found.seconds.tolist() == [0, 3600, 3 * 3600]
+    assert "taken as summer time" in found.notes[0]
+    hourly = [f"2023-10-29 {at}" for at in ("01:00", "02:00", "02:00", "03:00")]
+    again = clock(tmp_path, "time", hourly, zone="Europe/Berlin")
+    assert again.seconds.tolist() == [0, 3600, 7200, 10800]
+
+
+def test_an_hour_that_does_not_exist_is_refused_with_its_line(tmp_path: Path) -> None:
+    stamps = [f"2023-03-26 {at}" for at in ("01:30", "02:30", "03:30")]
+    with pytest.raises(InputError, match=r"02:30:00 does not exist in Europe/Berlin.*line 3"):
+        clock(tmp_path, "time", stamps, zone="Europe/Berlin")
+    found = clock(tmp_path, "time", stamps, zone="+01:00")
+    assert found.seconds.tolist() == [0, 3600, 7200]
+    assert found.start == "2023-03-26T01:30:00+01:00"
+    with pytest.raises(InputError, match="no time zone 'Mars/Base'"):
+        clock(tmp_path, "time", stamps, zone="Mars/Base")
+
+
+@pytest.mark.parametrize(
+    ("kind", "cells", "start", "step"),
+    [
+        ("excel", ["45323,5", "45323,75"], "2024-02-01T12:00:00", 21600),
+        ("unix", ["1706745600", "1706745601.5"], "2024-02-01T00:00:00+00:00", 1.5),
+        ("unix_ms", ["1706745600000", "1706745600250"], "2024-02-01T00:00:00+00:00", 0.25),
+    ],
+)
+def test_times_that_are_numbers(
+    kind: str, cells: list[str], start: str, step: float, tmp_path: Path
+) -> None:
+    found = clock(tmp_path, "Date", cells, columns=["Date"], format=kind)
+    assert found.start == start
+    np.testing.assert_allclose(found.seconds, [0, step], atol=1e-5)
+    with pytest.raises(InputError, match="none of the years"):
+        clock(tmp_path, "Date", ["1e20", "2e20"], columns=["Date"], format=kind)
+
+
+def test_rows_are_counted_from_the_first_stamp(tmp_path: Path) -> None:
+    found = clock(tmp_path, "time", ["2024-01-01T00:00"] * 3, sampling_rate_hz=200)
+    assert found.seconds.tolist() == [0, 0.005, 0.01]
+    assert found.start == "2024-01-01T00:00"
