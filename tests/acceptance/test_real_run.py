@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rga
-from rga.cli.settings import read_settings
+from rga.cli.operation.settings import read_settings
 from rga.inference import TrainingSettings
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rdso45m"

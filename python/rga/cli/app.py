@@ -8,23 +8,23 @@ from typing import Annotated
 import typer
 
 from rga import __version__
-from rga.cli.check import check
-from rga.cli.dataset import dataset
-from rga.cli.diagnose import diagnose
-from rga.cli.diagnose_many import diagnose_many
+from rga.cli.diagnosis.diagnose import diagnose
+from rga.cli.diagnosis.diagnose_many import diagnose_many
+from rga.cli.diagnosis.plan import plan
 from rga.cli.doctor import doctor
-from rga.cli.draw import draw
-from rga.cli.example import example
-from rga.cli.import_model import import_model
-from rga.cli.import_record import import_record
-from rga.cli.plan import plan
-from rga.cli.replay import replay, rollback
-from rga.cli.results import results
-from rga.cli.run import run
+from rga.cli.operation.replay import replay, rollback
+from rga.cli.operation.run import run
+from rga.cli.preparation.check import check
+from rga.cli.preparation.draw import draw
+from rga.cli.preparation.example import example
+from rga.cli.preparation.import_model import import_model
+from rga.cli.preparation.import_record import import_record
 from rga.cli.schema import schema
-from rga.cli.simulate import simulate
-from rga.cli.verify import verify
-from rga.cli.whatif import whatif
+from rga.cli.simulation.dataset import dataset
+from rga.cli.simulation.results import results
+from rga.cli.simulation.simulate import simulate
+from rga.cli.simulation.verify import verify
+from rga.cli.simulation.whatif import whatif
 from rga.errors import InputError, MissingPackageError, ReportError, SeveralMistakes
 from rga.lazy import needing_extras
 
@@ -35,11 +35,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    check, run, diagnose, diagnose_many, plan, draw, whatif, replay, rollback, simulate, results,
-    dataset, verify, schema, example, import_record, doctor,
+    example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, replay,
+    rollback, simulate, results, whatif, dataset, verify, schema, doctor,
 ):  # fmt: skip
-    app.command()(command)
-app.command("import")(import_model)
+    app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.
 for plugin in entry_points(group="rga.commands"):
     app.add_typer(plugin.load(), name=plugin.name)

@@ -7,7 +7,7 @@ from typing import Any
 import polars as pl
 import pytest
 
-from rga.cli.settings import read_settings
+from rga.cli.operation.settings import read_settings
 from rga.errors import InputError
 from rga.model import load_model
 

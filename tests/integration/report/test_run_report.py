@@ -16,8 +16,8 @@ from rga.findings.schema import Cause, Findings, Unexplained
 from rga.model import Model, read_model
 from rga.quantities import number
 from rga.records import Record
-from rga.report.figures.gap_map import MOST_CELLS, stretches
-from rga.report.figures.run_gap import MOST_PHASES, phases, smoothed, standardised
+from rga.report.figures.of_run.gap_map import MOST_CELLS, stretches
+from rga.report.figures.of_run.run_gap import MOST_PHASES, phases, smoothed, standardised
 from rga.report.pages.run_page import lived
 from rga.report.pages.write import write_report, write_run_report
 from rga.twin.history import Event, History, Version

@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 from rga.arrays import FloatArray
 from rga.drawing.figure_style import STEEL
 from rga.quantities import short
-from rga.report.figures.run_gap import mean
+from rga.report.figures.of_run.run_gap import mean
 
 LEVELS, BLOCKS = 12, 60
 SHADES = LinearSegmentedColormap.from_list(

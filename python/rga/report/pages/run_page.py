@@ -8,11 +8,11 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.findings import Findings
 from rga.quantities import DASH, fixed, number
-from rga.report.figures.contexts_over_time import draw_contexts, drawn_contexts, out_of_range
-from rga.report.figures.gap_map import draw_gap_map
-from rga.report.figures.growth import draw_growth
-from rga.report.figures.phases import draw_phases
-from rga.report.figures.run_gap import (
+from rga.report.figures.of_run.contexts_over_time import draw_contexts, drawn_contexts, out_of_range
+from rga.report.figures.of_run.gap_map import draw_gap_map
+from rga.report.figures.of_run.growth import draw_growth
+from rga.report.figures.of_run.phases import draw_phases
+from rga.report.figures.of_run.run_gap import (
     CHANGES,
     mean,
     phases,
@@ -20,7 +20,7 @@ from rga.report.figures.run_gap import (
     standardised,
     usual,
 )
-from rga.report.figures.timeline import draw_timeline
+from rga.report.figures.of_run.timeline import draw_timeline
 from rga.report.figures.when import when
 from rga.report.pages.diagnosis_page import page
 from rga.report.pages.fault_tolerant_parts import part

@@ -26,7 +26,14 @@ from rga.drawing.figure_style import (
 from rga.drawing.labels import LETTER
 from rga.drawing.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.quantities import number, short
-from rga.report.figures.run_gap import mean, row_of, smoothed, standardised, version_number, window
+from rga.report.figures.of_run.run_gap import (
+    mean,
+    row_of,
+    smoothed,
+    standardised,
+    version_number,
+    window,
+)
 from rga.twin.history import Event, History
 
 WIDTH, LEFT, RIGHT = 10.0, 0.115, 0.985

@@ -8,7 +8,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from rga.drawing.figure_style import AFTER, STEEL, grid, inline, style
 from rga.drawing.time_axis import time_axis
 from rga.quantities import fixed
-from rga.report.figures.timeline import LEFT, RIGHT, WIDTH
+from rga.report.figures.of_run.timeline import LEFT, RIGHT, WIDTH
 from rga.twin.history import History
 
 HIGH, BOTTOM, TOP = 1.2, 0.5, 0.3  # inches

@@ -11,8 +11,8 @@ from rga.arrays import FloatArray
 from rga.drawing.figure_style import FAINT, INK, inline, label, style
 from rga.drawing.time_axis import TimeAxis, time_axis
 from rga.report.figures.gap_colours import HATCH, LEVELS, GapColours, gap_colours
-from rga.report.figures.run_gap import row_of, standardised
-from rga.report.figures.timeline import LEFT, LOOKS, MOST_MARKS, RIGHT, WIDTH
+from rga.report.figures.of_run.run_gap import row_of, standardised
+from rga.report.figures.of_run.timeline import LEFT, LOOKS, MOST_MARKS, RIGHT, WIDTH
 from rga.twin.history import History
 
 MOST_CELLS, MOST_STRETCHES, LEAST_STRETCHES = 8000, 120, 20

@@ -15,7 +15,7 @@ from rga.report.drawing.bridge_drawing import MARKERS
 from rga.report.drawing.labels import marker_offset, marker_row, place_labels
 from rga.report.drawing.places import Spot, spots
 from rga.report.figures.gap_colours import GapColours, gap_colours
-from rga.report.figures.run_gap import Phase, mean, phases, standardised, usual
+from rga.report.figures.of_run.run_gap import Phase, mean, phases, standardised, usual
 from rga.twin.history import History
 
 WIDTH, COLUMNS = 10.0, 2

@@ -61,10 +61,10 @@ def run(
 
     A run that was interrupted goes on where it stood; one that had ended is not done again.
     """
+    from rga.cli.operation.settings import read_settings
     from rga.cli.output import write_json
     from rga.cli.progress import shown_progress
     from rga.cli.reading import read_record
-    from rga.cli.settings import read_settings
     from rga.model import load_model
 
     structure = load_model(model)

@@ -1,0 +1,1 @@
+"""Commands of the twin of a structure in use."""

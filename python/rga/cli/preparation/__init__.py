@@ -1,0 +1,1 @@
+"""Commands before a diagnosis: samples, imports, checks, drawings."""
