@@ -5,7 +5,7 @@ DEV := .venv-dev/bin
 INSTALL := -m pip install --quiet --no-compile
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick test crates package clean wheel installed
+.PHONY: help run dev quick docs test crates package clean wheel installed
 
 # Every core has its process of the tests: products in several threads would wait for each other.
 quick package: export OMP_NUM_THREADS = 1
@@ -28,6 +28,9 @@ quick:  ## lint, types and unit tests in the environment of `make dev`, within a
 	$(DEV)/mypy --strict python tests/typing
 	$(DEV)/lint-imports
 	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
+
+docs:  ## the pages of docs as a site that needs no network: site/index.html
+	$(DEV)/sphinx-build -W --keep-going --quiet -b html docs site
 
 test: fresh = .venv-test
 test:  ## build and install rga in a fresh environment, and run every check
@@ -59,6 +62,6 @@ wheel:
 	$(fresh)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist .
 
 clean:  ## remove environments, builds and caches
-	rm -rf .venv .venv-dev .venv-test dist target .pytest_cache .mypy_cache .ruff_cache \
+	rm -rf .venv .venv-dev .venv-test dist site target .pytest_cache .mypy_cache .ruff_cache \
 	  .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,4 +1,4 @@
-"""The tables of docs/criteria.md, written from the class of the criteria.
+"""The tables of docs/reference/criteria.md, written from the class of the criteria.
 
     python tools/criteria_table.py
 
@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from rga.findings.criteria import Criteria
 
-PAGE = Path(__file__).parents[1] / "docs" / "criteria.md"
+PAGE = Path(__file__).parents[1] / "docs" / "reference" / "criteria.md"
 MARK = "<!-- tables: python tools/criteria_table.py -->\n"
 
 

@@ -30,7 +30,7 @@ CriteriaFile = Annotated[
     typer.Option(
         "--criteria",
         metavar="FILE",
-        help="What decides a verdict, where not the default (JSON or TOML); see docs/criteria.md.",
+        help="What decides a verdict, where not the default (JSON or TOML); `rga schema criteria`.",
     ),
 ]
 OutputDirectory = Annotated[

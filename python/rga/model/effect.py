@@ -32,7 +32,7 @@ class Effect(BaseModel):
     `priors` what is known of its parameters, and overrides those of the `change_...` methods and
     `loads` that it needs: the mechanism. With `title` and `size_words` it says how sentences name
     it, with `action` what it calls for, with `usual` where its priors come from. Its docstring is
-    the text of its entry in docs/vocabulary.md.
+    the text of its entry in docs/reference/vocabulary.md.
 
     Raises (when a subclass is defined):
         InputError: the vocabulary has another class of this kind.

@@ -225,7 +225,7 @@ def test_derivatives_of_a_column() -> None:
 
 @pytest.mark.parametrize(("count", "short"), [(4, 4.6e-3), (8, 2.7e-4)])
 def test_more_members_meet_the_closed_form(count: int, short: float) -> None:
-    """What `docs/simulation.md` says of few members: deflections that are a little too small."""
+    """What `simulation.md` says of few members: deflections that are a little too small."""
     push, across = 0.9 * EULER, 0.1
     u = np.sqrt(push / EI) * LENGTH / 2
     moment = across * EI / push * (1 / np.cos(u) - 1)
@@ -237,7 +237,7 @@ def test_more_members_meet_the_closed_form(count: int, short: float) -> None:
 
 @pytest.mark.parametrize(("turn", "off"), [(0.05, 1.1e-3), (0.1, 4.6e-3), (0.2, 1.85e-2)])
 def test_a_cantilever_that_turns_far(turn: float, off: float) -> None:
-    """The elastica, Timoshenko and Gere, section 2.7: what `docs/simulation.md` says is off."""
+    """The elastica, Timoshenko and Gere, section 2.7: what `simulation.md` says is off."""
 
     def along(root: float, weight: Any) -> float:
         angle = turn - root**2

@@ -144,7 +144,7 @@ def test_findings_without_them_are_read(tmp_path: Path) -> None:
 
 
 def test_the_page_of_docs_is_that_of_the_class() -> None:
-    written = (ROOT / "docs" / "criteria.md").read_text(encoding="utf-8")
+    written = (ROOT / "docs" / "reference" / "criteria.md").read_text(encoding="utf-8")
     page = runpy.run_path(str(ROOT / "tools" / "criteria_table.py"))["page"](written)
     assert written == page, "run python tools/criteria_table.py"
     for group, name, _ in figures():
@@ -153,7 +153,7 @@ def test_the_page_of_docs_is_that_of_the_class() -> None:
 
 
 def test_the_file_of_the_page_is_read(tmp_path: Path) -> None:
-    written = (ROOT / "docs" / "criteria.md").read_text(encoding="utf-8")
+    written = (ROOT / "docs" / "reference" / "criteria.md").read_text(encoding="utf-8")
     path = tmp_path / "criteria.toml"
     path.write_text(written.split("```toml\n", 1)[1].split("```", 1)[0], encoding="utf-8")
     assert load_criteria(path).differing() == {"naming.log_odds": 9.2, "channels.own_part": 3.0}

@@ -27,7 +27,7 @@ from rga.report.pages.cards import card
 from rga.report.text.actions import actions
 
 USUAL = Factor(0.2)
-PAGE = Path(__file__).parents[3] / "docs" / "vocabulary.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "vocabulary.md"
 PAINT = {
     "kind": "painted_joint",
     "member": "west",

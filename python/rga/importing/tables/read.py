@@ -1,4 +1,4 @@
-"""Makes a draft of plain tables; docs/importing.md lists their columns."""
+"""Makes a draft of plain tables; docs/howto/importing.md lists their columns."""
 
 from pathlib import Path
 
