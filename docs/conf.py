@@ -1,13 +1,13 @@
 """How Sphinx makes a site of these pages, that needs no network: `make docs`."""
 
-from importlib.metadata import version
+import importlib.metadata
 from typing import Any
 
 from pydantic import BaseModel
 
 project = "rga"
 copyright = "the rga authors"
-release = version("rga")
+release = importlib.metadata.version("rga")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 exclude_patterns = ["results/*/*/*.txt"]
@@ -24,7 +24,6 @@ copybutton_prompt_is_regexp = True
 
 # Docstrings are in Google's style, with names of code between single backticks.
 default_role = "literal"
-napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
 autodoc_member_order = "bysource"
