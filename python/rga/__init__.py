@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rga.building import ModelBuilder
     from rga.checking import check
     from rga.diagnosis import diagnose
-    from rga.drawing import draw, plot_model
+    from rga.drawing import draw, plot_model, plot_results
     from rga.drawing.charts import plot_findings, plot_record
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
@@ -53,6 +53,7 @@ _HOMES = {
     "plan": "rga.planning.planner",
     "plot_findings": "rga.drawing.charts",
     "plot_model": "rga.drawing",
+    "plot_results": "rga.drawing",
     "plot_record": "rga.drawing.charts",
     "results": "rga.simulation",
     "run": "rga.jobs.run",
@@ -86,6 +87,7 @@ __all__ = [
     "plot_findings",
     "plot_model",
     "plot_record",
+    "plot_results",
     "results",
     "run",
     "write_findings",

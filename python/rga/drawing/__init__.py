@@ -1,6 +1,6 @@
 """Drawings of models, and the look that all figures share."""
 
 from rga.drawing.content import Selection
-from rga.drawing.drawings import draw, plot_model
+from rga.drawing.drawings import draw, plot_model, plot_results
 
-__all__ = ["Selection", "draw", "plot_model"]
+__all__ = ["Selection", "draw", "plot_model", "plot_results"]

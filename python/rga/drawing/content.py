@@ -12,9 +12,10 @@ from rga.drawing.scene.sensors import SensorMark, sensor_marks
 from rga.drawing.scene.supports import SpringMark, SupportMark, spring_marks, support_marks
 from rga.drawing.states.contexts import settled
 from rga.drawing.states.diagrams import QUANTITIES, Quantity
-from rga.drawing.states.response import DrawnResponse, drawn_response
+from rga.drawing.states.response import DrawnResponse, drawn_response, response_of_row
 from rga.errors import InputError
 from rga.model.schema import Model
+from rga.simulation import Results
 
 #: what may be named
 NAMED = ("nodes", "members", "sensors", "supports")
@@ -122,18 +123,26 @@ class Content:
     response: DrawnResponse | None
 
 
-def gather(model: Model, shown: Selection) -> Content:
+def gather(model: Model, shown: Selection, found: Results | None = None, row: int = 0) -> Content:
     """Work out what a drawing shows.
+
+    Args:
+        model: the model.
+        shown: what was asked for.
+        found: results of the model; None: those at the contexts that were asked for.
+        row: of these results, from 0.
 
     Raises:
         InputError: nothing to draw; an unknown load or context.
         UnstableStructureError: a deformed shape or forces of a structure that can move.
     """
     scene = make_scene(model)
-    contexts = settled(model, shown.contexts)
-    response = None
-    if shown.of_response:
-        quantities = [] if shown.forces is None else [shown.forces]
+    quantities = [] if shown.forces is None else [shown.forces]
+    contexts, response = settled(model, shown.contexts), None
+    if found is not None:
+        contexts |= {name: float(found.contexts[name][row]) for name in contexts}
+        response = response_of_row(scene, found, row, quantities, shown.scale, shown.deformed)
+    elif shown.of_response:
         response = drawn_response(scene, contexts, quantities, shown.scale, shown.deformed)
     with_sensors = not shown.of_response if shown.sensors is None else shown.sensors
     chosen = () if shown.loads is None and shown.forces is not None else shown.loads

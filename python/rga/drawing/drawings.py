@@ -6,7 +6,7 @@ from typing import Unpack
 
 from matplotlib.axes import Axes
 
-from rga.drawing.content import DrawingOptions, asked, gather
+from rga.drawing.content import Content, DrawingOptions, asked, gather
 from rga.drawing.figure_style import label, style
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
@@ -15,6 +15,7 @@ from rga.drawing.views import views_of
 from rga.errors import InputError
 from rga.files import write_whole
 from rga.model.schema import Model
+from rga.simulation import Results
 
 SUFFIXES = (".svg", ".png", ".html")
 #: widths of a sheet [inch]
@@ -85,7 +86,41 @@ def plot_model(
         InputError: as for `draw`; a view that the model does not have.
         UnstableStructureError: as for `draw`.
     """
-    content = gather(model, asked(options))
+    return _plot(gather(model, asked(options)), ax, view)
+
+
+def plot_results(
+    found: Results,
+    ax: Axes | None = None,
+    *,
+    row: int = 1,
+    view: str | None = None,
+    **options: Unpack[DrawingOptions],
+) -> Axes:
+    """The deformed shape, or a diagram of forces, of one row of results.
+
+    Args:
+        found: the results.
+        ax: axes; None: those of a new figure.
+        row: of the contexts, from 1.
+        view: as for `plot_model`.
+        options: as for `plot_model`, but for the contexts; without `forces` the deformed shape.
+
+    Returns:
+        The axes, in the metres of the view.
+
+    Raises:
+        InputError: as for `plot_model`; a row that there is not.
+    """
+    rows = len(found.displacements)
+    if not 1 <= row <= rows:
+        raise InputError(f"there is no row {row}", "results", f"give 1 to {rows}")
+    shown = asked({"deformed": options.get("forces") is None, **options})
+    return _plot(gather(found.model, shown, found, row - 1), ax, view)
+
+
+def _plot(content: Content, ax: Axes | None, view: str | None) -> Axes:
+    model = content.scene.model
     found = views_of(content.scene)
     chosen = next((one for one in found if view in (None, one.title)), None)
     if chosen is None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import polars as pl
@@ -18,9 +18,13 @@ from rga.files import write_whole
 from rga.model.effect import Values
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
+from rga.notebook import short_html
 from rga.simulation.paths.response import respond
 from rga.simulation.simulator import Response, Simulator
 from rga.simulation.stresses import Stresses, section_stresses
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 #: components of a section force, and of a reaction
 SECTION_FORCES = ("N", "Vy", "Vz", "T", "My", "Mz")
@@ -64,6 +68,27 @@ class Results:
         return section_stresses(
             self.model, list(self.model.members), self.section_forces, self.parameters
         )
+
+    def plot(self, ax: "Axes | None" = None, *, row: int = 1, **shown: Any) -> "Axes":
+        """The deformed shape of a row, or with `forces="M"` a diagram, in axes of matplotlib.
+
+        Args:
+            ax: axes; None: those of a new figure.
+            row: of the contexts, from 1.
+            shown: what is to be seen, as for `rga.plot_results`.
+
+        Raises:
+            InputError: as for `rga.plot_results`.
+        """
+        # What draws stands above the simulation: it is reached through the front of the package.
+        import rga
+
+        return rga.plot_results(self, ax, row=row, **shown)
+
+    def _repr_html_(self) -> str:
+        rows = len(self.displacements)
+        said = f"{rows} row{'s' if rows != 1 else ''}; the extremes of every member [N, N m, Pa]"
+        return short_html(self.model.name, said, self.members())
 
     def members(self) -> pl.DataFrame:
         """The extremes of every member over all rows and stations, one row a member.

@@ -16,6 +16,7 @@ from rga.findings.schema import Cause, Findings, Unexplained
 from rga.model import Model, read_model
 from rga.quantities import number
 from rga.records import Record
+from rga.report.figures.of_run.contexts_over_time import out_of_range
 from rga.report.figures.of_run.gap_map import MOST_CELLS, stretches
 from rga.report.figures.of_run.run_gap import MOST_PHASES, phases, smoothed, standardised
 from rga.report.pages.run_page import lived
@@ -328,3 +329,13 @@ def test_thinning_keeps_peaks_and_spacing_keeps_the_ends() -> None:
     assert {1234, 4321} <= set(rows)
     assert len(rows) <= 200
     np.testing.assert_array_equal(spaced(5000, 3)[[0, -1]], [0, 4999])
+
+
+def test_a_context_leaves_its_range_by_more_than_its_interval(model: Model) -> None:
+    history = made_history(model)
+    low, high = history.model.context[history.contexts[0]].range
+    history.inferred[:, 0] = (low + high) / 2
+    history.spread[:, 0] = 0.1 * (high - low)
+    history.inferred[3, 0] = high + 0.1 * (high - low)
+    history.inferred[5, 0] = low - 0.2 * (high - low)
+    assert np.flatnonzero(out_of_range(history, 0)).tolist() == [5]

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from rga.building import rolled_section
 from rga.errors import InputError
 from rga.importing import ImportRefused, import_model
 
@@ -193,6 +194,21 @@ class TestSafWorkbook:
             import_model(book(sheets))
         given = "P: A=40cm2, Iy=2000cm4, Iz=1000cm4, J=3000cm4"
         assert import_model(book(sheets), sections=[given]).model.sections["P"].A == 0.004
+
+    @pytest.mark.parametrize("profile", ["IPE200", "HE 200 A"])
+    def test_a_rolled_profile_has_the_properties_of_its_standard(
+        self, book: Callable[[Sheets], Path], profile: str
+    ) -> None:
+        sheets = frame()
+        sheets["StructuralCrossSection"][0].append("Profile")
+        sheets["StructuralCrossSection"][2] = [
+            "P", "S", "Manufactured", None, None, None, None, None, None, profile,
+        ]  # fmt: skip
+        found = import_model(book(sheets))
+        expected = rolled_section(profile)
+        section = found.model.sections["P"]
+        assert (section.A, section.Iy, section.J) == (expected.A, expected.Iy, expected.J)
+        assert any(f"{profile} are those of the standard" in note.what for note in found.notes)
 
     def test_an_arc_or_a_plate_is_refused_unless_parts_may_be_left_out(
         self, book: Callable[[Sheets], Path]

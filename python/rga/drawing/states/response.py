@@ -9,7 +9,7 @@ from rga.drawing.scene.scene import Scene
 from rga.drawing.states.contexts import context_words
 from rga.drawing.states.deformed import Deformed, deformed
 from rga.drawing.states.diagrams import Diagram, Quantity, section_diagram
-from rga.simulation import Simulator, results
+from rga.simulation import Results, Simulator, results
 
 #: places along each member at which forces are drawn, where some member bends, and where none does
 BENT, STRAIGHT = 21, 3
@@ -52,14 +52,34 @@ def drawn_response(
         InputError: a context is missing or not finite.
         UnstableStructureError: the structure can move; names node and direction.
     """
-    model = scene.model
     bent = FEW if len(scene.ends) > MANY else BENT
     stations = (bent if scene.frame.any() else STRAIGHT) if quantities else 2
-    found = results(model, contexts, stations=stations)
+    found = results(scene.model, contexts, stations=stations)
+    return response_of_row(scene, found, 0, quantities, scale, shape)
+
+
+def response_of_row(
+    scene: Scene,
+    found: Results,
+    row: int,
+    quantities: Sequence[Quantity],
+    scale: float | None = None,
+    shape: bool = True,
+) -> DrawnResponse:
+    """The shape and the diagrams of one row of results.
+
+    Args:
+        scene: the structure.
+        found: its results.
+        row: number of the row, from 0.
+        quantities, scale, shape: as for `drawn_response`.
+    """
+    model = scene.model
     positions = np.tile(found.stations, (len(scene.ends), 1))
-    forces = found.section_forces[0]
+    forces = found.section_forces[row]
+    contexts = {name: float(column[row]) for name, column in found.contexts.items()}
     return DrawnResponse(
-        deformed=deformed(scene, found.displacements[0], scale) if shape else None,
+        deformed=deformed(scene, found.displacements[row], scale) if shape else None,
         diagrams=tuple(section_diagram(scene, one, positions, forces) for one in quantities),
         contexts=context_words(model, contexts, Simulator(model).needed),
     )

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+from rga.building import rolled_section
+from rga.errors import InputError
 from rga.importing.draft import ModelDraft
 from rga.importing.materials import doubts
 from rga.importing.options import Chosen
@@ -9,6 +11,18 @@ from rga.importing.saf.units import SafUnits
 from rga.importing.section_shapes import area_of, by_shape
 from rga.importing.shear import poisson
 from rga.importing.sheets import Sheet, SheetRow, read_number
+
+
+def _rolled(profile: str, axial: bool) -> dict[str, float] | None:
+    """Properties of a rolled section by the tables of the standards; None where these have none."""
+    try:
+        found = rolled_section(profile)
+    except InputError:
+        return None
+    if profile.strip().upper().startswith(("L", "ISA")) and not axial:
+        # Tables of angles are about principal axes, which do not stand as the member does.
+        return None
+    return {"A": found.A, "Iy": found.Iy, "Iz": found.Iz, "J": found.J}
 
 
 class Properties:
@@ -117,6 +131,11 @@ class Properties:
         found, rounded = by_shape(shape, dimensions) if kind == "parametric" else (None, False)
         if found is None and axial and kind == "parametric":
             found, rounded = area_of(shape, dimensions), True
+        if found is None and (found := _rolled(row.text("profile"), axial)) is not None:
+            self.draft.notes.say(
+                "assumed", row.where, f"A, Iy, Iz, It of {row.text('profile')} are those of the "
+                "standard",
+            )  # fmt: skip
         if found is None:
             of = " ".join(filter(None, (shape, row.text("profile"), row.text("parameters"))))
             self.draft.notes.refuse(

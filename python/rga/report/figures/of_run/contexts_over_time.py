@@ -31,13 +31,14 @@ def drawn_contexts(history: History) -> list[int]:
 
 
 def out_of_range(history: History, column: int) -> NDArray[np.bool_]:
-    """Rows on which a context leaves the range that the model states, bool[rows]."""
+    """Rows on which a context leaves its range by more than its 90 % interval, bool[rows]."""
     known = history.model.context.get(history.contexts[column])
     values = history.inferred[:, column]
     if known is None:
         return np.zeros(len(values), dtype=bool)
+    margin = Z90 * np.nan_to_num(history.spread[:, column])
     with np.errstate(invalid="ignore"):
-        return (values < known.range[0]) | (values > known.range[1])
+        return (values < known.range[0] - margin) | (values > known.range[1] + margin)
 
 
 def draw_contexts(history: History) -> Markup | None:
