@@ -1,7 +1,11 @@
-"""Blocks of Python on README and docs run, page by page, each as a script of its own."""
+"""Blocks of Python and `sh` on README and docs run, page by page, each page as one script.
+
+Every line of a block `text` stands in what the script printed, apart from how it is broken.
+"""
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -17,13 +21,13 @@ from rga.model import load_model
 EXAMPLE = ROOT / "examples" / "footbridge"
 #: what a page takes for granted, by its name
 GIVEN = {
-    "detection.md": "import numpy as np\n"
+    "docs/explanation/detection.md": "import numpy as np\n"
     "baseline, rows = np.random.default_rng(0).standard_normal((2, 200, 3))\n"
     "rows[50:, 1] += 5\n",
-    "results.md": "import numpy as np\n"
+    "docs/results/index.md": "import numpy as np\n"
     "baseline, rows = np.random.default_rng(0).standard_normal((2, 200, 3))\n"
     'rows[50:, 1] += 5\nnames = ("D1", "D2", "S1")\n',
-    "joint-posterior.md": "import numpy as np, rga\n"
+    "docs/explanation/joint-posterior.md": "import numpy as np, rga\n"
     'given = rga.load_model("model.json")\n'
     "draw = np.random.default_rng(0)\n"
     "low, high = np.array([one.range for one in given.context.values()]).T\n"
@@ -38,8 +42,32 @@ GIVEN = {
 
 
 def written(page: Path) -> list[str]:
-    """The blocks of a page that are run."""
-    return [one.code for one in blocks(page) if one.language == "python" and not one.reason]
+    """The blocks of a page that are run, as Python."""
+    return [
+        one.code if one.language == "python" else commands(one.code)
+        for one in blocks(page)
+        if one.language in ("python", "sh") and not one.reason
+    ]
+
+
+def commands(code: str) -> str:
+    """Python that runs the commands of a block, with this environment's rga."""
+    lines = [shlex.split(line, comments=True) for line in code.splitlines()]
+    assert all(name == "rga" for name, *_ in lines)
+    return "\n".join(
+        f"import subprocess, sys; subprocess.run([sys.executable, '-m', *{line}], check=True)"
+        for line in lines
+    )
+
+
+def shown(page: Path) -> list[str]:
+    """What a page says that its blocks print."""
+    return [
+        " ".join(line.split())
+        for one in blocks(page)
+        if one.language == "text"
+        for line in one.code.splitlines()
+    ]
 
 
 @pytest.fixture
@@ -67,21 +95,27 @@ def losing(two_bars: dict[str, Any]) -> dict[str, Any]:
     return two_bars
 
 
-@pytest.mark.parametrize("page", [one for one in PAGES if written(one)], ids=lambda one: one.name)
+def where(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+@pytest.mark.parametrize("page", [one for one in PAGES if written(one)], ids=where)
 def test_a_page_runs(page: Path, folder: Path, two_bars: dict[str, Any]) -> None:
     if page.name == "simulation.md":
         (folder / "model.json").write_text(json.dumps(losing(two_bars)), encoding="utf-8")
     script = folder / "page.py"
-    code = [GIVEN.get(page.name, ""), *written(page)]
+    code = [GIVEN.get(where(page), ""), *written(page)]
     script.write_text("\n".join(code), encoding="utf-8")
-    environment = {**os.environ, "MPLBACKEND": "Agg"}
+    environment = {**os.environ, "MPLBACKEND": "Agg", "PYTHONUNBUFFERED": "1"}
     ran = subprocess.run(
         [sys.executable, script], cwd=folder, env=environment, capture_output=True, text=True
     )
     assert ran.returncode == 0, ran.stderr[-2000:]
+    printed = " ".join(ran.stdout.split())
+    assert [line for line in shown(page) if line not in printed] == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda one: one.name)
+@pytest.mark.parametrize("page", PAGES, ids=where)
 def test_what_is_not_run_is_python_all_the_same(page: Path) -> None:
     for one in blocks(page):
         if one.language == "python":

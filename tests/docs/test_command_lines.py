@@ -55,7 +55,7 @@ def test_it_is_one_that_rga_has(line: str) -> None:
 
 
 def test_there_are_some_on_the_pages_that_show_commands() -> None:
-    assert len(command_lines(ROOT / "docs" / "commands.md")) > 15
+    assert len(command_lines(ROOT / "docs" / "reference" / "commands.md")) > 15
     assert any("footbridge" in line for line in command_lines(ROOT / "README.md"))
 
 
