@@ -10,7 +10,6 @@ copyright = "the rga authors"
 release = importlib.metadata.version("rga")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-exclude_patterns = ["results/*/*/*.txt"]
 
 # Pages are read on a forge too: its anchors, and no more of MyST than lists of pages.
 myst_heading_anchors = 3
@@ -26,12 +25,13 @@ copybutton_prompt_is_regexp = True
 default_role = "literal"
 napoleon_use_ivar = True
 napoleon_use_rtype = False
+napoleon_attr_annotations = False
+autodoc_default_options = {"exclude-members": "model_config, model_post_init"}
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 88
-add_module_names = False
 
 
 def signature(

@@ -111,7 +111,7 @@ def test_a_page_runs(page: Path, folder: Path, two_bars: dict[str, Any]) -> None
         [sys.executable, script], cwd=folder, env=environment, capture_output=True, text=True
     )
     assert ran.returncode == 0, ran.stderr[-2000:]
-    printed = " ".join(ran.stdout.split())
+    printed = " ".join(f"{ran.stdout} {ran.stderr}".split())
     assert [line for line in shown(page) if line not in printed] == []
 
 

@@ -249,7 +249,7 @@ def _of_vocabulary(effect: Any) -> Effect:
 
 
 class Model(Pictured, Part):
-    """A model file. SI units, z up, tension and elongation positive; see the design of the format.
+    """A model file. SI units, z up, tension and elongation positive; docs explain its keys.
 
     Raises on validation: unknown keys, members between missing nodes, places that do not exist.
 

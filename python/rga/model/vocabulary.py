@@ -1,4 +1,4 @@
-"""What the classes of the vocabulary say of their kinds: for its page in the docs, and the schema."""
+"""What classes of the vocabulary say of their kinds: for its page in the docs, and the schema."""
 
 import inspect
 import sys
