@@ -1,4 +1,4 @@
-"""LoggerData records: reading a logger's file into the channels and contexts of a model."""
+"""Records: reading a logger's file into the channels and contexts of a model."""
 
 from rga.records.contexts import ContextTable, load_contexts
 from rga.records.frames import RecordSource

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Record:
-    """LoggerData data in the units of the model.
+    """Measured data in the units of the model.
 
     Attributes:
         time: float[n], seconds since the first row of the file; strictly increasing.
