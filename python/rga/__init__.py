@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from rga.diagnosis import diagnose
     from rga.drawing import draw, plot_model, plot_results
     from rga.drawing.charts import plot_findings, plot_record
+    from rga.errors import InputError
     from rga.findings import Findings
     from rga.findings.criteria import Criteria, load_criteria
     from rga.findings.load import load_findings
@@ -32,6 +33,7 @@ _HOMES = {
     "Criteria": "rga.findings.criteria",
     "Effect": "rga.model",
     "Findings": "rga.findings",
+    "InputError": "rga.errors",
     "ImportedModel": "rga.importing",
     "Model": "rga.model",
     "ModelBuilder": "rga.building",
@@ -65,6 +67,7 @@ __all__ = [
     "Effect",
     "Findings",
     "ImportedModel",
+    "InputError",
     "Model",
     "ModelBuilder",
     "Plan",

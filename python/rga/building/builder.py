@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 from rga.building.loads import Force, load_effects
 from rga.building.mistakes import read_settled
 from rga.building.parts import checked
-from rga.building.quantities import Amount, amount, amounts, difference
+from rga.building.quantities import Amount, amount, amounts, difference, kelvin
 from rga.building.sensors import SensorKind, sensor_name, sensor_part
 from rga.building.structure_builder import StructureBuilder
 from rga.errors import InputError
@@ -90,11 +90,11 @@ class ModelBuilder(StructureBuilder):
         if variable is None and not isinstance(reference, int | float):
             raise InputError(f"there is no context {context!r} yet", where, "add it before")
         minus = amount(reference, variable["unit"] if variable else "", f"reference of {where}")
-        kelvin = None if groups is None else groups
-        if kelvin is not None and not isinstance(kelvin, Mapping):
-            kelvin = dict.fromkeys([kelvin] if isinstance(kelvin, str) else kelvin, 1.0)
+        warming = groups
+        if warming is not None and not isinstance(warming, Mapping):
+            warming = dict.fromkeys([warming] if isinstance(warming, str) else warming, 1.0)
         delta = {"context": context, "minus": minus}
-        effect = {"kind": "temperature", "groups": kelvin and dict(kelvin), "delta": delta}
+        effect = {"kind": "temperature", "groups": warming and dict(warming), "delta": delta}
         return self._add("effects", name, effect)
 
     def load_case(
@@ -135,7 +135,7 @@ class ModelBuilder(StructureBuilder):
         *,
         offsets: Sequence[Amount] = (0.0,),
         context: str | None = None,
-        carried_by: Literal["nodes", "members"] = "nodes",
+        carried_by: Literal["nodes", "members"] | None = None,
     ) -> Self:
         """A train of axles on a path of nodes.
 
@@ -144,7 +144,8 @@ class ModelBuilder(StructureBuilder):
             position: where the first axle stands along the path [m]: a context, or a place.
             offsets: distance of each axle behind the first [m].
             context: variable that all of the forces are multiplied by.
-            carried_by: what carries an axle between two nodes.
+            carried_by: what carries an axle between two nodes; left out, the frame member that
+                joins them, or the nodes where none does.
         """
         where = f"axles {name!r}"
         follows = isinstance(position, str) and position[:1] not in "+-−.0123456789"
@@ -154,7 +155,7 @@ class ModelBuilder(StructureBuilder):
             "forces": amounts(list(forces), "N", f"forces of {where}", len(forces)),
             "offsets": amounts(list(offsets), "m", f"offsets of {where}", len(offsets)),
             "position": {"context": position} if follows else amount(position, "m", where),
-            "carried_by": carried_by,
+            **({} if carried_by is None else {"carried_by": carried_by}),
         }
         if context is not None:
             keys["factor"] = {"context": context}
@@ -231,8 +232,14 @@ class ModelBuilder(StructureBuilder):
         return {**member, "material": materials[0]}
 
     def _warmed(self, effect: dict[str, Any]) -> dict[str, Any]:
-        """A temperature with its groups: each member's first, which together are all members."""
-        if effect["kind"] != "temperature" or effect["groups"] is not None:
+        """A temperature in kelvin, with its groups: each member's first, if none are named."""
+        if effect["kind"] != "temperature":
+            return effect
+        variable = self._content["context"].get(effect["delta"]["context"])
+        times = 1.0 if variable is None else kelvin(variable["unit"])
+        if times != 1.0:
+            effect = {**effect, "delta": {**effect["delta"], "times": times}}
+        if effect["groups"] is not None:
             return effect
         members = self._content["members"]
         if bare := [name for name, one in members.items() if not one.get("groups")]:

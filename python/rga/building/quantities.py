@@ -84,6 +84,18 @@ def difference(value: Amount, unit: str, where: str) -> float:
     return float(f"{number - amount(zero, unit, where):.12g}")
 
 
+def kelvin(unit: str) -> float:
+    """Kelvin in a degree of a unit; 1 where it is no unit of temperature.
+
+    >>> round(kelvin("degF"), 4), kelvin("degC"), kelvin("-")
+    (0.5556, 1.0, 1.0)
+    """
+    try:
+        return difference(f"1 {unit}", "K", "temperature")
+    except InputError:
+        return 1.0
+
+
 def amounts(values: object, unit: str, where: str, length: int) -> list[float]:
     """Quantities of a sequence, such as the components of a force.
 

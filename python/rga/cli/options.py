@@ -1,5 +1,6 @@
 """Arguments and options that several commands share."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -66,7 +67,7 @@ Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all that is ra
 
 
 def setting(text: str, option: str) -> tuple[str, float]:
-    """A name with its number, as NAME=VALUE.
+    """A name with its number, as NAME=VALUE; a time may be a date.
 
     Raises:
         InputError: no number is given.
@@ -76,6 +77,12 @@ def setting(text: str, option: str) -> tuple[str, float]:
     """
     name, _, value = text.rpartition("=")
     try:
+        if name.strip() == "time":
+            from rga.model.effect import seconds
+
+            with suppress(ValueError):
+                return "time", float(value)
+            return "time", seconds(value.strip())
         return name.strip(), float(value)
     except ValueError:
         raise InputError(

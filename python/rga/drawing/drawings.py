@@ -14,6 +14,7 @@ from rga.drawing.sheet.view import draw_view, palette_of
 from rga.drawing.views import views_of
 from rga.errors import InputError
 from rga.files import write_whole
+from rga.model import as_model
 from rga.model.schema import Model
 from rga.simulation import Results
 
@@ -23,12 +24,16 @@ NARROWEST, IN_NOTEBOOK, WIDEST = 3.0, 9.0, 40.0
 
 
 def draw(
-    model: Model, path: str | Path, *, width: float = WIDTH, **options: Unpack[DrawingOptions]
+    model: Model | str | Path,
+    path: str | Path,
+    *,
+    width: float = WIDTH,
+    **options: Unpack[DrawingOptions],
 ) -> Path:
     """Write a drawing of a model.
 
     Args:
-        model: the model.
+        model: the model, or its file.
         path: of a .svg, .png or .html file; the page turns with the mouse. Its folder is made
             where it is missing.
         width: of a sheet [inch]; 3.75 suits a phone.
@@ -42,7 +47,7 @@ def draw(
             cannot be written.
         UnstableStructureError: a deformed shape or forces of a structure that can move.
     """
-    path, shown = Path(path), asked(options)
+    model, path, shown = as_model(model), Path(path), asked(options)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         formats = "name a " + ", ".join(SUFFIXES[:-1]) + f" or {SUFFIXES[-1]} file"
@@ -65,7 +70,7 @@ def draw(
 
 
 def plot_model(
-    model: Model,
+    model: Model | str | Path,
     ax: Axes | None = None,
     *,
     view: str | None = None,
@@ -74,7 +79,7 @@ def plot_model(
     """One view of a model in axes of matplotlib.
 
     Args:
-        model: the model.
+        model: the model, or its file.
         ax: axes; None: those of a new figure.
         view: title of one of its views, such as "plan"; None: the first.
         options: what is to be seen beside members and supports, by the names of `Selection`.
@@ -86,7 +91,7 @@ def plot_model(
         InputError: as for `draw`; a view that the model does not have.
         UnstableStructureError: as for `draw`.
     """
-    return _plot(gather(model, asked(options)), ax, view)
+    return _plot(gather(as_model(model), asked(options)), ax, view)
 
 
 def plot_results(

@@ -1,6 +1,6 @@
 """The base of every effect: a physical influence on a structure, on its loads or on its sensors."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
@@ -231,6 +231,14 @@ class Effect(BaseModel):
             resolved[name] = value
         return resolved
 
+    def exact_for(self, values: Values) -> Self:
+        """The same effect, without approximations for rows of these parameters.
+
+        Args:
+            values: parameters of the rows, others than which it is not asked for afterwards.
+        """
+        return self
+
     def check(self, model: "Model") -> None:
         """Refuse a model that the effect does not fit (ValueError), beyond missing places."""
 
@@ -281,6 +289,12 @@ def check_moment(moment: float | str) -> None:
         known = False
     if not known:
         raise ValueError(f"{moment!r} is no time: give seconds or ISO 8601")
+
+
+def when_all_act(effects: Iterable["Effect"]) -> float | None:
+    """A time [s] at which every effect has fully begun; None where none begins late."""
+    moments = [one.end or one.onset for one in effects if one.onset is not None]
+    return max(seconds(moment) for moment in moments if moment is not None) + 1 if moments else None
 
 
 def seconds(moment: float | str) -> float:

@@ -146,6 +146,14 @@ class Simulator:
         plan, quantities = answer(self.assembly.request(values, len(table["time"])))
         return Response(table, values, quantities * self._structure.per_si, plan)
 
+    def parameters(self, contexts: Mapping[str, ArrayLike]) -> dict[str, Values]:
+        """Parameters of all effects, by name, float[rows] each.
+
+        Args:
+            contexts: as for `predict`, with the same errors.
+        """
+        return self.resolve(self._table(contexts))
+
     def plan(self, contexts: Contexts) -> ResponsePlan:
         """The path that `predict` takes for these contexts: the cheapest exact one."""
         return self.respond(contexts).plan

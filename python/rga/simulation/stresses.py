@@ -13,6 +13,7 @@ from rga.model.schema import Model, Section
 
 #: the fibre of a section that states none: the stress of its axial force alone
 AXIS = "axis"
+EVERY = slice(None)
 
 
 @dataclass(frozen=True)
@@ -28,9 +29,9 @@ class Stresses:
     of_members: dict[str, dict[str, FloatArray]]
     reduced: dict[str, FloatArray]
 
-    def extremes(self) -> tuple[FloatArray, FloatArray]:
-        """Lowest and highest stress of every member, float[members] each [Pa]."""
-        of_all = [np.stack(list(fibres.values())) for fibres in self.of_members.values()]
+    def extremes(self, rows: slice = EVERY) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest stress of every member in some rows, float[members] each [Pa]."""
+        of_all = [np.stack(list(one.values()))[:, rows] for one in self.of_members.values()]
         lowest = np.array([values.min(initial=np.inf) for values in of_all])
         return lowest, np.array([values.max(initial=-np.inf) for values in of_all])
 

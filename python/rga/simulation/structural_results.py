@@ -15,7 +15,8 @@ from rga._core import OutputKind
 from rga.arrays import FloatArray, OutputArrays, by_name
 from rga.errors import InputError
 from rga.files import write_whole
-from rga.model.effect import Values
+from rga.model import as_model
+from rga.model.effect import Values, when_all_act
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.notebook import short_html
@@ -90,14 +91,29 @@ class Results:
         said = f"{rows} row{'s' if rows != 1 else ''}; the extremes of every member [N, N m, Pa]"
         return short_html(self.model.name, said, self.members())
 
-    def members(self) -> pl.DataFrame:
-        """The extremes of every member over all rows and stations, one row a member.
+    def __repr__(self) -> str:
+        rows = len(self.displacements)
+        return f"Results of {self.model.name!r}: {rows} rows, {len(self.model.members)} members"
+
+    def members(self, row: int | None = None) -> pl.DataFrame:
+        """The extremes of every member over all stations, one line a member.
 
         Columns: member, N min, N max, V max [N], M max [N m], stress min, stress max [Pa], and the
-        utilisation where the material states a yield strength, else null. V and M are the
-        larger of the two planes, without sign.
+        utilisation: the largest stress over the yield strength where the material states one,
+        else null. It says nothing of buckling. V and M are the larger of the two planes,
+        without sign.
+
+        Args:
+            row: of the contexts, from 1; None: of all rows.
+
+        Raises:
+            InputError: a row that there is not.
         """
-        forces, lowest, highest = self.section_forces, *self.stresses.extremes()
+        rows = len(self.displacements)
+        if row is not None and not 1 <= row <= rows:
+            raise InputError(f"there is no row {row}", "results", f"give 1 to {rows}")
+        chosen = slice(None) if row is None else slice(row - 1, row)
+        forces, (lowest, highest) = self.section_forces[chosen], self.stresses.extremes(chosen)
         axial = forces[..., 0]
         strength = [
             self.model.materials[member.material].yield_strength
@@ -190,19 +206,24 @@ class Results:
 
 
 def results(
-    model: Model, contexts: Mapping[str, ArrayLike] | None = None, *, stations: int = 11
+    model: Model | str | Path,
+    contexts: Mapping[str, ArrayLike] | None = None,
+    *,
+    stations: int = 11,
 ) -> Results:
     """Displacements, reactions, section forces and stresses under contexts.
 
     Args:
-        model: the structure with its effects.
-        contexts: as for `Simulator.predict`; None for a model that no context drives.
+        model: the structure with its effects, or its file.
+        contexts: as for `Simulator.predict`; None for a model that no context drives. Without
+            `time` all effects act, those too that begin late.
         stations: places along each member, its two ends among them.
 
     Raises:
         InputError: as `Simulator.predict`; fewer than two stations, or more numbers than fit.
         UnstableStructureError: the structure can move; names node and direction.
     """
+    model = as_model(model)
     held = held_nodes(model)
     places = _places(stations)
 
@@ -309,6 +330,9 @@ def _respond(
 ) -> Response:
     """The response of a model of which other things are read than what its sensors show."""
     bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
+    begun = when_all_act(bare.values())
+    if begun is not None and "time" not in contexts:
+        contexts = {**contexts, "time": begun}
     silent = model.model_copy(update={"sensors": {}, "effects": bare})
     structure = build_structure(silent)
     outputs = wanted(structure)
@@ -322,7 +346,10 @@ def _respond(
             f"give {MOST // count} rows or fewer at a time, or fewer stations",
         )
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        response = Simulator(silent, structure).respond(contexts)
+        values = Simulator(silent, structure).parameters(contexts)
+        exact = {name: one.exact_for(values[name]) for name, one in silent.effects.items()}
+        loaded = silent.model_copy(update={"effects": exact})
+        response = Simulator(loaded, structure).respond(contexts)
     if not response.plan.patterns:
         # Without a load nothing was solved: a structure that can move would look calm.
         respond(structure, [Load(np.ones(1))], outputs)

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Effect, Model, as_model, read_effect
+from rga.model.effect import when_all_act
 from rga.model.parameter import Estimated
 from rga.simulation.simulator import Simulator
 
@@ -63,7 +64,8 @@ def whatif(
 
     Args:
         model: the model, or its file.
-        settings: context variables, and `time` [s] where it matters.
+        settings: context variables, and `time` [s] where it matters; without a time all effects
+            act, those too that begin late.
         add: effects that the changed model has besides its own; one of the same name is replaced.
         base: contexts that are not set, and `time` [s]; mid-range where left out.
         spread: standard deviations of contexts of the base that are not sure.
@@ -74,11 +76,14 @@ def whatif(
     model = as_model(model)
     check_settings(model, settings)
     middle = {name: sum(variable.range) / 2 for name, variable in model.context.items()}
+    changed = model.extended(dict(add or {}))
+    begun = when_all_act(changed.effects.values())
+    if begun is not None and base is None:
+        middle["time"] = begun
     contexts = {**middle, **(base or {}), **settings}
     # Without a base both sides stand at the same time: only what was set makes a difference.
     start = {"time": settings["time"]} if "time" in settings and base is None else {}
     first = contexts if add else {**middle, **(base or {}), **start}
-    changed = model.extended(dict(add or {}))
     before = Simulator(model).predict(first)[0]
     after = Simulator(changed).predict(contexts)[0]
     warnings = []

@@ -9,7 +9,7 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.model.io import model_content
-from rga.simulation import Simulator
+from rga.simulation import Simulator, results
 
 LENGTH, E, BENDS, HALF_DEPTH, AXLE = 12.0, 2e11, 1e-4, 0.1, 1e5
 PLACE = np.linspace(0.0, LENGTH, 241)
@@ -110,3 +110,16 @@ def test_bars_leave_it_to_their_nodes() -> None:
     np.testing.assert_allclose(
         Simulator(read_model(content, "bars")).predict(place)[1][0], 0, atol=1e-6
     )
+
+
+@pytest.mark.parametrize("parts", [1, 3])
+def test_results_are_exact_wherever_an_axle_stands(parts: int) -> None:
+    place = np.array([1.234, 4.0, 7.77, 11.9])
+    found = results(beam(parts, None), {"place": place, "time": np.arange(4.0)}, stations=601)
+    x = np.concatenate([LENGTH / parts * (k + found.stations) for k in range(parts)])
+    away = LENGTH - place[:, None]
+    exact = -AXLE * np.minimum(x * away, place[:, None] * (LENGTH - x)) / LENGTH
+    moments = found.section_forces[..., 4].reshape(4, -1)
+    np.testing.assert_allclose(moments, exact, atol=1e-9 * np.abs(exact).max())
+    tilt = AXLE * place * away[:, 0] * (LENGTH + away[:, 0]) / (6 * LENGTH * E * BENDS)
+    np.testing.assert_allclose(found.displacements[:, 0, 4], tilt, rtol=1e-9)

@@ -9,6 +9,7 @@ from rga.diagnosis.member_forces import Forces, member_forces
 from rga.findings.arrays import DiagnosisArrays
 from rga.model import Model, read_effect
 from rga.records import Record
+from rga.report.figures.member_forces import force_table
 from rga.simulation import Simulator
 
 ROWS = 6
@@ -88,3 +89,10 @@ def test_the_restraint_of_a_bearing_is_not_credited(model: Model) -> None:
 
 def test_a_cause_at_a_sensor_changes_no_force(model: Model) -> None:
     assert forces(model, off={"kind": "sensor_bias", "sensor": "D1", "offset": 1.0}) is None
+
+
+def test_members_that_causes_name_stand_first(model: Model) -> None:
+    found = forces(model, loss={"kind": "member_stiffness", "member": "L2-L3", "factor": 0.75})
+    assert found is not None
+    assert force_table(found, model).lines[0][0] != "L2-L3"
+    assert force_table(found, model, {"L2-L3"}).lines[0][0] == "L2-L3"

@@ -11,7 +11,7 @@ from rga.diagnosis.member_stresses import member_stresses
 from rga.findings.arrays import DiagnosisArrays
 from rga.model import read_model
 from rga.model.io import model_content
-from rga.report.figures.member_stresses import stress_table
+from rga.report.figures.member_stresses import consequence, stress_table
 
 AREA, FORCE = 2e-3, [1e3, 9e4, -4e3]
 
@@ -79,6 +79,16 @@ class TestStressTable:
         assert table.utilised
         assert table.lines[0][3:] == ["45.0", "60.0", "1.33", "75\xa0%", "18\xa0%", "24\xa0%"]
         assert table.lines[1][5:7] == ["1.00", "–"]
+
+    def test_the_stress_that_grows_most_is_told_in_a_sentence(self) -> None:
+        loss = {"loss": {"kind": "member_stiffness", "member": "ab", "factor": 0.75}}
+        found = member_stresses(account(loss), ["ab", "bc"], 1)
+        assert found is not None
+        assert consequence(found).replace("\xa0", " ") == (
+            "The stress of ab grows by 33 %, from 45.0 to 60.0 MPa: from 18 % to 24 % of its yield "
+            "strength."
+        )
+        assert consequence({"bc": found["bc"]}) == ""
 
     def test_without_a_yield_strength_nothing_is_used_up(self) -> None:
         loss = {"loss": {"kind": "member_stiffness", "member": "ab", "factor": 0.75}}

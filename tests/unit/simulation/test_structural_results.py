@@ -11,7 +11,6 @@ from reference_solver import solve_case
 from rga.arrays import FloatArray
 from rga.errors import InputError, UnstableStructureError
 from rga.model import Model, read_model
-from rga.model.io import model_content
 from rga.model.schema import DOFS
 from rga.simulation import Results, results
 
@@ -367,25 +366,3 @@ class TestRefused:
     def test_more_than_memory_holds_is_refused(self) -> None:
         with pytest.raises(InputError, match="more than fit into memory"):
             results(beam(PINNED, SLIDING), {"time": np.arange(1_000_000.0)}, stations=1001)
-
-
-class TestNotebook:
-    def test_a_row_is_drawn_as_it_was_solved(self) -> None:
-        pyplot = pytest.importorskip("matplotlib.pyplot")
-        load = UNIFORM | {"factor": {"context": "size"}}
-        content = model_content(beam(PINNED, SLIDING))
-        content["context"] = {"size": {"unit": "-", "range": [0, 4]}}
-        content["effects"] = {"load": load}
-        found = results(read_model(content, "beam"), {"size": [1.0, 2.0]})
-        _, axes = pyplot.subplots()
-        assert found.plot(axes, row=2, forces="M") is axes
-        title = " ".join(axes.get_title("left").split())
-        assert title.endswith("at most 108 kN m; at size = 2")
-        pyplot.close("all")
-        with pytest.raises(InputError, match="there is no row 3"):
-            found.plot(row=3)
-
-    def test_a_notebook_shows_the_extremes(self) -> None:
-        shown = results(beam(PINNED, SLIDING, load=UNIFORM))._repr_html_()
-        assert "1 row; the extremes of every member" in shown
-        assert "utilisation" in shown

@@ -25,6 +25,7 @@ def results(
 ) -> None:
     """Write displacements, rotations, reactions, N, V, M and stresses (CSV or Parquet)."""
     from rga.model import load_model
+    from rga.model.effect import when_all_act
     from rga.records import load_contexts
     from rga.simulation import results as results_of
 
@@ -32,6 +33,9 @@ def results(
     given = load_contexts(contexts, structure).values if contexts else {}
     found = results_of(structure, given, stations=stations)
     found.write(output)
+    begun = when_all_act(structure.effects.values())
+    if begun is not None and "time" not in given:
+        typer.echo("No time is given: all effects act, those too that begin late.")
     typer.echo(
         f"{len(found.displacements)} rows of {len(structure.nodes)} nodes, {len(found.held)} "
         f"reactions and {len(structure.members)} members at {stations} stations are in {output}."
@@ -41,5 +45,6 @@ def results(
         first = worst.row(0, named=True)
         typer.echo(
             f"The most used member is {first['member']}: {first['utilisation']:.0%} of its yield "
-            f"strength, {first['stress min'] / 1e6:.4g} to {first['stress max'] / 1e6:.4g} MPa."
+            f"strength, {first['stress min'] / 1e6:.4g} to {first['stress max'] / 1e6:.4g} MPa. "
+            "Buckling is not looked at."
         )

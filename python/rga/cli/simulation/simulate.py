@@ -23,6 +23,7 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
 
     from rga.cli.output import whole_file
     from rga.model import load_model
+    from rga.model.effect import when_all_act
     from rga.records import load_contexts
     from rga.simulation import Simulator
 
@@ -31,6 +32,8 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
         raise InputError(f"{suffix!r} is no format", str(output), "name a .csv or .parquet file")
     structure = load_model(model)
     given = load_contexts(contexts, structure)
+    if "time" not in given.values and when_all_act(structure.effects.values()) is not None:
+        typer.echo("warning: without a column time, effects that begin late do not act", err=True)
     readings = Simulator(structure).predict(given.values)
     sensors = [pl.Series(name, readings[:, k]) for k, name in enumerate(structure.sensors)]
     frame = given.frame.with_columns(sensors)

@@ -11,6 +11,8 @@ from rga.errors import InputError
 #: blocks of a record, and the one in so many that is held out: ten blocks for a bootstrap, four
 #: fifths of the rows to learn from
 BLOCKS, EVERY = 50, 5
+#: change over the noise below which a reading does not feel it
+UNFELT = 1e-6
 #: of the interval of the gain, as of all intervals of the findings (`ci90`)
 CONFIDENCE = 0.9
 
@@ -45,7 +47,9 @@ def gain(left: FloatArray, change: FloatArray, held_out: BoolArray, seed: int) -
 
     The interval is a block bootstrap of the second term. As the blocks are few, percentiles are
     moved outwards as far as Student's t is wider than a normal distribution (Hesterberg 2015, The
-    American Statistician 69, 371: the expanded percentile interval).
+    American Statistician 69, 371: the expanded percentile interval). Where no held-out reading
+    feels the change, nothing stands for the second term: it is then only known to lie within
+    2 sqrt(mean d^2 mean r^2) of zero (Cauchy and Schwarz).
 
     Args:
         left: residual of the extended model over its noise, float[rows, sensors], NaN where
@@ -85,8 +89,13 @@ def gain(left: FloatArray, change: FloatArray, held_out: BoolArray, seed: int) -
     ).confidence_interval
     known = float((change[seen] ** 2).mean())
     after = float((left[rows][seen[rows]] ** 2).mean())
+    low, high = float(found.low), float(found.high)
+    felt = np.abs(np.where(seen, change, 0.0))[rows].max(initial=0.0)
+    if felt <= UNFELT < np.sqrt(known):
+        high = 2 * float(np.sqrt(known * after))
+        low = -high
     return Gain(
         before=known + float(sums[0].sum() / sums[1].sum()) + after,
         after=after,
-        interval=(known + float(found.low), known + float(found.high)),
+        interval=(known + low, known + high),
     )

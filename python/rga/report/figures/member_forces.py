@@ -1,5 +1,6 @@
 """What the causes mean for the members: a table of force ratios, and a drawing."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,13 +44,21 @@ class ForceTable:
     left_out: int
 
 
-def force_table(forces: Forces, model: Model) -> ForceTable:
-    """Members by the change of their force, the largest first; those with gauges are all there."""
+def force_table(forces: Forces, model: Model, named: Collection[str] = ()) -> ForceTable:
+    """Members by the change of their force, the largest first; those with gauges are all there.
+
+    Args:
+        forces: with and without the causes.
+        model: as it was given.
+        named: members that causes name: they stand first, whatever their force does.
+    """
     change = _change(forces)
     gauged = np.isfinite(forces.measured)
     order = np.argsort(-change, kind="stable")
+    first = [k for k in order if forces.members[k] in named][:MOST_LINES]
     worth = [k for k in order if change[k] > WORTH_A_LINE * forces.amplitude.max()][:MOST_LINES]
-    shown = [k for k in order if k in set(worth) or gauged[k]]
+    rest = [k for k in order if k not in first and (k in set(worth) or gauged[k])]
+    shown = [*first, *rest]
     ratios = {"all causes": forces.ratio}
     if forces.credited is not None:
         ratios["without bearings' restraint"] = forces.credited

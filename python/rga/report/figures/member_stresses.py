@@ -7,6 +7,9 @@ from rga.diagnosis.member_forces import IDLE
 from rga.diagnosis.member_stresses import MemberStress
 from rga.quantities import DASH, fixed, number, percent
 
+#: growth of a stress below which it is not worth a sentence
+GROWS = 0.01
+
 
 @dataclass(frozen=True)
 class StressTable:
@@ -23,6 +26,30 @@ class StressTable:
     utilised: bool
     lines: list[list[str]]
     lost: bool
+
+
+def consequence(stresses: Mapping[str, tuple[MemberStress, MemberStress]]) -> str:
+    """The member whose stress grows most, in a sentence; empty where none does by a hundredth."""
+    heaviest = max((abs(given.stress) for given, _ in stresses.values()), default=0.0)
+    grown = {
+        name: abs(extended.stress) / abs(given.stress)
+        for name, (given, extended) in stresses.items()
+        if abs(given.stress) > IDLE * heaviest
+    }
+    if not grown or max(grown.values()) < 1 + GROWS:
+        return ""
+    name = max(grown, key=lambda one: grown[one])
+    given, extended = stresses[name]
+    said = (
+        f"The stress of {name} grows by {percent(100 * (grown[name] - 1), sign=False)}, from "
+        f"{number(abs(given.stress) / 1e6)} to {number(abs(extended.stress) / 1e6)} MPa"
+    )
+    if given.utilisation is None or extended.utilisation is None:
+        return said + "."
+    shares = (
+        percent(100 * one.utilisation, sign=False) for one in (given, extended) if one.utilisation
+    )
+    return f"{said}: from {' to '.join(shares)} of its yield strength."
 
 
 def stress_table(stresses: Mapping[str, tuple[MemberStress, MemberStress]]) -> StressTable:

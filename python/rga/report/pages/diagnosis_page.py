@@ -15,6 +15,7 @@ from rga.findings.phrases import effect_words, kind_words
 from rga.findings.schema import Cause
 from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
+from rga.model.parameter import listed
 from rga.quantities import DASH, duration, number, percent, short
 from rga.report.figures.bridge import draw_bridge, draw_residuals
 from rga.report.figures.channels import all_channels
@@ -22,7 +23,7 @@ from rga.report.figures.deviation import percent_off, runs
 from rga.report.figures.explanations import draw_explanations, kept, ranked
 from rga.report.figures.gain import draw_gain
 from rga.report.figures.member_forces import draw_forces, force_table, restraint_words
-from rga.report.figures.member_stresses import stress_table
+from rga.report.figures.member_stresses import consequence, stress_table
 from rga.report.figures.series import draw_series
 from rga.report.figures.unexplained import unexplained
 from rga.report.figures.unseen import draw_unseen
@@ -197,7 +198,8 @@ def forces(findings: Findings) -> dict[str, Any] | None:
     found = member_forces(account)
     if found is None:
         return None
-    table = force_table(found, account.model)
+    named = _members_of(findings)
+    table = force_table(found, account.model, named)
     if not table.lines:
         return None
     record = account.record
@@ -206,10 +208,23 @@ def forces(findings: Findings) -> dict[str, Any] | None:
     return {
         "table": table,
         "stresses": None if stresses is None else stress_table(stresses),
+        "consequence": "" if stresses is None else consequence(stresses),
         "row": moment(record.time_label(float(record.time[found.row]))),
         "restraint": restraint_words(found, [str(c.effect["kind"]) for c in findings.causes]),
         "figure": draw_forces(found, account.model),
     }
+
+
+def _members_of(findings: Findings) -> set[str]:
+    """Members that causes name, by themselves or by their groups."""
+    account = findings.account
+    found: set[str] = set()
+    for name, effect in account.extended.effects.items():
+        if name not in account.model.effects:
+            found.update(listed(effect.place.get("member")))
+            for group in listed(effect.place.get("group")):
+                found.update(account.model.groups.get(group, []))
+    return found
 
 
 def unseen(findings: Findings) -> dict[str, Any] | None:

@@ -34,13 +34,25 @@ def refused(
 ) -> InputError:
     """What the core refuses, in the names of the model."""
     if isinstance(error, _core.InvalidInput):
-        return InputError(str(error), _of_member(structure, str(error)), "mend that value")
+        told = _named(structure, str(error))
+        return InputError(told, _of_member(structure, str(error)), "mend that value")
     place = f"node {node_name(structure, error.node)!r} in {DOFS[error.dof]}"
     return UnstableStructureError(
         f"the structure can move: {place} meets no resistance",
         "members and supports",
         "add a member, a support or a stiffness there, or hold the plane",
     )
+
+
+def _named(structure: Structure, told: str) -> str:
+    """What the core tells of nodes and members by their numbers, by their names."""
+
+    def name(found: re.Match[str]) -> str:
+        names = list(structure.nodes if found[1] == "node" else structure.members)
+        number = int(found[2])
+        return f"{found[1]} {names[number]!r}" if number < len(names) else found[0]
+
+    return re.sub(r"\b(node|member) (\d+)\b", name, told)
 
 
 def _of_member(structure: Structure, told: str) -> str:

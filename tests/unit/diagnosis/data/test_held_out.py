@@ -65,6 +65,18 @@ def test_an_effect_between_the_held_out_blocks_counts_in_full() -> None:
     assert found.before - found.after == pytest.approx((true**2).mean())
 
 
+@pytest.mark.parametrize(("size", "sure"), [(0.5, False), (15.0, True)])
+def test_what_no_held_out_reading_feels_is_sure_only_where_it_is_large(
+    size: float, sure: bool
+) -> None:
+    """It begins behind the last held-out block: no reading that no step saw speaks for it."""
+    left = noise(np.random.default_rng(3), 0.0)
+    late = np.arange(ROWS) > np.flatnonzero(HELD_OUT)[-1]
+    low, high = gain(left, size * late[:, None] * np.ones(SENSORS), HELD_OUT, 0).interval
+    assert (low > 0) == sure
+    assert low < size**2 * late.mean() < high
+
+
 def test_no_reading_but_the_held_out_is_looked_at() -> None:
     rng = np.random.default_rng(4)
     left, simulated = noise(rng, 0.3), effect(rng)

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from rga.arrays import FloatArray
 from rga.model.axes import local_axes
@@ -18,6 +18,9 @@ from rga.model.structure import Load, Spread, Structure, check_direction, unit_v
 #: along one member at least. Deflections of a simply supported beam are then up to 0.01 % too
 #: small, drawn as one member or as several.
 STATIONS, STATIONS_OF_MEMBER = 128, 16
+
+#: places of axles that are exact beside these, at most
+MOST_EXACT = 1000
 
 #: forces on nodes, and loads along members, of a load pattern
 Pattern = tuple[dict[int, FloatArray], list[Spread]]
@@ -53,6 +56,9 @@ class AxleLoad(Effect):
     factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
     position: Annotated[Value, Parameter("m", None)]
 
+    #: places along the path at which an axle is not shared between two others [m]
+    _exact: tuple[float, ...] = PrivateAttr(default=())
+
     @model_validator(mode="after")
     def _pairs(self) -> "AxleLoad":
         if len(self.forces) != len(self.offsets):
@@ -82,6 +88,14 @@ class AxleLoad(Effect):
         backwards = bool((moves <= 0).all() and (moves < 0).any())
         return {**resolved, "heading": np.full(rows, -1.0 if backwards else 1.0)}
 
+    def exact_for(self, values: Values) -> Self:
+        places = np.unique(self._stands(values))
+        if len(places) > MOST_EXACT:
+            return self
+        found = self.model_copy()
+        found._exact = tuple(places.tolist())
+        return found
+
     def loads(self, structure: Structure, values: Values, others: dict[str, Values]) -> list[Load]:
         stations, patterns = structure.once_for_geometry(lambda: self._path(structure), self)
         shares = self._shares(values, stations) * values["factor"]
@@ -108,8 +122,10 @@ class AxleLoad(Effect):
             if member is None:
                 places.append(np.array(ends[1:]))
             else:
-                places.append(np.linspace(*ends, each + 1)[1:])
-                patterns += self._within(structure, member, first, each)
+                within = [place for place in self._exact if ends[0] < place < ends[1]]
+                along = np.unique([*np.linspace(*ends, each + 1)[1:-1], *within])
+                places += [along, np.array(ends[1:])]
+                patterns += self._within(structure, member, first, along - ends[0])
             patterns.append(last)
         return np.concatenate(places), patterns
 
@@ -123,21 +139,27 @@ class AxleLoad(Effect):
         found = frames[joined.all(axis=1)]
         return int(found[0]) if len(found) else None
 
-    def _within(self, structure: Structure, member: int, first: int, parts: int) -> list[Pattern]:
-        """A unit load on each place within a frame member, counted from one of its nodes."""
+    def _within(
+        self, structure: Structure, member: int, first: int, away: FloatArray
+    ) -> list[Pattern]:
+        """A unit load on each place within a frame member, so far from one of its nodes [m]."""
         arrays = structure.arrays
         (length,), (axes,) = local_axes(arrays, np.array([member]))
         share = axes @ unit_vector(self.direction)
-        away = length * np.arange(1, parts) / parts
         at = away if arrays["ends"][member, 0] == first else length - away
         return [
             ({}, [(member, axis, x, x, part, 0.0) for axis, part in enumerate(share) if part])
             for x in at
         ]
 
+    def _stands(self, values: Values) -> FloatArray:
+        """Where the axles stand along the path, float[axles, rows] [m]."""
+        behind = np.array(self.offsets)[:, None] * values["heading"]
+        return np.asarray(values["position"] - behind)
+
     def _shares(self, values: Values, stations: FloatArray) -> FloatArray:
         """Force that each node of the path takes, float[nodes, rows] [N]."""
-        stands = values["position"] - np.array(self.offsets)[:, None] * values["heading"]
+        stands = self._stands(values)
         # Of a long train few axles are on the path at a time.
         axle, row = np.nonzero(~((stands < 0) | (stands > stations[-1])))
         at, force = stands[axle, row], np.array(self.forces)[axle]
