@@ -259,6 +259,7 @@ class _Method(Opened):
             Releases=[False] * 12,
             PtLoads=[],
             DistLoads=[],
+            load_lines={},
             where=where,
         )
 
@@ -310,6 +311,7 @@ class _Method(Opened):
     def _add_member_pt_load(self, given: Arguments, of: dict[str, Any], where: str) -> None:
         member = self.model.of("members", of["member_name"], where)
         size, place = (given.as_number(of[key], key) for key in ("P", "x"))
+        member.load_lines["point", len(member.PtLoads)] = where
         member.PtLoads.append((of["direction"], size, place, str(of.get("case", "Case 1"))))
 
     def _add_member_dist_load(self, given: Arguments, of: dict[str, Any], where: str) -> None:
@@ -319,6 +321,7 @@ class _Method(Opened):
         end = of.get("x2")
         end = self.model.length(member) if end is None else given.as_number(end, "x2")
         case = str(of.get("case", "Case 1"))
+        member.load_lines["line", len(member.DistLoads)] = where
         member.DistLoads.append((of["direction"], first, last, start, end, case))
 
     def _add_member_self_weight(self, given: Arguments, of: dict[str, Any], where: str) -> None:
@@ -328,6 +331,7 @@ class _Method(Opened):
         for member in self.model.members.values():
             weight = factor * member.material.rho * member.section.A
             end = self.model.length(member)
+            member.load_lines["line", len(member.DistLoads)] = where
             member.DistLoads.append((of["global_direction"], weight, weight, 0.0, end, case))
 
     def _among(self, given: Arguments, value: Any, known: tuple[str, ...]) -> None:
