@@ -101,6 +101,25 @@ class TestPyniteScriptSafety:
         with pytest.raises(InputError, match=said):
             import_model(written("frame.py", f"{PYNITE}{line}\n"), units="kN, m")
 
+    @pytest.mark.parametrize(
+        ("line", "said"),
+        [
+            ("f.add_member_pt_load('BC', 'Fy', -3, 500)", "at 500 m .* which is 120 m long"),
+            ("f.add_member_pt_load('BC', 'Fy', -3, -5)", "at -5 m"),
+            ("f.add_member_dist_load('BC', 'Fy', -1, -1, 60, 500)", "at 60 m to 500 m"),
+            ("f.add_member_dist_load('BC', 'Fy', -1, -2, 90, 30)", "runs backwards"),
+        ],
+    )
+    def test_a_load_beyond_its_member_is_refused_by_its_own_line(
+        self, written: Written, line: str, said: str
+    ) -> None:
+        with pytest.raises(ImportRefused, match=f"line 12: a load .*{said}"):
+            import_model(written("frame.py", f"{PYNITE}{line}\n"), units="kN, m")
+
+    def test_a_load_at_the_very_end_stays(self, written: Written) -> None:
+        line = "f.add_member_pt_load('BC', 'Fy', -3, 120 * (1 + 1e-12))"
+        assert sums(written("frame.py", f"{PYNITE}{line}\n")) == pytest.approx((0, 0, -8000))
+
     def test_a_part_without_a_name_has_that_of_pynite(self, written: Written) -> None:
         path = written("frame.py", f"{PYNITE}n = f.add_node(None, 9, 0, 0)\n"
                        "f.add_member(None, 'C', n, 'Steel', 'S')\n")  # fmt: skip
@@ -168,6 +187,45 @@ class TestOpenSeesScriptSafety:
     def test_what_python_does_is_followed(self, written: Written, lines: str, total: float) -> None:
         assert sums(written("frame.py", f"{OPENSEES}{lines}\n")) == (total, 0, -20000)
 
+    @pytest.mark.parametrize("word", ["break", "continue", "return"])
+    def test_what_would_leave_before_the_model_changes_is_named(
+        self, written: Written, word: str
+    ) -> None:
+        line = f"            {word}"
+        text = (
+            f"{OPENSEES}def f():\n    for k in range(3):\n"
+            f"        if ops.nodeDisp(2, 1) > 0:\n{line}\n        ops.load(2, 1, 0, 0)\nf()\n"
+        )
+        with pytest.raises(InputError, match="whether 'load' is done cannot be known"):
+            import_model(written("frame.py", text), units="kN, m")
+        harmless = text.replace("ops.load(2, 1, 0, 0)", "print(ops.nodeDisp(2, 1))")
+        assert sums(written("frame.py", harmless)) == (0, 0, -20000)
+        assert sums(written("frame.py", text.replace(line, "            pass"))) == (
+            3000, 0, -20000,
+        )  # fmt: skip
+
     def test_a_module_that_is_not_needed_can_be_named(self, written: Written) -> None:
         path = written("frame.py", f"import helpers\n{OPENSEES}")
         assert sums(path, without=["helpers"]) == (0, 0, -20000)
+
+    @pytest.mark.parametrize(
+        ("values", "said"),
+        [
+            ("0.01, 2e8, 0.0", "has no Iz above 0"),
+            ("0.01, 2e8, -1e-4", "has no Iz above 0"),
+            ("0.0, 2e8, 1e-4", "has no A above 0"),
+            ("0.01, 0.0, 1e-4", "has no E above 0"),
+        ],
+    )
+    def test_an_element_without_stiffness_is_refused_by_line(
+        self, written: Written, values: str, said: str
+    ) -> None:
+        text = OPENSEES.replace("0.01, 2e8, 1e-4", values)
+        with pytest.raises(ImportRefused, match=f"line 7: element 1 {said}"):
+            import_model(written("frame.py", text), units="kN, m")
+
+    def test_a_point_load_beyond_its_element_is_refused_by_line(self, written: Written) -> None:
+        line = "ops.eleLoad('-ele', 1, '-type', '-beamPoint', -4.0, {})\n"
+        with pytest.raises(ImportRefused, match="line 11: a load at 5 m on member 1"):
+            import_model(written("frame.py", OPENSEES + line.format(1.25)), units="kN, m")
+        assert sums(written("frame.py", OPENSEES + line.format(0.25))) == (0, 0, -20000)

@@ -95,7 +95,7 @@ class Members:
                 "throughout", "cut it into parts of a section each",
             )  # fmt: skip
         for axis in "yz":
-            for end in ("beg", "end"):
+            for end in ("beg", "begin", "end"):
                 name = f"analysis {axis} eccentricity of {end} node"
                 if row.number_of(name, "m", self.table.small_length, 0.0):
                     self._refuse(row, f"it lies off its nodes ({name})", "move its nodes")

@@ -53,7 +53,10 @@ QUIET = frozenset((
     "StructuralProxyElementFaces", "StructuralProxyElementVertices", "StructuralStorey",
 ))  # fmt: skip
 #: columns that name parts for other programs
-NAMING = frozenset(("id", "parent id", "color", "description", "description id of the profile"))
+NAMING = frozenset((
+    "color", "cross-section type", "description", "description id of the profile", "id",
+    "parent id", "type",
+))  # fmt: skip
 
 
 def is_saf(sheets: dict[str, Sheet]) -> bool:

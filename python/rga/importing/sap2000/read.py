@@ -167,7 +167,7 @@ class _Reader:
             return
         y = local_y(along, angles.get(name, 0.0))
         x = along / np.linalg.norm(along)
-        self._bends(name, section, released.get(name, {"i": [], "j": []}))
+        self._bends(section, released.get(name, {"i": [], "j": []}))
         nodes = nodes_between(self.draft, *ends) if name in self.meshed else ends
         frame = add_cut(
             self.draft, name, nodes, self._section(section, material),
@@ -180,14 +180,14 @@ class _Reader:
             scale = self.units.force / self.units.length
             self.weights[name] = section.number("Area") * weight * scale
 
-    def _bends(self, name: str, section: TableRow, released: dict[str, list[str]]) -> None:
+    def _bends(self, section: TableRow, released: dict[str, list[str]]) -> None:
         """See that a section has the second moments by which a frame bends."""
         for field, dof in (("I33", "rz"), ("I22", "ry")):
             hinged = all(dof in ends for ends in released.values())
             if not hinged and section.number(field, 0.0) <= 0:
                 self.draft.notes.refuse(
-                    section.where, f"section {section.text('SectionName')!r} has no {field}, and "
-                    f"frame {name} bends by it", "give it", "values",
+                    section.where, f"section {section.text('SectionName')!r} has no {field}, by "
+                    "which its frames bend", "give it", "values",
                 )  # fmt: skip
 
     def _material(self, name: str, given: TableRow) -> dict[str, float] | None:

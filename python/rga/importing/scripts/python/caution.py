@@ -9,7 +9,7 @@ from rga.errors import InputError
 from rga.importing.scripts.python.evaluation import Evaluation, Function, LeavingPython
 from rga.importing.scripts.python.library import CHANGING, VIEWS, not_known, spoil
 from rga.importing.scripts.python.modules import ENDING, RUNNING_CODE
-from rga.importing.scripts.python.names import assigned
+from rga.importing.scripts.python.names import assigned, leaves
 from rga.importing.scripts.python.opened import Anything, Opened
 from rga.importing.scripts.values import Unknown
 
@@ -190,6 +190,8 @@ class Caution(Evaluation):
                 )
             for name in assigned(statement):
                 self.names[name] = why
+            if self.leaving is None and (kind := leaves(statement)):
+                self.leaving = kind, why
 
 
 def _last(function: ast.AST) -> str:

@@ -45,6 +45,8 @@ class Evaluation:
     def __init__(self, file: str) -> None:
         self.file = file
         self.refusals: list[tuple[str, str]] = []
+        #: whether the script goes on here is not known: what would leave, and why
+        self.leaving: tuple[str, Unknown] | None = None
         self.steps = Steps()
         self.everywhere: dict[str, Any] = {}
         self.names = self.everywhere

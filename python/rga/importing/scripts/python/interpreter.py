@@ -105,13 +105,16 @@ class PythonInterpreter(Caution):
         self.call_function(self.everywhere[roots[0]], [], {})
 
     def _each(self, statements: Sequence[ast.stmt]) -> None:
-        for statement in statements:
+        for place, statement in enumerate(statements):
+            if self.leaving is not None:
+                return self.pass_over(statements[place:], self.leaving[1])
             self.steps.take(self.where(statement))
             do = DOING.get(type(statement))
             if do is None:
                 self.pass_over([statement], not_known(type(statement).__name__))
             else:
                 do(self, statement)
+        return None
 
     def call_function(self, function: Function, values: list[Any], named: dict[str, Any]) -> Any:
         node = function.node
@@ -136,11 +139,14 @@ class PythonInterpreter(Caution):
             if isinstance(node, ast.Lambda):
                 return self.value(node.body)
             self._each(node.body)
+            if self.leaving is not None:
+                return self.leaving[1]
         except LeavingPython as leaving:
             if leaving.kind == "end":
                 raise
             return leaving.value
         finally:
+            self.leaving = None
             for one in self.shared & frame.keys():
                 self.everywhere[one] = frame[one]
             self.names, self.depth, self.shared = here, self.depth - 1, shared
@@ -225,7 +231,7 @@ class PythonInterpreter(Caution):
             self.bind(node.target, item)
             if not self._turn(node.body):
                 return None
-        return self._each(node.orelse)
+        return self._each(node.orelse) if self.leaving is None else None
 
     def repeat(self, node: ast.While) -> None:
         while True:
@@ -239,6 +245,15 @@ class PythonInterpreter(Caution):
         """One turn of a loop; whether there may be another."""
         try:
             self._each(body)
+            if self.leaving is not None:
+                kind, why = self.leaving
+                if kind == "continue":
+                    self.leaving = None
+                    return True
+                # Whether there are more turns is not known: they may change nothing.
+                self.pass_over(body, why)
+                self.leaving = self.leaving if kind == "return" else None
+                return False
         except LeavingPython as leaving:
             if leaving.kind in ("return", "end"):
                 raise
