@@ -111,6 +111,12 @@ class Table:
         return read
 
     def _remedy(self, cell: str) -> str:
+        if self.notation.thousands and self.notation.thousands in cell:
+            return (
+                f"{self.notation.thousands!r} parts groups of three digits in this file, and "
+                f"{self.notation.decimal!r} is the decimal sign: write all numbers alike, or state "
+                "decimal and thousands in import.toml"
+            )
         if self.notation.decimal == "," and "." in cell:
             return 'its decimal sign is a comma: state decimal, or thousands = "." in import.toml'
         if self.notation.decimal == "." and "," in cell:

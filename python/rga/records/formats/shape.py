@@ -7,13 +7,13 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from rga.records.mapping import FileMapping
-from rga.records.numbers import MISSING_WORDS, THOUSANDS
+from rga.records.numbers import MINUS, MISSING_WORDS, THOUSANDS
 from rga.records.units import name_and_unit, unit_of, without_brackets
 
 #: in the order in which they are taken where several fit; a blank stands for any run of them
 DELIMITERS = ("\t", ";", ",", "|", " ")
 _NUMBER = re.compile(
-    rf"(?=[+-]?[.,]?\d)[+-]?(\d{{1,3}}([{THOUSANDS}.,]\d{{3}})+|\d+)?([.,]\d*)?([eEdD][+-]?\d+)?"
+    rf"(?=[+{MINUS}-]?[.,]?\d)[+{MINUS}-]?(\d{{1,3}}([{THOUSANDS}.,]\d{{3}})+|\d+)?([.,]\d*)?([eEdD][+-]?\d+)?"
 )
 _TIME = re.compile(
     r"(\d{1,4}[-./]\d{1,2}[-./]\d{1,4}|\d{1,2}[-. ]?[A-Za-z]{3}[-. ]?\d{2,4})?[T ]*"
