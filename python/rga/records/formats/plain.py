@@ -11,7 +11,7 @@ from rga.records.mapping import FileMapping
 from rga.records.numbers import notation_of
 from rga.records.table import Table
 from rga.records.times.named import time_of
-from rga.records.units import name_and_unit, without_brackets
+from rga.records.units import name_and_unit, states_none, without_brackets
 
 #: bytes at the head of a file by which its shape and its notation are known
 HEAD = 1 << 18
@@ -167,7 +167,8 @@ def _units(lines: Sequence[str], shape: Shape, names: Sequence[str]) -> dict[str
     if shape.units is None or shape.units >= len(lines):
         return {}
     said = (without_brackets(cell) for cell in split(lines[shape.units], shape.delimiter))
-    return {name: unit for name, unit in zip(names, said, strict=False) if name and unit}
+    pairs = zip(names, said, strict=False)
+    return {name: unit for name, unit in pairs if name and not states_none(unit)}
 
 
 def _notes(shape: Shape, mapping: FileMapping, decimal: str, thousands: str) -> list[str]:
