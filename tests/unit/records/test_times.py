@@ -1,5 +1,6 @@
 """Times as loggers write them: formats, zones, the hour that comes twice, numbers of days."""
 
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from rga.records.mapping import TimeColumns
 from rga.records.read import read_table
 from rga.records.times import Clock, read_clock
 from rga.records.times.clock import _by_format
-from rga.records.times.written import moments_by, written_format
+from rga.records.times.written import moments_by, possible_formats, written_format
 
 
 def clock(folder: Path, header: str, stamps: list[str], **stated: Any) -> Clock:
@@ -32,7 +33,7 @@ def clock(folder: Path, header: str, stamps: list[str], **stated: Any) -> Clock:
         ),
         ("Datum;Zeit", ["1.2.2024;10:00:00", "1.2.2024;10:00:10"], "2024-02-01T10:00:00", 10),
         ("Timestamp", ["01/13/2024 1:00 PM", "01/13/2024 1:10 PM"], "2024-01-13T13:00:00", 600),
-        ("Date", ["13/01/24 10:00:00", "13/01/24 10:00:01"], "2024-01-13T10:00:00", 1),
+        ("Date", ["31/12/23 23:59:59", "01/01/24 00:00:00"], "2023-12-31T23:59:59", 1),
         ("Zeit", ["13.1.2024 10:00:00", "13.1.2024 10:00:00,5"], "2024-01-13T10:00:00", 0.5),
         ("Time", ["03-Feb-2024 10:00:00", "03-Feb-2024 10:00:01"], "2024-02-03T10:00:00", 1),
         ("t [ms]", ["0", "250"], 0.0, 0.25),
@@ -63,6 +64,40 @@ def test_day_and_month_that_cannot_be_told_apart_are_asked_for(tmp_path: Path) -
     assert written_format(months) is None
     hours = [f"01/{day:02d}/2024 {hour:02d}:00" for day in range(1, 12) for hour in range(24)]
     assert written_format(hours) == "%m/%d/%Y %H:%M"
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        ["24/01/05 10:00", "24/01/05 10:10"],
+        ["24-01-05 10:00", "24-01-05 10:10"],
+        ["24.03.05 10:00:00", "24.03.05 10:00:01"],
+        ["24/01/05", "24/01/06"],
+        ["01/02/24 10:00", "31/01/24 10:00"],
+        # A campaign on the fifth of each month is no two days.
+        ["05/01/2024 10:00", "05/01/2024 10:10", "05/02/2024 10:00", "05/02/2024 10:10"],
+    ],
+)
+def test_an_order_of_day_month_and_year_is_not_guessed(stamps: list[str], tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r'cannot be told apart.*format = "%.*" or "%') as refusal:
+        clock(tmp_path, "time", stamps)
+    assert all(f'"{choice}"' in str(refusal.value) for choice in possible_formats(stamps))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "step", "count"),
+    [("%y/%m/%d %H:%M", 12, 4), ("%d/%m/%y %H:%M", 1, 30), ("%m/%d/%y %H:%M", 1, 30),
+     ("%d.%m.%y %H:%M", 0.5, 60), ("%y.%m.%d %H:%M", 0.5, 60), ("%y-%m-%d %H:%M", 6, 40)],
+)  # fmt: skip
+def test_the_order_by_which_time_goes_on_at_midnight_is_read(
+    pattern: str, step: float, count: int, tmp_path: Path
+) -> None:
+    start = datetime(2024, 1, 5)
+    stamps = [(start + timedelta(hours=k * step)).strftime(pattern) for k in range(count)]
+    found = clock(tmp_path, "time", stamps)
+    assert found.start == "2024-01-05T00:00:00"
+    np.testing.assert_allclose(np.diff(found.seconds), step * 3600)
+    assert f"times are read as {pattern}" in found.notes
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """The time axis of a file: time stamps or seconds, checked to increase."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
@@ -15,7 +14,7 @@ from rga.errors import InputError
 from rga.records.mapping import TimeColumns
 from rga.records.numbers import numbers_of
 from rga.records.table import StatedTime, Table
-from rga.records.times.written import moments_by, written_format
+from rga.records.times.written import moments_by, possible_formats
 from rga.records.times.zone import in_zone, zone_of
 from rga.records.units import unit_of
 
@@ -128,15 +127,18 @@ class _Reading:
             return self._written(joined, stated.format)
         if len(series) == 1 and self._is_number(series[0]):
             return self._elapsed(self._seconds(series[0]) * stated.unit)
-        if not _is_iso(joined[0]) and (found := written_format(joined)) is not None:
-            self.notes.append(f"times are read as {found}")
-            return self._written(joined, found)
         wanted = "ISO 8601 like the first row, or seconds throughout"
-        if not _is_iso(joined[0]) and re.match(r"\d+[-/]\d+[-/]\d", joined[0]):
+        formats = [] if _is_iso(joined[0]) else possible_formats(joined)
+        if len(formats) == 1:
+            self.notes.append(f"times are read as {formats[0]}")
+            return self._written(joined, formats[0])
+        if formats:
+            parts = "day, month and year" if "%y" in formats[0] else "day and month"
+            choices = " or ".join(f'"{one}"' for one in formats)
             raise InputError(
-                f"day and month of {joined[0]!r} cannot be told apart",
+                f"{parts} of {joined[0]!r} cannot be told apart",
                 self.table.where(0, self.where),
-                'state [time] format in import.toml, such as "%d/%m/%Y %H:%M:%S"',
+                f"state [time] format = {choices} in import.toml",
             )
         clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted))
         return clock if self.zone else replace(clock, start=joined[0])
