@@ -167,3 +167,70 @@ def test_rows_are_counted_from_the_first_stamp(tmp_path: Path) -> None:
     found = clock(tmp_path, "time", ["2024-01-01T00:00"] * 3, sampling_rate_hz=200)
     assert found.seconds.tolist() == [0, 0.005, 0.01]
     assert found.start == "2024-01-01T00:00"
+
+
+@pytest.mark.parametrize(
+    ("cells", "choice"),
+    [
+        ([f"{45356.5 + k / 24:.6f}" for k in range(30)], "excel"),
+        ([f"{45356.5 + k / 144:.4f}".replace(".", ",") for k in range(30)], "excel"),
+        (["45356", "45357", "45358"], "excel"),
+        ([f"{1709632800000 + k * 1000}" for k in range(30)], "unix_ms"),
+        (["1709632800000000", "1709632800100000"], "unix_us"),
+        (["1709632800000000000", "1709632800100000000"], "unix_ns"),
+        (["202403051000", "202403051010"], "%Y%m%d%H%M"),
+        (["2024030510", "2024030511"], "%Y%m%d%H"),
+        (["20240305", "20240306"], "%Y%m%d"),
+        (["5032024100000", "5032024100100"], "excel"),
+    ],
+)
+def test_numbers_that_hardly_are_seconds_are_asked_for(
+    cells: list[str], choice: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=f'hardly are seconds.*line 2.*"{choice}"'):
+        clock(tmp_path, "time", cells)
+    numbers = [float(cell.replace(",", ".")) for cell in cells]
+    found = clock(tmp_path, "time", cells, format="seconds")
+    np.testing.assert_allclose(found.seconds, np.array(numbers) - numbers[0])
+    stated = clock(tmp_path, "time [ms]", cells, columns=["time [ms]"])
+    np.testing.assert_allclose(stated.seconds, found.seconds / 1000, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["0", "0.01"],
+        ["0", "45356.5"],
+        ["86399.5", "86400.5"],
+        ["45356.50", "45356.51", "45356.52"],
+        ["36000", "36060"],
+        ["20240399", "20240400"],
+        ["-5", "1e6"],
+    ],
+)
+def test_seconds_from_the_beginning_of_a_record_stay_what_they_are(
+    cells: list[str], tmp_path: Path
+) -> None:
+    found = clock(tmp_path, "time", cells)
+    assert found.start == float(cells[0])
+    np.testing.assert_allclose(found.seconds[1], float(cells[1]) - float(cells[0]))
+    assert found.notes == ()
+
+
+def test_seconds_since_1970_stay_seconds_and_are_said(tmp_path: Path) -> None:
+    found = clock(tmp_path, "time", ["1709632800.5", "1709632801.5"])
+    assert (found.start, found.seconds.tolist()) == (1709632800.5, [0, 1])
+    assert 'format = "unix"' in found.notes[0]
+
+
+def test_a_date_of_fourteen_digits_is_read(tmp_path: Path) -> None:
+    found = clock(tmp_path, "time", ["20240305235959", "20240306000000", "20240306000100"])
+    assert found.start == "2024-03-05T23:59:59"
+    assert found.seconds.tolist() == [0, 1, 61]
+    assert "times are read as %Y%m%d%H%M%S" in found.notes
+
+
+def test_units_of_the_time_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "r.csv").write_text("time [s];D1\nms;mm\n0;1\n1;2\n", encoding="utf-8")
+    with pytest.raises(InputError, match="says 's', the line of units says 'ms'"):
+        read_clock(read_table(tmp_path / "r.csv"), TimeColumns(columns=["time [s]"]))

@@ -14,18 +14,10 @@ from rga.errors import InputError
 from rga.records.mapping import TimeColumns
 from rga.records.numbers import numbers_of
 from rga.records.table import StatedTime, Table
+from rga.records.times.counted import COMPACT, COUNTED, SECONDS, looks_like
 from rga.records.times.written import moments_by, possible_formats
 from rga.records.times.zone import in_zone, zone_of
-from rga.records.units import unit_of
-
-#: times that are numbers: how much one is [s], and the moment at which they are 0
-COUNTED = {
-    "excel": (86400.0, datetime(1899, 12, 30)),
-    "unix": (1.0, datetime(1970, 1, 1, tzinfo=UTC)),
-    "unix_ms": (1e-3, datetime(1970, 1, 1, tzinfo=UTC)),
-    "unix_us": (1e-6, datetime(1970, 1, 1, tzinfo=UTC)),
-    "unix_ns": (1e-9, datetime(1970, 1, 1, tzinfo=UTC)),
-}
+from rga.records.units import contradict, name_and_unit, unit_of
 
 
 @dataclass(frozen=True)
@@ -85,6 +77,14 @@ def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
             notes.append("the time stands in " + " and ".join(map(repr, own.columns)))
         return replace(own, format=time.format or own.format)
     columns = tuple(time.columns)
+    for column in columns:
+        named, said = name_and_unit(column)[1], table.units.get(column)
+        if named and said and contradict(named, said):
+            raise InputError(
+                f"the name of {column!r} says {named!r}, the line of units says {said!r}",
+                str(table.path),
+                "correct one of them",
+            )
     unit = unit_of(table.units.get(columns[0], "")) if len(columns) == 1 else None
     size = unit.size if unit is not None and unit.dimension == "time" else 1.0
     if own is not None and own.columns == columns:
@@ -121,12 +121,14 @@ class _Reading:
             return self._temporal(series[0])
         if stated.format in COUNTED:
             return self._counted(series[0], *COUNTED[stated.format])
+        if stated.format == SECONDS:
+            return self._elapsed(self._seconds(series[0]))
         texts = [values.cast(pl.String).to_list() for values in series]
         joined = [" ".join(parts) for parts in zip(*texts, strict=True)]
         if stated.format is not None:
             return self._written(joined, stated.format)
         if len(series) == 1 and self._is_number(series[0]):
-            return self._elapsed(self._seconds(series[0]) * stated.unit)
+            return self._numbered(series[0])
         wanted = "ISO 8601 like the first row, or seconds throughout"
         formats = [] if _is_iso(joined[0]) else possible_formats(joined)
         if len(formats) == 1:
@@ -149,6 +151,30 @@ class _Reading:
             return self._placed(moments.to_list())
         stamps = np.array(moments.to_physical().to_numpy(), dtype=float) / 1e6
         return self._clock(stamps - stamps[0], moments[0].isoformat())
+
+    def _numbered(self, series: pl.Series) -> Clock:
+        """The clock of numbers, which are seconds unless they look like something else."""
+        numbers = self._seconds(series)
+        unit = self.table.units.get(series.name) or name_and_unit(series.name)[1] or ""
+        known = unit_of(unit)
+        if self.stated.start is not None or (known is not None and known.dimension == "time"):
+            return self._elapsed(numbers * self.stated.unit)
+        meant = looks_like(numbers)
+        if meant == COMPACT[14]:
+            self.notes.append(f"times are read as {meant}")
+            return self._written([f"{number:.0f}" for number in numbers], meant)
+        if meant == "unix":
+            self.notes.append(
+                'times are taken as seconds; state [time] format = "unix" if they count from 1970'
+            )
+        elif meant is not None:
+            choice = f'"{meant}"' if meant else '"excel", "unix_ms"'
+            raise InputError(
+                f"the times hardly are seconds: {series[0]} is the first",
+                self.table.where(0, self.where),
+                f'state [time] format = {choice} in import.toml, or "{SECONDS}" if they are',
+            )
+        return self._elapsed(numbers * self.stated.unit)
 
     def _counted(self, series: pl.Series, unit: float, zero: datetime) -> Clock:
         stamps = self._seconds(series) * unit
