@@ -134,6 +134,25 @@ def test_an_hour_that_is_there_once_is_said(tmp_path: Path) -> None:
     assert again.seconds.tolist() == [0, 3600, 7200, 10800]
 
 
+@pytest.mark.parametrize(
+    ("night", "begins", "steps", "said"),
+    [
+        (("02:00", "02:30", "03:00", "03:30"), "+01:00", [30, 30, 30], "standard time"),
+        (("02:30", "03:00"), "+01:00", [30], "standard time"),
+        (("00:30", "02:00", "02:30", "03:00", "03:30"), "+02:00", [150, 30, 30, 30], "standard"),
+        (("01:00", "01:30", "02:00", "02:30"), "+02:00", [30, 30, 30], "summer time"),
+        (("02:00", "02:30"), "+02:00", [30], "summer time"),
+    ],
+)
+def test_an_hour_that_is_there_once_leaves_few_gaps(
+    night: tuple[str, ...], begins: str, steps: list[int], said: str, tmp_path: Path
+) -> None:
+    found = clock(tmp_path, "time", [f"2024-10-27 {at}" for at in night], zone="Europe/Berlin")
+    assert str(found.start).endswith(begins)
+    assert (np.diff(found.seconds) / 60).tolist() == steps
+    assert f"are taken as {said}" in found.notes[0]
+
+
 def test_an_hour_that_does_not_exist_is_refused_with_its_line(tmp_path: Path) -> None:
     stamps = [f"2023-03-26 {at}" for at in ("01:30", "02:30", "03:30")]
     with pytest.raises(InputError, match=r"02:30:00 does not exist in Europe/Berlin.*line 3"):
