@@ -50,4 +50,8 @@ def read_table(
     if table.frame.height == 0:
         raise InputError("there are no rows below the header", str(path), "give at least one row")
     units = {column: unit for column, unit in table.units.items() if not states_none(unit)}
+    if table.skipped:
+        shown = ", ".join(map(str, table.skipped[:3])) + (", ..." if len(table.skipped) > 3 else "")
+        said = f"blank lines between rows are passed over: {len(table.skipped)} (line {shown})"
+        table = replace(table, notes=(*table.notes, said))
     return replace(table, units=units, sha256=hashlib.sha256(data).hexdigest())

@@ -253,3 +253,30 @@ def test_units_of_the_time_that_contradict_each_other_are_refused(tmp_path: Path
     (tmp_path / "r.csv").write_text("time [s];D1\nms;mm\n0;1\n1;2\n", encoding="utf-8")
     with pytest.raises(InputError, match="says 's', the line of units says 'ms'"):
         read_clock(read_table(tmp_path / "r.csv"), TimeColumns(columns=["time [s]"]))
+
+
+@pytest.mark.parametrize(
+    ("header", "pattern"),
+    [
+        ("time", "%Y-%m-%dT{}:00:00"),
+        ("time", "%d/%m/%y {}:00"),
+        ("Date;Time", "%d.%m.%Y;{}:00:00"),
+        ("Date;Time", "%d.%m.%Y;{}:00:00,0"),
+    ],
+)
+def test_the_end_of_a_day_is_midnight(header: str, pattern: str, tmp_path: Path) -> None:
+    hours = [datetime(2024, 12, 30) + timedelta(hours=k) for k in range(1, 50)]
+    stamps = [
+        (at - timedelta(days=1) if at.hour == 0 else at).strftime(
+            pattern.format(f"{at.hour or 24:02d}")
+        )
+        for at in hours
+    ]
+    found = clock(tmp_path, header, stamps)
+    assert (np.diff(found.seconds) == 3600).all()
+    assert str(found.start).startswith("2024-12-30T01:00")
+    assert any("24:00 is midnight at the end of the day" in note for note in found.notes)
+    alone = clock(tmp_path, "time", ["2024-03-05 24:00:00", "2024-03-06 00:10:00"])
+    assert (alone.start, alone.seconds.tolist()) == ("2024-03-06T00:00:00", [0, 600])
+    with pytest.raises(InputError, match="cannot be read"):
+        clock(tmp_path, "time", ["2024-03-05 23:00:00", "2024-03-05 24:10:00"])

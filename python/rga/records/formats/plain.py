@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 
 from rga.errors import InputError
 from rga.records.formats.encoding import Text
-from rga.records.formats.rows import read_rows
+from rga.records.formats.rows import open_quote, read_rows
 from rga.records.formats.shape import Shape, find_shape, rows_above, split, uncommented
 from rga.records.mapping import FileMapping
 from rga.records.numbers import notation_of
@@ -50,6 +50,10 @@ def read_plain(text: Text, mapping: FileMapping, known: Collection[str]) -> Tabl
             str(text.path),
             "state header_line of the table that is meant in import.toml, or give it as a file",
         )
+    head = range(shape.data if shape.header is None else shape.header, min(shape.data, len(lines)))
+    opened = next((line for line in head if lines[line].count('"') % 2), None)
+    if opened is not None:
+        raise open_quote(text.path, opened)
     names = _names(lines, shape, text)
     return table_of(text, lines, shape, names, mapping, "plain text")
 
@@ -78,7 +82,7 @@ def table_of(
         ragged: rows may leave out cells at their end.
     """
     body = text.below(shape.data) if body is None else body
-    frame = read_rows(
+    frame, skipped = read_rows(
         body, shape.delimiter, names, text.path, shape.data, shape.header, ragged=ragged
     )
     units = _units(lines, shape, names)
@@ -101,6 +105,7 @@ def table_of(
         frame=frame,
         row_name="line",
         first=shape.data + 1,
+        skipped=skipped,
         format=format_name,
         units=units,
         names={name: one for name, (one, _) in bare.items() if one != name},

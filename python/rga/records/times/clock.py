@@ -15,7 +15,7 @@ from rga.records.mapping import TimeColumns
 from rga.records.numbers import numbers_of
 from rga.records.table import StatedTime, Table
 from rga.records.times.counted import COMPACT, COUNTED, SECONDS, looks_like
-from rga.records.times.written import moments_by, possible_formats
+from rga.records.times.written import moments_by, possible_formats, without_late_midnights
 from rga.records.times.zone import in_zone, zone_of
 from rga.records.units import contradict, name_and_unit, unit_of
 
@@ -125,15 +125,23 @@ class _Reading:
             return self._elapsed(self._seconds(series[0]))
         texts = [values.cast(pl.String).to_list() for values in series]
         joined = [" ".join(parts) for parts in zip(*texts, strict=True)]
-        if stated.format is not None:
-            return self._written(joined, stated.format)
-        if len(series) == 1 and self._is_number(series[0]):
+        if stated.format is None and len(series) == 1 and self._is_number(series[0]):
             return self._numbered(series[0])
+        joined, late = without_late_midnights(joined)
+        if late:
+            said = f"24:00 is midnight at the end of the day: {joined[late[0]]} and a day"
+            self.notes.append(f"{said}, in {len(late)} rows")
+        if stated.format is not None:
+            return self._written(joined, stated.format, late)
         wanted = "ISO 8601 like the first row, or seconds throughout"
-        formats = [] if _is_iso(joined[0]) else possible_formats(joined)
+        # A row that counts for the next day says nothing of the order of days.
+        telling = (
+            [one for row, one in enumerate(joined) if row not in set(late)] if late else joined
+        )
+        formats = [] if _is_iso(joined[0]) else possible_formats(telling or joined)
         if len(formats) == 1:
             self.notes.append(f"times are read as {formats[0]}")
-            return self._written(joined, formats[0])
+            return self._written(joined, formats[0], late)
         if formats:
             parts = "day, month and year" if "%y" in formats[0] else "day and month"
             choices = " or ".join(f'"{one}"' for one in formats)
@@ -142,8 +150,8 @@ class _Reading:
                 self.table.where(0, self.where),
                 f"state [time] format = {choices} in import.toml",
             )
-        clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted))
-        return clock if self.zone else replace(clock, start=joined[0])
+        clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted), late)
+        return clock if self.zone or 0 in late else replace(clock, start=joined[0])
 
     def _temporal(self, series: pl.Series) -> Clock:
         moments = series.cast(pl.Datetime("us", getattr(series.dtype, "time_zone", None)))
@@ -180,12 +188,12 @@ class _Reading:
         stamps = self._seconds(series) * unit
         return self._clock(stamps - stamps[0], self._after(zero, float(stamps[0])))
 
-    def _written(self, joined: list[str], pattern: str) -> Clock:
+    def _written(self, joined: list[str], pattern: str, late: Sequence[int] = ()) -> Clock:
         moments = moments_by(joined, pattern)
         if moments is None:
             parse = partial(_by_format, pattern=pattern)
             moments = self._moments(joined, parse, f"written as {pattern}")
-        return self._placed(moments)
+        return self._placed(moments, late)
 
     def _elapsed(self, stamps: FloatArray) -> Clock:
         """Time since what the format says is the start, or on a scale that it does not name."""
@@ -215,8 +223,20 @@ class _Reading:
             moment = moment.replace(tzinfo=zone_of(self.zone, str(self.table.path)))
         return moment.isoformat()
 
-    def _placed(self, moments: list[datetime]) -> Clock:
-        """The clock of moments as they are written."""
+    def _a_day_after(self, moment: datetime, row: int) -> datetime:
+        try:
+            return moment + timedelta(days=1)
+        except OverflowError:
+            raise InputError(
+                f"the day after {moment} is none of the years 1 to 9999",
+                self.table.where(row, self.where),
+                "correct the time",
+            ) from None
+
+    def _placed(self, moments: list[datetime], late: Sequence[int] = ()) -> Clock:
+        """The clock of moments as they are written; those of late rows are of the next day."""
+        for row in late:
+            moments[row] = self._a_day_after(moments[row], row)
         if self.zone is None or moments[0].tzinfo is not None:
             elapsed = np.array([(moment - moments[0]).total_seconds() for moment in moments])
             if moments[0].tzinfo is None and self.stated.columns != ("time",):

@@ -13,6 +13,8 @@ _STAMP = re.compile(
     r"(?P<gap>[T ]+)?(?P<clock>(?P<hour>\d{1,2}):\d{2}(?P<second>:\d{2}(?P<point>[.,:])?\d*)?)?"
     r"(?P<half>\s*[AaPp][Mm])?"
 )
+#: 24:00, with or without its seconds
+_LATE = r"(?P<before>^|[T ])24:00(?P<rest>(:00([.,:]0+)?)?([^0-9:.,].*)?)$"
 _DECIMALS = re.compile(r":\d{2}(?P<point>[.,])\d")
 
 
@@ -26,6 +28,19 @@ def written_format(texts: Sequence[str]) -> str | None:
     """
     formats = possible_formats(texts)
     return formats[0] if len(formats) == 1 else None
+
+
+def without_late_midnights(texts: Sequence[str]) -> tuple[list[str], list[int]]:
+    """Stamps with midnight at the beginning of a day, and the rows in which it was at the end.
+
+    >>> without_late_midnights(["2024-03-05 23:00", "2024-03-05 24:00"])
+    (['2024-03-05 23:00', '2024-03-05 00:00'], [1])
+    """
+    stamps = pl.Series(texts)
+    late = stamps.str.contains(_LATE).arg_true().to_list()
+    if not late:
+        return list(texts), []
+    return stamps.str.replace(_LATE, "${before}00:00${rest}").to_list(), late
 
 
 def possible_formats(texts: Sequence[str]) -> list[str]:
