@@ -45,8 +45,9 @@ class TimeColumns(_Table):
     Attributes:
         columns: the columns that hold it, in the order in which `format` reads them.
         format: strptime pattern of the columns joined by a blank; `excel` for day numbers of a
-            spreadsheet, `unix`, `unix_ms`, `unix_us` or `unix_ns` for time since 1970; None: ISO
-            8601, seconds, or what the file itself tells beyond doubt.
+            spreadsheet, `unix`, `unix_ms`, `unix_us` or `unix_ns` for time since 1970, `seconds`
+            for seconds of any size; None: ISO 8601, seconds, or what the file itself tells beyond
+            doubt.
         sampling_rate_hz: counts time by rows instead, from the first stamp on.
         zone: of stamps without one: a name such as "Europe/Berlin", or "+01:00".
     """

@@ -11,6 +11,7 @@ import pytest
 from rga.errors import InputError
 from rga.model import Model, load_model, write_model
 from rga.records import Record, RecordMapping, load_record
+from rga.records.mapping import TimeColumns
 
 
 @pytest.fixture
@@ -63,6 +64,26 @@ def test_a_row_that_both_files_have_is_taken_once(tmp_path: Path, model: Model) 
     write(second, "time,D1,S1\n2024-01-01T01:00,3,9\n2024-01-01T02:00,5,6\n")
     with pytest.raises(InputError, match=r"b\.csv begins 0 s before .*a\.csv ends"):
         load_record([first, second], model)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "steps"),
+    [
+        (["01:00", "01:30", "02:00", "02:30"], ["02:00", "02:30", "03:00", "03:30"], [30] * 7),
+        (["01:00", "01:30"], ["02:00", "02:30", "03:00", "03:30"], [30, 90, 30, 30, 30]),
+        (["01:00", "01:30", "02:00", "02:30"], ["03:00", "03:30"], [30, 30, 30, 90, 30]),
+    ],
+)
+def test_files_that_part_the_hour_that_comes_twice(
+    first: list[str], second: list[str], steps: list[int], tmp_path: Path, model: Model
+) -> None:
+    files = [
+        write(tmp_path / name, "time,D1,S1\n" + "".join(f"2024-10-27 {at},1,2\n" for at in night))
+        for name, night in (("a.csv", first), ("b.csv", second))
+    ]
+    record = load_record(files, model, RecordMapping(time=TimeColumns(zone="Europe/Berlin")))
+    assert (np.diff(record.time) / 60).tolist() == steps
+    assert any("comes twice" in note for note in record.notes)
 
 
 def test_files_that_do_not_follow_each_other_are_refused(tmp_path: Path, model: Model) -> None:
