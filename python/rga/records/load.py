@@ -53,9 +53,11 @@ def load_record(
     else:
         paths, chosen = find_sources(source, model.path, mapping)  # type: ignore[arg-type]
         main = _logger(paths, chosen, model)
+    known = {**model.sensors, **model.context}
+    noises = [name for name, one in known.items() if one.noise is not None]
     for other in chosen.beside:
         paths = files_in(chosen.folder, other.files)
-        main = side_by_side(main, _logger(paths, other, model), other)
+        main = side_by_side(main, _logger(paths, other, model), other, noises)
     return _record(main, chosen, model)
 
 
