@@ -1,6 +1,7 @@
 """Rows of another logger, matched to those of a record."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -29,13 +30,18 @@ def side_by_side(
     Raises:
         InputError: both have a channel, their times cannot be compared, or no row matches.
     """
-    check_alike(record, other)
+    check_alike(record, other, "[time] and [beside.time]")
     if both := record.values.keys() & other.values.keys():
         name = sorted(both)[0]
         raise InputError(
             f"{record.where} and {other.where} both give {name!r}",
             other.where,
             "list it under [unused] of one of them",
+        )
+    if not other.values:
+        said = f"{Path(other.where).name} gives no channel: all that it has is unused"
+        return replace(
+            record, unused={**record.unused, **other.unused}, notes=(*record.notes, said)
         )
     times = since(record.clock, other.clock) + other.clock.seconds + how.shift_s
     rows = record.clock.seconds

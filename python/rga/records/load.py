@@ -71,7 +71,7 @@ def _logger(paths: Sequence[Path], mapping: FileMapping, model: Model) -> Logger
 
 def _record(found: LoggerData, mapping: RecordMapping, model: Model) -> Record:
     where = found.where
-    left_out = {*mapping.unused}.union(*(other.unused for other in mapping.beside))
+    left_out = {*mapping.left_out}.union(*(other.left_out for other in mapping.beside))
     sensors = tuple(name for name in model.sensors if name in found.values)
     missing = [name for name in model.sensors if name not in sensors and name not in left_out]
     if missing:
@@ -95,7 +95,7 @@ def _record(found: LoggerData, mapping: RecordMapping, model: Model) -> Record:
         sensors=sensors,
         readings=readings,
         contexts=contexts,
-        unused=found.unused,
+        unused={name: why for name, why in found.unused.items() if name not in found.values},
         zero=zero,
         warnings=[
             *found.warnings,

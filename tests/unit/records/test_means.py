@@ -16,9 +16,8 @@ def every(step: float, until: float = 23 * 3600.0) -> FloatArray:
 @pytest.mark.parametrize("step", [1.0, 60.0, 600.0, 700.0, 3600.0])
 def test_a_signal_that_grows_evenly_keeps_its_value(step: float) -> None:
     times = every(step)
-    means, counts = means_about(times, times / 3600, HOURS, 3600.0)
+    means, _ = means_about(times, times / 3600, HOURS, 3600.0)
     np.testing.assert_allclose(means[1:-1], HOURS[1:-1] / 3600, rtol=1e-10)
-    assert (counts[1:-1] == 2 * (1800 // step) + 1).all()
 
 
 def test_so_it_does_at_uneven_times_and_with_readings_missing() -> None:

@@ -219,3 +219,32 @@ def test_a_channel_that_stands_still_is_warned_of(model: Model) -> None:
     count = 60
     frame = pl.DataFrame({"time": np.arange(count), "D1": np.arange(count), "S1": [7.0] * count})
     assert load_record(frame, model).warnings == ["S1 reads 7 in all 60 rows: it never moves"]
+
+
+def test_zones_that_differ_are_told_with_their_tables(tmp_path: Path, model: Model) -> None:
+    month(tmp_path, "main.csv", JANUARY)
+    write(tmp_path / "w.csv", "time,temperature\n2024-01-31T23:30+01:00,1\n")
+    write(tmp_path / "import.toml", 'files = ["main.csv"]\n[[beside]]\nfiles = ["w.csv"]\n')
+    with pytest.raises(InputError, match=r"zone under \[time\] and \[beside.time\] in import.toml"):
+        load_record(tmp_path, model)
+    with pytest.raises(InputError, match=r"zone under \[time\] in import.toml"):
+        load_record([tmp_path / "main.csv", tmp_path / "w.csv"], model, RecordMapping(
+            unused={"temperature": "not asked for", "D1": "-", "S1": "-"}))  # fmt: skip
+
+
+@pytest.mark.parametrize(("value", "warned"), [(-4.1, 1), (-3.9, 0), (103.9, 0), (104.1, 1)])
+def test_a_context_leaves_its_range_by_more_than_its_noise(
+    value: float, warned: int, two_bars: dict[str, Any]
+) -> None:
+    two_bars["context"]["load"].update(range=[0, 100], noise=1.0)
+    given = {"time": [0, 1], "D1": [1, 2], "S1": [1, 2], "load": [50.0, value]}
+    record = load_record(pl.DataFrame(given), Model.model_validate(two_bars))
+    assert sum("lies outside its range" in text for text in record.warnings) == warned
+
+
+def test_without_a_noise_any_value_beyond_the_range_is_told(two_bars: dict[str, Any]) -> None:
+    two_bars["context"]["load"].update(range=[0, 100])
+    two_bars["context"]["load"].pop("noise", None)
+    given = {"time": [0, 1], "D1": [1, 2], "S1": [1, 2], "load": [50.0, -0.1]}
+    record = load_record(pl.DataFrame(given), Model.model_validate(two_bars))
+    assert any("lies outside its range 0..100" in text for text in record.warnings)
