@@ -53,8 +53,8 @@ def load_record(
     else:
         paths, chosen = find_sources(source, model.path, mapping)  # type: ignore[arg-type]
         main = _logger(paths, chosen, model)
-    known = {**model.sensors, **model.context}
-    noises = [name for name, one in known.items() if one.noise is not None]
+    noises = {name for name, one in model.sensors.items() if one.noise is not None}
+    noises |= {name for name, one in model.context.items() if one.noise is not None}
     for other in chosen.beside:
         paths = files_in(chosen.folder, other.files)
         main = side_by_side(main, _logger(paths, other, model), other, noises)
