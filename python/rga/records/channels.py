@@ -43,12 +43,13 @@ def sources_of(
     named = _named(table, mapping, known)
     sources: dict[str, ColumnSource] = {}
     unknown = []
+    left_out = mapping.left_out.keys()
     for column in table.frame.columns:
         if column in time_columns and column not in named:
             continue
         name, unit = _name_and_unit(table, mapping, column, known)
         name = named.get(column, name)
-        if {name, column, table.names.get(column, column)} & mapping.unused.keys():
+        if {name, column, table.names.get(column, column)} & left_out:
             continue
         if name not in known:
             if column not in table.bookkeeping:
@@ -137,7 +138,7 @@ def unused_in(table: Table, mapping: FileMapping, model: Model) -> dict[str, str
     }
     return {
         name: reason
-        for name, reason in mapping.unused.items()
+        for name, reason in mapping.left_out.items()
         if name in present or name in model.sensors
     }
 

@@ -18,6 +18,8 @@ def zone_of(text: str, where: str) -> tzinfo:
 
     >>> zone_of("+01:00", "r.csv"), zone_of("Europe/Berlin", "r.csv")
     (datetime.timezone(datetime.timedelta(seconds=3600)), zoneinfo.ZoneInfo(key='Europe/Berlin'))
+    >>> zone_of("UTC+1", "r.csv") == zone_of("+0100", "r.csv") == zone_of("+01:00", "r.csv")
+    True
 
     Raises:
         InputError: there is no such zone.
