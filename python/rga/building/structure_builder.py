@@ -51,6 +51,25 @@ class StructureBuilder:
             given = about if isinstance(about, About) else dict(about)
             self._content["about"] = checked(About, given, self._where)
 
+    def about(
+        self,
+        client: str = "",
+        structure: str = "",
+        author: str = "",
+        date: str = "",
+        version: str = "",
+    ) -> Self:
+        """Whom and what the model is for, also of a ready-made structure: the head of reports."""
+        given = {
+            "client": client,
+            "structure": structure,
+            "author": author,
+            "date": date,
+            "version": version,
+        }
+        self._content["about"] = checked(About, given, self._where)
+        return self
+
     @property
     def nodes(self) -> dict[str, tuple[float, float, float]]:
         """Coordinates of the nodes so far [m]."""

@@ -7,6 +7,7 @@ from html import escape
 from typing import Any
 
 from rga.checking.finding import Finding
+from rga.checking.record_summary import RecordSummary
 
 #: findings that a notebook shows; it counts the others
 MOST_SHOWN = 30
@@ -18,6 +19,7 @@ class CheckResult:
 
     Attributes:
         findings: errors, then warnings, then notes.
+        record: what was read as the record; None: none was, or it could not be.
 
     >>> checked = CheckResult((Finding("note", "group 'a'", "no effect names it", "leave it"),))
     >>> checked.ok
@@ -28,6 +30,7 @@ class CheckResult:
     """
 
     findings: tuple[Finding, ...] = ()
+    record: RecordSummary | None = None
 
     @property
     def ok(self) -> bool:
@@ -41,11 +44,13 @@ class CheckResult:
         return f"{', '.join(said)}." if said else "Nothing looks wrong."
 
     def __str__(self) -> str:
-        return "\n".join([*map(str, self.findings), self.sentence()])
+        read = [f"record: {line}" for line in self.record.lines()] if self.record else []
+        return "\n".join([*read, *map(str, self.findings), self.sentence()])
 
     def content(self) -> dict[str, Any]:
-        """The findings as they are written to JSON."""
-        return {"ok": self.ok, "findings": [asdict(one) for one in self.findings]}
+        """The findings as they are written to JSON, and what was read as the record."""
+        read = {"record": asdict(self.record)} if self.record else {}
+        return {"ok": self.ok, **read, "findings": [asdict(one) for one in self.findings]}
 
     def to_json(self) -> str:
         """The same as text."""
@@ -61,4 +66,6 @@ class CheckResult:
         rest = f"<p>... and {more} more.</p>" if more > 0 else ""
         head = "<tr><th></th><th>where</th><th>what</th><th>remedy</th></tr>"
         table = f"<table>{head}{rows}</table>" if rows else ""
-        return f"<p>{escape(self.sentence())}</p>{table}{rest}"
+        lines = self.record.lines()[:MOST_SHOWN] if self.record else []
+        read = "".join(f"<p>{escape(line)}</p>" for line in lines)
+        return f"{read}<p>{escape(self.sentence())}</p>{table}{rest}"

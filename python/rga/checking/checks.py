@@ -11,6 +11,7 @@ from rga.checking.finding import Finding, refused
 from rga.checking.measured import Measured
 from rga.checking.of_record.channels import channels
 from rga.checking.over_ranges import OverRanges
+from rga.checking.record_summary import summary_of
 from rga.checking.registry import OF_MODEL, OF_RECORD
 from rga.errors import InputError
 from rga.given import as_record
@@ -37,7 +38,7 @@ def check(
         mapping: how to read the file of the record, as `load_record` takes it.
 
     Returns:
-        Errors, then warnings, then notes.
+        What was read as the record; errors, then warnings, then notes.
 
     >>> bar = {"nodes": ["A", "B"], "section": "bar", "material": "steel"}
     >>> from rga.model import read_model
@@ -57,22 +58,24 @@ def check(
         return CheckResult(tuple(refused(error)))
     over = OverRanges(structure)
     found = list(_all(OF_MODEL, over))
+    summary = None
     if record is not None:
-        found += _of_record(over, record, mapping)
+        try:
+            given = as_record(record, over.model, mapping)
+        except InputError as error:
+            found += refused(error)
+        else:
+            summary = summary_of(given, over.model)
+            found += _of_record(over, given)
     # What several checks meet is told once.
     found = list(dict.fromkeys(found))
-    return CheckResult(tuple(sorted(found, key=lambda one: ORDER.index(one.severity))))
+    ordered = sorted(found, key=lambda one: ORDER.index(one.severity))
+    return CheckResult(tuple(ordered), summary)
 
 
-def _of_record(
-    over: OverRanges, record: Record | RecordSource, mapping: str | Path | RecordMapping | None
-) -> list[Finding]:
-    try:
-        given = as_record(record, over.model, mapping)
-    except InputError as error:
-        return refused(error)
-    measured = Measured(over, given)
-    enough = len(given) >= measured.criteria.record.least_rows
+def _of_record(over: OverRanges, record: Record) -> list[Finding]:
+    measured = Measured(over, record)
+    enough = len(record) >= measured.criteria.record.least_rows
     return list(_all(OF_RECORD if enough else [channels], measured))
 
 

@@ -300,4 +300,5 @@ def _account(
         noise=placed(whole.noise),
         contexts=believed.belief.table,
         found=found,
+        recorded=len(prepared.chosen),
     )

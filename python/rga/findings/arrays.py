@@ -31,6 +31,8 @@ class DiagnosisArrays:
         noise: noise that a faultless simulation would still show, contexts' errors included,
             float[rows, sensors].
         contexts: as the extended model believes them, `time` [s] included, float[rows] each.
+        recorded: rows of the record as it was given, of which those of `record` were analysed; 0
+            where that is not known.
         found: the end of the search, from which the grounds of the findings are worked out when
             they are asked for; None where nothing was searched.
     """
@@ -46,6 +48,7 @@ class DiagnosisArrays:
     noise: FloatArray
     contexts: Values = field(default_factory=dict)
     found: "Found | None" = None
+    recorded: int = 0
 
     @property
     def since(self) -> int:

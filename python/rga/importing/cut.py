@@ -8,10 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.importing.draft import ModelDraft
-
-#: share of a member's length by which a node may lie off its line, or a load short of an end
-NEAR = 1e-9
+from rga.importing.draft import NEAR, ModelDraft
 
 
 @dataclass(frozen=True)
@@ -28,11 +25,13 @@ class CutMember:
     """A member of a file as members of the model, in order.
 
     Attributes:
+        name: of the file's member.
         axes: local axes as rows, in the model's axes, float[3, 3].
         parts: the members; none where they could not be added.
     """
 
     draft: ModelDraft
+    name: str
     axes: FloatArray
     parts: list[CutPart] = field(default_factory=list)
 
@@ -46,7 +45,9 @@ class CutMember:
         return np.asarray(self.axes @ np.array(self.draft.vector(vector)))
 
     def load_point(self, case: str, place: float, force: FloatArray, where: str) -> None:
-        """Put a point load [N] in local axes at a place [m]."""
+        """Put a point load [N] in local axes at a place [m]; one beyond its ends is refused."""
+        if not self.draft.within(self.name, [place], self.length, where):
+            return
         place = min(max(place, 0.0), self.length)
         part = next((one for one in self.parts if place <= one.end), self.parts[-1])
         at = min(max(place - part.start, 0.0), part.end - part.start)
@@ -59,7 +60,12 @@ class CutMember:
         sizes: tuple[FloatArray, FloatArray],
         where: str,
     ) -> None:
-        """Put a load that grows from one size to another in local axes [N/m] between two places."""
+        """Put a load that grows from one size to another in local axes [N/m] between two places.
+
+        One that reaches beyond the ends, or runs backwards, is refused.
+        """
+        if not self.draft.within(self.name, places, self.length, where):
+            return
         (start, end), (first, last) = places, sizes
         near = NEAR * self.length
         for part in self.parts:
@@ -103,7 +109,7 @@ def add_cut(
     Returns:
         What became of it; None where it has no length.
     """
-    cut = CutMember(draft, axes)
+    cut = CutMember(draft, name, axes)
     pairs = list(pairwise(nodes))
     at = 0.0
     for number, pair in enumerate(pairs, start=1):
@@ -121,6 +127,8 @@ def add_cut(
             return None
         cut.parts.append(CutPart(part, at, at + size))
         at += size
+    draft.frames += 1
+    draft.cut_frames += len(pairs) > 1
     if len(pairs) > 1:
         between = ", ".join(nodes[1:-1][:10]) + (" ..." if len(nodes) > 12 else "")
         said = f"member {name} is {len(pairs)} members, {name} 1 and so on: {between} cut it"

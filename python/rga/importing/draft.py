@@ -15,6 +15,8 @@ from rga.model.schema import DOFS
 
 #: axes of a source whose y points up, in axes whose z does: a quarter turn about x
 TURNED = {"ux": "ux", "uy": "uz", "uz": "uy", "rx": "rx", "ry": "rz", "rz": "ry"}
+#: share of a member's length by which a node may lie off its line, or a load beyond an end
+NEAR = 1e-9
 Shape = tuple[str, tuple[float, ...]]
 
 
@@ -50,6 +52,7 @@ class ModelDraft:
         self._on_members: dict[str, dict[Shape, list[str]]] = {}
         self._settlements: list[dict[str, Any]] = []
         self._factors: dict[str, float] = {}
+        self.frames = self.cut_frames = 0
 
     def vector(self, components: Sequence[float]) -> list[float]:
         """A vector of the source in the model's axes."""
@@ -175,8 +178,33 @@ class ModelDraft:
             key, values = "point", (*values, rest[0][1])
         else:
             key = kind
+        places = values[:2] if kind == "trapezoid" else [rest[0][1]] if kind == "point" else []
+        if not self._within(member, list(places), where):
+            return
         loads = self._on_members.setdefault(case, {})
         loads.setdefault((key, tuple(map(float, values))), []).append(member)
+
+    def _within(self, member: str, places: Sequence[float], where: str) -> bool:
+        """Whether places on a member lie on it, one behind the other; refused where not."""
+        first, last = (np.array(self.nodes[node]) for node in self.members[member]["nodes"])
+        return self.within(member, places, float(np.linalg.norm(last - first)), where)
+
+    def within(self, member: str, places: Sequence[float], length: float, where: str) -> bool:
+        """Whether places [m] lie on a member of a length [m], one behind the other; refused if not.
+
+        What rounding leaves, a billionth of the length, is no fault.
+        """
+        near = NEAR * length
+        if all(-near <= place <= length + near for place in places):
+            if len(places) < 2 or places[1] - places[0] > near:
+                return True
+            said = f"a load from {places[0]:g} m to {places[1]:g} m, which runs backwards or"
+            said += f" has no length, on member {member}"
+        else:
+            at = " to ".join(f"{place:g} m" for place in places)
+            said = f"a load at {at} on member {member}, which is {length:g} m long"
+        self.notes.refuse(where, said, "correct its place", "partial")
+        return False
 
     def settle(self, case: str, node: str, dof: str, by: float, where: str) -> None:
         """Move a held degree of freedom of a node [m or rad]."""
@@ -252,14 +280,17 @@ class ModelDraft:
         self.plane = plane
 
     def counts(self) -> dict[str, int]:
-        """How many parts there are, by kind."""
+        """How many parts there are, by kind; `frames` of the file where some of them were cut."""
         parts: dict[str, Sized] = {
             "nodes": self.nodes, "members": self.members, "supports": self.supports,
             "springs": self.springs, "ties": self.ties, "masses": self.masses,
             "materials": self.materials, "sections": self.sections,
             "load cases": {*self._forces, *self._on_members},
         }  # fmt: skip
-        return {kind: len(found) for kind, found in parts.items()}
+        counts = {kind: len(found) for kind, found in parts.items()}
+        if self.cut_frames:
+            counts |= {"frames": self.frames, "frames cut": self.cut_frames}
+        return counts
 
     def content(self) -> dict[str, Any]:
         """The model file."""

@@ -87,8 +87,12 @@ def _read_file(path: Path, chosen: Chosen) -> ModelDraft:
         from rga.importing.pynite import read_pynite, read_pynite_script, says_pynite
 
         if suffix == ".py" and says_pynite(path):
-            made, said = read_pynite_script(path)
+            made, said = read_pynite_script(path, chosen.without)
             draft = read_pynite(made, path.stem, chosen)
+            for words, where in made.unfollowed:
+                draft.notes.refuse(
+                    where, words, "write it as PyNite's add_... and def_...", "partial"
+                )
             for words, where in said:
                 draft.notes.say("assumed", where, words)
             return draft

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rga.errors import InputError
@@ -22,16 +22,27 @@ class Sheet:
         columns: place of each column by its name without unit, in small letters.
         units: of the columns that state one.
         cells: rows below the heads, with their numbers in the file.
+        asked: columns that a reader has asked for.
     """
 
     name: str
     columns: dict[str, int]
     units: dict[str, str]
     cells: list[tuple[int, Sequence[Any]]]
+    asked: set[str] = field(default_factory=set)
 
     def __iter__(self) -> "Iterator[SheetRow]":
         for number, cells in self.cells:
             yield SheetRow(self, number, cells)
+
+    def unread(self) -> list[str]:
+        """Columns with cells that are filled and that no reader has asked for."""
+        rows = list(self)
+        return [
+            name
+            for name in self.columns
+            if name not in self.asked and any(row.filled(name) for row in rows)
+        ]
 
     def has(self, name: str) -> bool:
         """Whether there is a column."""
@@ -54,6 +65,11 @@ class SheetRow:
 
     def raw(self, name: str) -> Any:
         """A cell; None where it is empty, or there is no such column."""
+        self.sheet.asked.add(name.lower())
+        return self.filled(name)
+
+    def filled(self, name: str) -> Any:
+        """A cell, without asking for its column."""
         place = self.sheet.columns.get(name.lower())
         if place is None or place >= len(self.cells):
             return None
@@ -134,11 +150,24 @@ def read_number(cell: Any, name: str, where: str) -> float:
     return number
 
 
-def sheet_of(name: str, rows: Iterator[Sequence[Any]]) -> Sheet | None:
+def _under_heads(name: str, number: int, row: Sequence[Any], places: set[int]) -> None:
+    for place, cell in enumerate(row):
+        if place not in places and str(cell or "").strip():
+            raise InputError(
+                f"the cell {str(cell)[:40]!r} stands under no head: the row has more cells than "
+                "the table has columns", f"{name}, row {number}",
+                "put a number with a decimal comma in quotes, or part columns by semicolons",
+            )  # fmt: skip
+
+
+def sheet_of(name: str, rows: Iterator[Sequence[Any]], *, headed: bool = False) -> Sheet | None:
     """A sheet of its rows, the first of which that is not empty has the heads; None: it is empty.
 
+    Args:
+        headed: whether every cell must stand under a head, as commas that part cells demand.
+
     Raises:
-        InputError: a column stands twice, or there are too many rows.
+        InputError: a column stands twice, a cell has no head, or there are too many rows.
     """
     columns: dict[str, int] = {}
     units: dict[str, str] = {}
@@ -153,6 +182,8 @@ def sheet_of(name: str, rows: Iterator[Sequence[Any]]) -> Sheet | None:
                 "give the part that describes the structure",
             )
         if columns:
+            if headed:
+                _under_heads(name, number, row, set(columns.values()))
             cells.append((number, row))
             continue
         for place, cell in enumerate(row):

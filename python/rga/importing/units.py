@@ -20,6 +20,8 @@ LENGTHS = {
 #: parts of a system of units that change no number of a static model
 OTHERS = {"c", "f", "k", "s", "sec", "degc", "degf"}
 SUPERSCRIPTS = str.maketrans({"²": "2", "³": "3", "⁴": "4", "⁶": "6", "·": "*", "°": "deg"})
+#: thousandths of a newton or a pascal, which no structure has
+THOUSANDTH = re.compile(r"\bm(Pa|N(?=m|\b|[^A-Za-z]))")
 #: force and length written as one word, as `kNm`
 RUN_TOGETHER = re.compile(r"\b([kM]?N)(mm|m)\b")
 
@@ -105,6 +107,11 @@ def to_si(unit: str, si: str, where: str) -> float:
     >>> to_si("N/mm²", "Pa", "E")
     1000000.0
     """
+    if THOUSANDTH.search(unit):
+        raise InputError(
+            f"{unit!r} is thousandths, and most likely millions are meant", where,
+            f"write {THOUSANDTH.sub(lambda found: 'M' + found[0][1:], unit.strip())}",
+        )  # fmt: skip
     factor = _factor(unit.strip(), si)
     if factor is None:
         raise InputError(

@@ -81,7 +81,7 @@ def read_csv_folder(paths: list[Path]) -> dict[str, Sheet]:
         delimiter = ";" if first.count(";") > first.count(",") else ","
         try:
             rows = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)
-            sheet = sheet_of(path.name, iter(rows))
+            sheet = sheet_of(path.name, iter(rows), headed=True)
         except csv.Error as error:
             raise InputError(
                 f"the table cannot be read: {error}", str(path), "mend its quotes"

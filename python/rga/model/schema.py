@@ -217,7 +217,8 @@ class Sensor(Part):
             if self.member is None:
                 raise ValueError(f"a {self.kind} sensor needs 'member'")
         elif self.node is None or self.direction is None:
-            raise ValueError(f"a {self.kind} sensor needs 'node' and 'direction'")
+            lacking = [name for name in ("node", "direction") if getattr(self, name) is None]
+            raise ValueError(f"a {self.kind} sensor needs {' and '.join(map(repr, lacking))}")
         elif not any(self.direction):
             raise ValueError("the direction [0, 0, 0] points nowhere")
         return self

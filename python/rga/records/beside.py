@@ -1,5 +1,7 @@
 """Rows of another logger, matched to those of a record."""
 
+from collections.abc import Collection
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -8,25 +10,27 @@ from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
+from rga.records.channels import quoted
 from rga.records.logger_data import LoggerData, check_alike, later, since
 from rga.records.mapping import Beside
-
-#: usual steps between two rows, beyond which nothing is put between them
-GAP = 1.5
+from rga.records.means import GAP, means_about
 
 
-def side_by_side(record: LoggerData, other: LoggerData, how: Beside) -> LoggerData:
+def side_by_side(
+    record: LoggerData, other: LoggerData, how: Beside, noises: Collection[str] = ()
+) -> LoggerData:
     """A record with the channels of another logger.
 
     Args:
         record: whose rows are kept, unless means are taken on the rows of a slower logger.
         other: the other logger.
         how: rows are matched.
+        noises: channels whose noise the model states.
 
     Raises:
         InputError: both have a channel, their times cannot be compared, or no row matches.
     """
-    check_alike(record, other)
+    check_alike(record, other, "[time] and [beside.time]")
     if both := record.values.keys() & other.values.keys():
         name = sorted(both)[0]
         raise InputError(
@@ -34,27 +38,35 @@ def side_by_side(record: LoggerData, other: LoggerData, how: Beside) -> LoggerDa
             other.where,
             "list it under [unused] of one of them",
         )
+    if not other.values:
+        said = f"{Path(other.where).name} gives no channel: all that it has is unused"
+        return replace(
+            record, unused={**record.unused, **other.unused}, notes=(*record.notes, said)
+        )
     times = since(record.clock, other.clock) + other.clock.seconds + how.shift_s
     rows = record.clock.seconds
-    slower = max(_step(rows), _step(times))
     name = Path(other.where).name
+    slower = max(_step(rows), _step(times))
     clock, own = record.clock, record.values
     if how.match == "mean":
         width = how.tolerance_s * 2 if how.tolerance_s else slower
         if _step(times) > _step(rows):
-            inside = (times >= rows[0] - width / 2) & (times <= rows[-1] + width / 2)
-            if not inside.any():
+            own, counts = _means(rows, own, times, width)
+            present = np.any([np.isfinite(values) for values in own.values()], axis=0)
+            if not present.any():
                 raise _no_match(record, other)
-            grid = times[inside]
-            own = {key: _means(rows, values, grid, width) for key, values in own.items()}
-            taken = {key: values[inside] for key, values in other.values.items()}
-            clock = later(record.clock, grid)
-            said = f"the record has the {len(grid)} rows of {name}, with means over {width:g} s"
+            own = {key: values[present] for key, values in own.items()}
+            taken = {key: values[present] for key, values in other.values.items()}
+            clock = later(record.clock, times[present])
+            said = f"the record has {present.sum()} rows of {name}, with means over {width:g} s"
+            averaged = own.keys()
         else:
-            taken = {
-                key: _means(times, values, rows, width) for key, values in other.values.items()
-            }
+            taken, counts = _means(times, other.values, rows, width)
             said = f"{name} is taken as means over {width:g} s about each row"
+            averaged = taken.keys()
+        said += _readings(counts)
+        if stated := [key for key in averaged if key in noises]:
+            said += f"; the noise that the model states of {quoted(stated)} is that of one reading"
         matched = np.any([np.isfinite(values) for values in taken.values()], axis=0)
     else:
         if how.match == "nearest":
@@ -79,6 +91,27 @@ def side_by_side(record: LoggerData, other: LoggerData, how: Beside) -> LoggerDa
         warnings=(*record.warnings, *(f"{name}: {text}" for text in other.warnings)),
         sha256=sha256((record.sha256 + other.sha256).encode()).hexdigest(),
     )
+
+
+def _means(
+    times: FloatArray, values: dict[str, FloatArray], rows: FloatArray, width: float
+) -> tuple[dict[str, FloatArray], NDArray[np.int64]]:
+    """Means about each row by channel, and how many readings those have that are there."""
+    found = {name: means_about(times, column, rows, width) for name, column in values.items()}
+    counts = np.concatenate([number for _, number in found.values()])
+    return {name: means for name, (means, _) in found.items()}, counts[counts > 0]
+
+
+def _readings(counts: NDArray[np.int64]) -> str:
+    """In words, of how many readings means are.
+
+    >>> _readings(np.array([7, 7])), _readings(np.array([5, 7, 7]))
+    (', of 7 readings each', ', of 5 to 7 readings each')
+    """
+    if not len(counts):
+        return ""
+    least, most = int(counts.min()), int(counts.max())
+    return f", of {least if least == most else f'{least} to {most}'} readings each"
 
 
 def _step(times: FloatArray) -> float:
@@ -120,25 +153,6 @@ def _between(
         )
         taken[name] = np.where(apart <= within, mixed, np.nan)
     return taken, apart
-
-
-def _means(times: FloatArray, values: FloatArray, grid: FloatArray, width: float) -> FloatArray:
-    """Means of the values there are within half a width of every row of a grid, else NaN.
-
-    >>> _means(np.arange(6.0), np.array([0, 1, 2, np.nan, 4, 5]), np.array([1.0, 3.0, 9.0]), 3.0)
-    array([ 1.,  3., nan])
-    """
-    held = np.isfinite(values)
-    # About a middle, sums lose no digits.
-    middle = float(np.mean(values[held])) if held.any() else 0.0
-    sums = np.concatenate([[0.0], np.cumsum(np.where(held, values - middle, 0.0))])
-    counts = np.concatenate([[0], np.cumsum(held)])
-    first = np.searchsorted(times, grid - width / 2, side="left")
-    last = np.searchsorted(times, grid + width / 2, side="left")
-    number = counts[last] - counts[first]
-    total = sums[last] - sums[first]
-    means = np.divide(total, number, out=np.full(len(grid), np.nan), where=number > 0)
-    return np.asarray(means + middle)
 
 
 def _no_match(record: LoggerData, other: LoggerData) -> InputError:

@@ -11,7 +11,7 @@ from rga.model import Model
 from rga.records.mapping import Channel, FileMapping
 from rga.records.numbers import missing_words
 from rga.records.table import Table
-from rga.records.units import conversion
+from rga.records.units import contradict, conversion, name_and_unit, states_none
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,13 @@ def sources_of(
     named = _named(table, mapping, known)
     sources: dict[str, ColumnSource] = {}
     unknown = []
+    left_out = mapping.left_out.keys()
     for column in table.frame.columns:
         if column in time_columns and column not in named:
             continue
         name, unit = _name_and_unit(table, mapping, column, known)
         name = named.get(column, name)
-        if {name, column, table.names.get(column, column)} & mapping.unused.keys():
+        if {name, column, table.names.get(column, column)} & left_out:
             continue
         if name not in known:
             if column not in table.bookkeeping:
@@ -61,6 +62,8 @@ def sources_of(
             )
         else:
             channel = mapping.channels.get(name, Channel())
+            if channel.unit is None:
+                _check_unit(table, column, name, model)
             sources[name] = ColumnSource(column, channel, channel.unit or unit)
     if unknown:
         raise InputError(
@@ -135,7 +138,7 @@ def unused_in(table: Table, mapping: FileMapping, model: Model) -> dict[str, str
     }
     return {
         name: reason
-        for name, reason in mapping.unused.items()
+        for name, reason in mapping.left_out.items()
         if name in present or name in model.sensors
     }
 
@@ -183,14 +186,30 @@ def _named(table: Table, mapping: FileMapping, known: Mapping[str, object]) -> d
     return named
 
 
+def _check_unit(table: Table, column: str, name: str, model: Model) -> None:
+    """Refuses a unit in the name of a column that another statement of its unit contradicts."""
+    named, stated = name_and_unit(column)[1], table.units.get(column)
+    if named is not None and stated is not None and contradict(named, stated):
+        sensors = {one: sensor.unit for one, sensor in model.sensors.items()}
+        unit = sensors.get(name) or model.context[name].unit
+        raise InputError(
+            f"the name of {name!r} says {named!r}, the line of units says {stated!r}",
+            f"{table.path}, column {column!r}",
+            f'state it: {name} = {{ unit = "{unit}" }} under [channels] in import.toml',
+        )
+
+
 def _name_and_unit(
     table: Table, mapping: FileMapping, column: str, known: Mapping[str, object]
 ) -> tuple[str, str | None]:
     """Channel and unit that a column states: by the header pattern, or by itself."""
     if mapping.header is not None:
         name, unit = mapping.channel_of(column)
-        return name, unit or table.units.get(column)
+        if unit is not None and not states_none(unit):
+            return name, unit
+        return name, table.units.get(column)
     if column in known and column in table.names:  # brackets that are part of the name
-        return column, None
+        unit = table.units.get(column)
+        return column, None if unit == name_and_unit(column)[1] else unit
     bare = table.names.get(column, column)
     return (bare if bare in known else column), table.units.get(column)

@@ -37,7 +37,9 @@ def table_of_frame(given: Any) -> Table:
     for name in frame.columns:
         digest.update(name.encode())
         digest.update(frame.select(name).write_csv().encode())
-    return Table(Path("data frame"), frame, "row", 1, digest.hexdigest(), format="data frame")
+    return Table(
+        Path("data frame"), frame, "row", 1, sha256=digest.hexdigest(), format="data frame"
+    )
 
 
 def _of_pandas(frame: Any) -> pl.DataFrame:

@@ -53,9 +53,11 @@ def load_record(
     else:
         paths, chosen = find_sources(source, model.path, mapping)  # type: ignore[arg-type]
         main = _logger(paths, chosen, model)
+    noises = {name for name, one in model.sensors.items() if one.noise is not None}
+    noises |= {name for name, one in model.context.items() if one.noise is not None}
     for other in chosen.beside:
         paths = files_in(chosen.folder, other.files)
-        main = side_by_side(main, _logger(paths, other, model), other)
+        main = side_by_side(main, _logger(paths, other, model), other, noises)
     return _record(main, chosen, model)
 
 
@@ -69,7 +71,7 @@ def _logger(paths: Sequence[Path], mapping: FileMapping, model: Model) -> Logger
 
 def _record(found: LoggerData, mapping: RecordMapping, model: Model) -> Record:
     where = found.where
-    left_out = {*mapping.unused}.union(*(other.unused for other in mapping.beside))
+    left_out = {*mapping.left_out}.union(*(other.left_out for other in mapping.beside))
     sensors = tuple(name for name in model.sensors if name in found.values)
     missing = [name for name in model.sensors if name not in sensors and name not in left_out]
     if missing:
@@ -93,7 +95,7 @@ def _record(found: LoggerData, mapping: RecordMapping, model: Model) -> Record:
         sensors=sensors,
         readings=readings,
         contexts=contexts,
-        unused=found.unused,
+        unused={name: why for name, why in found.unused.items() if name not in found.values},
         zero=zero,
         warnings=[
             *found.warnings,

@@ -122,8 +122,11 @@ def later(clock: Clock, seconds: FloatArray) -> Clock:
     return replace(clock, seconds=seconds - seconds[0], start=start)
 
 
-def check_alike(one: LoggerData, other: LoggerData) -> None:
+def check_alike(one: LoggerData, other: LoggerData, stated: str = "[time]") -> None:
     """Refuses times that cannot be set against each other.
+
+    Args:
+        stated: where import.toml says how their times are read.
 
     Raises:
         InputError: one counts seconds and the other has time stamps, or one has a zone.
@@ -133,7 +136,7 @@ def check_alike(one: LoggerData, other: LoggerData) -> None:
         raise InputError(
             f"the times of {one.where} are {kinds[0]}, those of {other.where} are {kinds[1]}",
             other.where,
-            "state [time] columns, format or zone so that both are alike",
+            f"state columns, format or zone under {stated} in import.toml so that both are alike",
         )
 
 

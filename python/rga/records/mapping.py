@@ -18,6 +18,8 @@ from pydantic import (
 from rga.errors import InputError
 
 MAPPING_NAME = "import.toml"
+#: begins a reason that `rga import-record` gave, and that nobody has confirmed
+TO_CHECK = "TO CHECK"
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 _Line = Annotated[int, Field(ge=1, strict=True)]
@@ -45,8 +47,9 @@ class TimeColumns(_Table):
     Attributes:
         columns: the columns that hold it, in the order in which `format` reads them.
         format: strptime pattern of the columns joined by a blank; `excel` for day numbers of a
-            spreadsheet, `unix`, `unix_ms`, `unix_us` or `unix_ns` for time since 1970; None: ISO
-            8601, seconds, or what the file itself tells beyond doubt.
+            spreadsheet, `unix`, `unix_ms`, `unix_us` or `unix_ns` for time since 1970, `seconds`
+            for seconds of any size; None: ISO 8601, seconds, or what the file itself tells beyond
+            doubt.
         sampling_rate_hz: counts time by rows instead, from the first stamp on.
         zone: of stamps without one: a name such as "Europe/Berlin", or "+01:00".
     """
@@ -147,6 +150,24 @@ class FileMapping(_Table):
             other = "thousands" if self.decimal == self.thousands else "delimiter"
             raise ValueError(f"decimal and {other} are the same sign")
         return self
+
+    @property
+    def left_out(self) -> dict[str, str]:
+        """What is unused, but for what is still to be checked and what `channels` names since.
+
+        >>> FileMapping(
+        ...     channels={"S1": {"column": "a"}, "S2": {"column": "b"}},
+        ...     unused={"a": "TO CHECK: no name is like it", "b": "broken"},
+        ... ).left_out
+        {'b': 'broken'}
+        """
+        named = {name: one.column for name, one in self.channels.items() if one.column}
+        claimed = {*named, *named.values()}
+        return {
+            name: reason
+            for name, reason in self.unused.items()
+            if not (name in claimed and reason.startswith(TO_CHECK))
+        }
 
     def channel_of(self, column: str) -> tuple[str, str | None]:
         """Channel and unit that a column's name states by the header pattern."""

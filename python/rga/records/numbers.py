@@ -16,12 +16,14 @@ MISSING_WORDS = frozenset({
     "NAN", "NaN", "nan", "INF", "-INF", "+INF", "-", "--", "---", "#N/A", "#NV", "#DIV/0!", "null",
     "NULL", "OVLD", "OL", "OFL", "Overrange", "OverRange", "OVERRANGE", "overrange", "Overflow",
     "OVERFLOW", "Overload", "OVERLOAD", "Underrange", "UnderRange", "UNDERRANGE", "1.#QNAN",
-    "-1.#IND", "1.#INF", "-1.#INF", "1.#IO", "1.#R",
+    "-1.#IND", "1.#INF", "-1.#INF", "1.#IO", "1.#R", "n/a", "N/A", "#NA",
 })  # fmt: skip
 #: signs that part thousands and nothing else
 THOUSANDS = " '’\u00a0\u202f\u2009"
-_SIGN_AND_DIGITS = r"[+-]?\d{1,3}"
-_GROUPED = re.compile(rf"{_SIGN_AND_DIGITS}([{THOUSANDS}]\d{{3}})+([.,]\d*)?")
+#: the sign of subtraction, which typesetters take for that of a negative number
+MINUS = "\u2212"
+_LEADING = r"[+-]?[1-9][0-9]{0,2}"
+_GROUPED = re.compile(rf"{_LEADING}([{THOUSANDS}]\d{{3}})+([.,]\d*)?")
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ def notation_of(cells: Iterable[str], decimal: str | None, thousands: str | None
     grouped = {".": 0, ",": 0}
     marked = {".": 0, ",": 0}
     maybe = 0
-    for cell in cells:
+    for cell in (one.replace(MINUS, "-") for one in cells):
         both = re.fullmatch(r"[+-]?[\d.,]*\d[\d.,]*([eEdD][+-]?\d+)?", cell)
         if both is None:
             continue
@@ -113,17 +115,18 @@ def notation_of(cells: Iterable[str], decimal: str | None, thousands: str | None
         sign = mantissa[last]
         other = "," if sign == "." else "."
         if other in mantissa:
-            if re.fullmatch(rf"{_SIGN_AND_DIGITS}([{other}]\d{{3}})+[{sign}]\d*", mantissa):
+            if re.fullmatch(rf"{_LEADING}([{other}]\d{{3}})+[{sign}]\d*", mantissa):
                 marked[sign] += 1
                 grouped[other] += 1
         elif mantissa.count(sign) > 1:
-            if re.fullmatch(rf"{_SIGN_AND_DIGITS}([{sign}]\d{{3}})+", mantissa):
+            if re.fullmatch(rf"{_LEADING}([{sign}]\d{{3}})+", mantissa):
                 grouped[sign] += 1
         else:
             marked[sign] += 1
             maybe += bool(re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", cell))
     if thousands:
-        return Notation("." if thousands == "," else ("," if marked[","] else "."), thousands)
+        comma = thousands == "." or (thousands != "," and marked[","] > 0)
+        return Notation("," if comma else ".", thousands)
     if grouped["."] and not marked["."]:
         return Notation(",", ".")
     if marked[","] > marked["."] and not grouped[","]:
@@ -133,9 +136,18 @@ def notation_of(cells: Iterable[str], decimal: str | None, thousands: str | None
 
 
 def _plain(series: pl.Series, notation: Notation) -> pl.Series:
-    """Cells with a decimal point and no thousands; those that mix signs stay as they are."""
-    if notation.thousands:
-        series = series.str.replace_all(notation.thousands, "", literal=True)
+    """Cells with a decimal point and no thousands; those that mix signs hold no number."""
+    if series.str.contains(MINUS, literal=True).any():
+        series = series.str.replace_all(MINUS, "-", literal=True)
+    if notation.thousands and (held := series.str.contains(notation.thousands, literal=True)).any():
+        # A sign that does not part groups of three digits is none of thousands.
+        frame = pl.DataFrame({"cell": series, "held": held})
+        cell = pl.col("cell")
+        ungrouped = cell.str.replace_all(notation.thousands, "", literal=True)
+        meant = pl.when(cell.str.contains(f"^{_grouped(notation)}$")).then(ungrouped)
+        series = frame.select(
+            pl.when("held").then(meant.otherwise("?" + cell)).otherwise(cell).alias(series.name)
+        ).to_series()
     if notation.decimal != ",":
         return series
     both = series.str.contains(".", literal=True)
@@ -149,13 +161,22 @@ def _plain(series: pl.Series, notation: Notation) -> pl.Series:
     return plain
 
 
+def _grouped(notation: Notation) -> str:
+    """Pattern of a number whose thousands are parted: 1.234.567,8."""
+    thousands, decimal = re.escape(notation.thousands), re.escape(notation.decimal)
+    return rf"{_LEADING}({thousands}[0-9]{{3}})+({decimal}[0-9]*)?([eEdD][+-]?[0-9]+)?"
+
+
 def _meaning(cell: str, notation: Notation, missing: tuple[str, ...]) -> float | None:
     """The number that an odd cell says, NaN where it says that it is missing, None: nothing."""
     if cell in MISSING_WORDS or cell in missing:
         return float("nan")
+    cell = cell.replace(MINUS, "-")
     if _GROUPED.fullmatch(cell):
         cell = re.sub(f"[{THOUSANDS}]", "", cell)
-    if notation.thousands:
+    if notation.thousands and notation.thousands in cell:
+        if not re.fullmatch(_grouped(notation), cell):
+            return None
         cell = cell.replace(notation.thousands, "")
     if notation.decimal == ",":
         if "." in cell:

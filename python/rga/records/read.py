@@ -9,6 +9,7 @@ from rga.errors import InputError
 from rga.records.formats import read_format
 from rga.records.mapping import FileMapping
 from rga.records.table import Table
+from rga.records.units import states_none
 
 #: bytes of a file, beyond which it is not taken into memory
 LARGEST_FILE = 4 * 10**9
@@ -48,4 +49,9 @@ def read_table(
     table = read_format(data, path, mapping or FileMapping(), known)
     if table.frame.height == 0:
         raise InputError("there are no rows below the header", str(path), "give at least one row")
-    return replace(table, sha256=hashlib.sha256(data).hexdigest())
+    units = {column: unit for column, unit in table.units.items() if not states_none(unit)}
+    if table.skipped:
+        shown = ", ".join(map(str, table.skipped[:3])) + (", ..." if len(table.skipped) > 3 else "")
+        said = f"blank lines between rows are passed over: {len(table.skipped)} (line {shown})"
+        table = replace(table, notes=(*table.notes, said))
+    return replace(table, units=units, sha256=hashlib.sha256(data).hexdigest())

@@ -44,6 +44,7 @@ class Table:
         path: the file.
         frame: its columns; those of a text file as stripped text, null where a cell is empty.
         row_name, first: how a reader of the file counts rows ("line", 2 for a CSV with a header).
+        skipped: lines without a row that lie between rows, counted as those are, in their order.
         sha256: hash of the file.
         format: name of the format, as a reader is told.
         units: by column, as the file writes them, where it states any.
@@ -60,6 +61,7 @@ class Table:
     frame: pl.DataFrame
     row_name: str
     first: int
+    skipped: tuple[int, ...] = ()
     sha256: str = ""
     format: str = "plain text"
     units: Mapping[str, str] = field(default_factory=dict)
@@ -73,7 +75,10 @@ class Table:
 
     def where(self, row: int, column: str | None = None) -> str:
         """The place of a cell, for an error."""
-        place = f"{self.path}, {self.row_name} {self.first + row}"
+        line = self.first + row
+        for blank in self.skipped:
+            line += blank <= line
+        place = f"{self.path}, {self.row_name} {line}"
         return place if column is None else f"{place}, column {column!r}"
 
     def numbers(self, column: str, missing: tuple[str, ...] = ()) -> FloatArray:
@@ -111,6 +116,12 @@ class Table:
         return read
 
     def _remedy(self, cell: str) -> str:
+        if self.notation.thousands and self.notation.thousands in cell:
+            return (
+                f"{self.notation.thousands!r} parts groups of three digits in this file, and "
+                f"{self.notation.decimal!r} is the decimal sign: write all numbers alike, or state "
+                "decimal and thousands in import.toml"
+            )
         if self.notation.decimal == "," and "." in cell:
             return 'its decimal sign is a comma: state decimal, or thousands = "." in import.toml'
         if self.notation.decimal == "." and "," in cell:

@@ -91,6 +91,8 @@ _SIGNS = {
     "*": "", "Ω": "Ohm", "\u2126": "Ohm", "ε": "eps", "ϵ": "eps", "‰": "permille", "″": "arcsec",
     "′": "arcmin", "**": "", "℃": "degC", "℉": "degF", "\u00a0": " ",
 }  # fmt: skip
+#: what stands where a unit would, and states none
+_NO_UNIT = {"", "-", "--", "---", "\u2013", "\u2014", "\u2212", "n/a", "na", "none", "nan", "null"}
 _BRACKETS = {"(": ")", "[": "]", "<": ">", "{": "}"}
 
 
@@ -126,6 +128,29 @@ offset=273.15))
     # Capitals tell mN from MN; where they tell nothing apart, they are let go.
     alike = {known[one] for one in known if one.lower() == symbol.replace(" ", "").lower()}
     return alike.pop() if len(alike) == 1 else None
+
+
+def states_none(text: str) -> bool:
+    """Whether a text in the place of a unit states none.
+
+    A dash is no unit: a strain that is a plain number is in m/m or "strain".
+
+    >>> states_none("-"), states_none("[-]"), states_none("n/a"), states_none("m/m")
+    (True, True, True, False)
+    """
+    return without_brackets(text).lower() in _NO_UNIT
+
+
+def contradict(unit: str, other: str) -> bool:
+    """Whether two statements of one unit are of different units that are both known.
+
+    >>> contradict("µm/m", "mm/m"), contradict("µm/m", "um/m"), contradict("-", "mm")
+    (True, False, False)
+    """
+    if states_none(unit) or states_none(other) or without_brackets(unit).isdigit():
+        return False
+    known = unit_of(unit), unit_of(other)
+    return None not in known and known[0] != known[1]
 
 
 def without_brackets(text: str) -> str:

@@ -251,6 +251,18 @@ class TestOtherStructures:
             )
 
 
+@pytest.mark.parametrize("case", TRUSSES)
+def test_a_ready_made_structure_says_whom_it_is_for(case: str) -> None:
+    generator, panels, keys, _ = TRUSSES[case]
+    bare = generator("roof", "20 m", "3 m", panels, **BARS, **keys)
+    assert bare.build().about.client == ""
+    model = bare.about(client="Roads office", structure="Roof 3").build()
+    assert (model.about.client, model.about.structure) == ("Roads office", "Roof 3")
+    wrong: Any = 3
+    with pytest.raises(InputError, match="client"):
+        bare.about(client=wrong)
+
+
 class TestRefusedStructures:
     @pytest.mark.parametrize(
         ("build", "what"),

@@ -2,9 +2,11 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import polars as pl
 import pytest
 
@@ -13,7 +15,7 @@ from rga.checking import CheckResult, Finding, check
 from rga.checking.finding import refused
 from rga.errors import SeveralMistakes
 from rga.model import Model
-from rga.records import Record
+from rga.records import Record, load_record
 
 FINDINGS = (
     Finding("error", "node <X>", "it moves", "hold it"),
@@ -71,7 +73,9 @@ def test_a_list_of_mistakes_is_a_finding_each_up_to_a_bound() -> None:
 def test_it_is_a_door_of_python(files: Path, model: Model) -> None:
     assert rga.check is check
     assert str(rga.check(str(files / "model.json"))) == "Nothing looks wrong."
-    assert str(rga.check(model, files / "record.csv")) == "Nothing looks wrong."
+    read, *said = str(rga.check(model, files / "record.csv")).split("\n")
+    assert read.startswith("record: ")
+    assert said == ["Nothing looks wrong."]
     wrong: Any = 3
     assert "int is no model" in str(check(wrong))
     assert "int is no record" in str(check(model, wrong))
@@ -79,7 +83,9 @@ def test_it_is_a_door_of_python(files: Path, model: Model) -> None:
 
 def test_the_command_says_what_python_says(files: Path, rga: Callable[..., Any]) -> None:
     outcome = rga("check", files / "model.json", files / "record.csv")
-    assert (outcome.code, outcome.out, outcome.err) == (0, "Nothing looks wrong.\n", "")
+    read, *said = outcome.out.split("\n")
+    assert read.startswith("record: ")
+    assert (outcome.code, said, outcome.err) == (0, ["Nothing looks wrong.", ""], "")
     portal = json.loads((files / "model.json").read_text(encoding="utf-8"))
     portal["materials"]["steel"]["E"] = 210
     portal["nodes"]["X"] = [9, 0, 0]
@@ -87,7 +93,7 @@ def test_the_command_says_what_python_says(files: Path, rga: Callable[..., Any])
     outcome = rga("check", files / "model.json", files / "record.csv")
     assert outcome.code == 2
     assert outcome.out == f"{check(files / 'model.json', files / 'record.csv')}\n"
-    assert outcome.out.startswith("error: no member, spring or tie joins it (node 'X'): ")
+    assert "\nerror: no member, spring or tie joins it (node 'X'): " in outcome.out
     listed = rga("check", files / "model.json", "--json")
     assert listed.code == 2
     assert json.loads(listed.out) == check(files / "model.json").content()
@@ -114,7 +120,7 @@ def test_a_mapping_is_used(files: Path, rga: Callable[..., Any]) -> None:
     outcome = rga(
         "check", files / "model.json", files / "record.csv", "--import", files / "how.toml"
     )
-    assert (outcome.code, outcome.out) == (0, "Nothing looks wrong.\n")
+    assert (outcome.code, outcome.out.split("\n")[-2]) == (0, "Nothing looks wrong.")
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", "\x00\x01", '{"rga_model": 1}'])
@@ -126,3 +132,30 @@ def test_files_that_are_no_model_are_findings(
     assert outcome.code == 2
     assert outcome.out.startswith("error: ")
     assert outcome.err == ""
+
+
+def test_what_was_read_as_the_record_stands_above(
+    files: Path, model: Model, rga: Callable[..., Any]
+) -> None:
+    frame = pl.read_csv(files / "record.csv")
+    contexts = model.context.keys() & {*frame.columns}
+    sensor = next(iter(model.sensors))
+    frame = frame.with_columns(
+        pl.when(pl.int_range(pl.len()) % 4 == 0).then(None).otherwise(sensor).alias(sensor)
+    )
+    frame.write_csv(files / "record.csv")
+    record = load_record(files / "record.csv", model)
+    checked = check(model, replace(record, notes=["w.csv is matched by the row nearest"]))
+    step = record.time[1] - record.time[0]
+    share = 100 * np.mean(np.arange(len(record)) % 4 == 0) / (len(model.sensors) + len(contexts))
+    said = (
+        f"record: {len(record)} rows, {record.start:g} s to {record.start + record.time[-1]:g} s, "
+        f"a step of {step:g} s; {len(model.sensors)} of {len(model.sensors)} sensors and "
+        f"{len(contexts)} of {len(model.context)} contexts; {share:.2g} % of the cells missing"
+    )
+    assert str(checked).split("\n")[:2] == [said, "record: w.csv is matched by the row nearest"]
+    listed = json.loads(rga("check", files / "model.json", files / "record.csv", "--json").out)
+    assert listed["record"]["rows"] == len(record)
+    assert listed["record"]["missing"] == pytest.approx(share / 100)
+    assert "record" not in check(model).content()
+    assert not str(check(model)).startswith("record")

@@ -160,11 +160,65 @@ class TestSafWorkbook:
     ) -> None:
         sheets = frame()
         sheets["Model"][1][1] = "Imperial"
+        del sheets["StructuralCurveAction"][1]
         sheets["StructuralPointConnection"][0] = [
             "Name", "Coordinate X", "Coordinate Y", "Coordinate Z",
         ]  # fmt: skip
         model = import_model(book(sheets)).model
         assert model.nodes["C"] == pytest.approx((4 * 0.3048, 0, 3 * 0.3048))
+
+    @pytest.mark.parametrize(
+        ("sheet", "column", "value", "said"),
+        [
+            ("StructuralCurveMember", "Behaviour in analysis", "Press only", "none|not one of"),
+            ("StructuralCurveMember", "LCS", "weird", "'weird' is not one of y by vector"),
+            ("StructuralPointSupport", "ux", None, "ux is not given"),
+            ("StructuralPointAction", "Coordinate system", "Member LCS", "not one of global"),
+            ("StructuralCurveAction", "Coordinate system", "Member LCS", "not one of global"),
+            ("StructuralCurveAction", "Extent", "Half", "'half' is not one of full, span"),
+            ("StructuralCurveAction", "Extent", "Full", "its points are not those of the whole"),
+            ("StructuralCurveAction", "Distribution", "Cubic", "not one of uniform, trapez"),
+            ("StructuralCurveAction", "Location", "Plan", "not one of length, projection"),
+            ("StructuralCurveAction", "Origin", "Middle", "not one of from start, from end"),
+            ("StructuralCurveAction", "Coordinate definition", "Share", "not one of absolute"),
+            ("StructuralCurveAction", "End point [m]", 4.5, "at 0.5 m to 4.5 m on member beam"),
+            ("StructuralCurveAction", "Start point [m]", 3.8, "runs backwards"),
+            ("RelConnectsStructuralMember", "Position", "Middle", "not one of both, begin, end"),
+        ],
+    )
+    def test_a_word_or_place_that_is_not_known_is_refused_by_its_cell(
+        self, book: Callable[[Sheets], Path], sheet: str, column: str, value: Any, said: str
+    ) -> None:
+        sheets = frame()
+        sheets[sheet][1][sheets[sheet][0].index(column)] = value
+        with pytest.raises(ImportRefused, match=f"{sheet}, row 2.*{said}"):
+            import_model(book(sheets))
+
+    def test_a_rotation_has_the_unit_of_its_head(self, book: Callable[[Sheets], Path]) -> None:
+        degrees = import_model(book(frame())).model.members["col"].local_y
+        sheets = frame()
+        place = sheets["StructuralCurveMember"][0].index("LCS Rotation [deg]")
+        sheets["StructuralCurveMember"][0][place] = "LCS Rotation [rad]"
+        sheets["StructuralCurveMember"][1][place] = 0.5235987755982988
+        radians = import_model(book(sheets)).model.members["col"].local_y
+        assert degrees is not None
+        assert radians == pytest.approx(degrees, abs=1e-15)
+
+    def test_columns_and_sheets_that_are_not_read_are_said(
+        self, book: Callable[[Sheets], Path]
+    ) -> None:
+        sheets = frame()
+        sheets["StructuralCurveMember"][0].append("Coating")
+        sheets["StructuralCurveMember"][1].append("zinc")
+        sheets["StructuralPointSupport"][0].append("Empty")
+        sheets["structuralpointsupport"] = sheets.pop("StructuralPointSupport")
+        found = import_model(book(sheets))
+        assert found.counts["supports"] == 2
+        said = [str(note) for note in found.notes if "columns that are not read" in note.what]
+        assert said == ["dropped: columns that are not read: coating (sheet StructuralCurveMember)"]
+        sheets["StructuralNovelty"] = [["Name"], ["x"]]
+        with pytest.raises(ImportRefused, match="rows of a sheet that is not known: x"):
+            import_model(book(sheets))
 
     @pytest.mark.parametrize(
         ("sheet", "column", "value", "said"),

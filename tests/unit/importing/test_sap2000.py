@@ -133,6 +133,35 @@ class TestSap2000Tables:
         z = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
         return [sum(a * b for a, b in zip(vector, axis, strict=True)) for axis in (x, y, z)]
 
+    @pytest.mark.parametrize(
+        ("inactive", "held"),
+        [(["UY"], {"uy"}), (["RX", "RY", "RZ"], {"rx", "ry", "rz"}), (["UY", "RX", "RZ"], {"uy"})],
+    )
+    def test_what_is_not_active_is_held_everywhere(
+        self, written: Written, moves: Any, inactive: list[str], held: set[str]
+    ) -> None:
+        fields = "   ".join(
+            f"{name}={'No' if name in inactive else 'Yes'}"
+            for name in ("UX", "UY", "UZ", "RX", "RY", "RZ")
+        )
+        table = f'TABLE:  "ACTIVE DEGREES OF FREEDOM"\n   {fields}\n\nEND TABLE DATA'
+        found = import_model(written("frame.s2k", TABLES.replace("END TABLE DATA", table)))
+        assert all(held <= set(found.model.supports[node].fixed) for node in "123")
+        assert any("not active: every node is held" in note.what for note in found.notes)
+        for place, dof in enumerate(("ux", "uy", "uz", "rx", "ry", "rz")):
+            largest = max(abs(motion[place]) for motion in moves(found.model).values())
+            assert (largest == 0) == (dof in {name.lower() for name in inactive})
+
+    def test_a_structure_of_a_plane_becomes_a_plane_model(self, written: Written) -> None:
+        table = (
+            'TABLE:  "ACTIVE DEGREES OF FREEDOM"\n   UX=Yes   UY=No   UZ=Yes   RX=No   RY=Yes   '
+            "RZ=No\n\nEND TABLE DATA"
+        )
+        flat = TABLES.replace("Y=2   Z=5", "Y=0   Z=5")
+        assert import_model(written("frame.s2k", flat)).model.plane is None
+        found = import_model(written("flat.s2k", flat.replace("END TABLE DATA", table)))
+        assert found.model.plane == "xz"
+
     def test_a_shape_that_its_name_denies_is_noticed(self, written: Written) -> None:
         notes = import_model(written("frame.s2k", TABLES)).notes
         assert any("is a Channel, whatever its name" in note.what for note in notes)
@@ -176,6 +205,18 @@ class TestSap2000Tables:
             ("JointJ=3", "JointJ=9", "joint '9' is not there"),
             ("Area=0.002", "Area=0", "has no area"),
             ("END TABLE DATA\n", "   Joint=9 _", "ends within a row"),
+            ("END TABLE DATA\n", "", "no line END TABLE DATA"),
+            (
+                'TABLE:  "FRAME LOC',
+                '   SectionName="Post (200 CHS 8)"   Area=1\n\nTABLE:  "FRAME LOC',
+                "SectionName .* stands twice .* first in line 20",
+            ),
+            ("I33=1.2E-05", "", "line 20: section .* has no I33, by which its frames bend"),
+            ("I22=4.7E-06", "I22=0", "line 20: section .* has no I22"),
+            ("RelDistA=0.25", "RelDistA=1.5", "line 43: .*which is 3.7"),
+            ("RelDistA=0.25   RelDistB=1", "RelDistA=0.8   RelDistB=0.2", "line 43: .*backwards"),
+            ("RelDist=0.5", "RelDist=1.5", "line 48: a load at 5.6"),
+            ("U1=No   U2=No   U3=Yes", "U1=No   U2=N   U3=Yes", "U2 is 'n', neither"),
         ],
     )
     def test_a_slip_is_one_error(
@@ -192,6 +233,7 @@ class TestSap2000Lattice:
         assert found.counts["nodes"] == 28
         # Two of its 49 frames go through a joint.
         assert found.counts["members"] == 51
+        assert (found.counts["frames"], found.counts["frames cut"]) == (49, 2)
         assert found.model.sections["Bottom Chord (355.6 CHS 8)"].A == 0.0021483828
         assert any("can turn about an axis along x" in note.what for note in found.notes)
         plane = import_model(LATTICE, plane="xz")

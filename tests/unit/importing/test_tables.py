@@ -84,6 +84,15 @@ class TestTables:
         assert first.sections == second.sections
         assert first.effects == second.effects
 
+    def test_empty_cells_behind_a_row_and_zeros_are_no_fault(
+        self, folder: Callable[..., Path]
+    ) -> None:
+        place = folder(
+            nodes="name,x [m],z [m]\nA,0,0,,\nB,4,0,\nC,4,3\n",
+            loads="node,member,fz [kN],pz [kN],at [m]\nC,,-5,0,\n,AB,,-2,4\n",
+        )
+        assert import_model(place).load_sums == {"loads": (0, 0, -7000)}
+
     def test_what_is_not_read_is_said(self, folder: Callable[..., Path]) -> None:
         place = folder(
             nodes="name,x [m],z [m],colour\nA,0,0,red\nB,4,0,\nC,4,3,\n", people="a\n1\n"
@@ -108,6 +117,20 @@ class TestTables:
             ("supports", "node,ux\nA,perhaps\n", "ux is 'perhaps'"),
             ("loads", "node,member,fx [kN]\n,,1\n", "on a node or on a member"),
             ("sections", "", "the file is empty"),
+            ("nodes", "name,x [m],z [m]\nA,0,0\nB,3,5,2\n", "'2' stands under no head.*row 3"),
+            ("nodes", "name,x [m],z [m]\nA,0,\n", r"'z' is empty \(nodes.csv, row 2 \(A\)\)"),
+            ("nodes", "name,x [m],z [m]\nA,0\n", r"'z' is empty \(nodes.csv, row 2 \(A\)\)"),
+            ("nodes", "name,x [m]\nA,0\n", "the columns y, z are missing"),
+            ("sections", "name,A (cm2)\nbeam,40\n", "'a' is empty"),
+            ("materials", "name,E [mPa]\nsteel,210000\n", "most likely millions.*write MPa"),
+            ("loads", "node,fz [mN]\nC,5\n", "most likely millions.*write MN"),
+            ("loads", "node,fz [kN],wz [kN/m]\nC,,-5\n", "'wz' is given, .* no load on a node"),
+            ("loads", "member,fz [kN],wz [kN/m]\nAB,4,-5\n", "'fz' is given, .* on a member"),
+            ("loads", "member,wz [kN/m],at [m]\nAB,4,1\n", "'at' is given without"),
+            ("loads", "node,fzz [kN]\nC,4\n", "the load has no value"),
+            ("loads", "member,pz [kN],at [m]\nAB,-20,9\n", "at 9 m on member AB, .* 4 m long"),
+            ("loads", "member,pz [kN],at [m]\nAB,-20,-1\n", "at -1 m on member AB"),
+            ("sections", "name,A [cm2]\nbeam,4\nrod,5\n", "'beam' has no Iy, Iz, J"),
         ],
     )
     def test_a_slip_is_named_by_its_cell(

@@ -11,6 +11,7 @@ import pytest
 from rga.errors import InputError
 from rga.model import Model, load_model, write_model
 from rga.records import Record, RecordMapping, load_record
+from rga.records.mapping import TimeColumns
 
 
 @pytest.fixture
@@ -63,6 +64,26 @@ def test_a_row_that_both_files_have_is_taken_once(tmp_path: Path, model: Model) 
     write(second, "time,D1,S1\n2024-01-01T01:00,3,9\n2024-01-01T02:00,5,6\n")
     with pytest.raises(InputError, match=r"b\.csv begins 0 s before .*a\.csv ends"):
         load_record([first, second], model)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "steps"),
+    [
+        (["01:00", "01:30", "02:00", "02:30"], ["02:00", "02:30", "03:00", "03:30"], [30] * 7),
+        (["01:00", "01:30"], ["02:00", "02:30", "03:00", "03:30"], [30, 90, 30, 30, 30]),
+        (["01:00", "01:30", "02:00", "02:30"], ["03:00", "03:30"], [30, 30, 30, 90, 30]),
+    ],
+)
+def test_files_that_part_the_hour_that_comes_twice(
+    first: list[str], second: list[str], steps: list[int], tmp_path: Path, model: Model
+) -> None:
+    files = [
+        write(tmp_path / name, "time,D1,S1\n" + "".join(f"2024-10-27 {at},1,2\n" for at in night))
+        for name, night in (("a.csv", first), ("b.csv", second))
+    ]
+    record = load_record(files, model, RecordMapping(time=TimeColumns(zone="Europe/Berlin")))
+    assert (np.diff(record.time) / 60).tolist() == steps
+    assert any("comes twice" in note for note in record.notes)
 
 
 def test_files_that_do_not_follow_each_other_are_refused(tmp_path: Path, model: Model) -> None:
@@ -152,17 +173,33 @@ def test_values_between_the_rows_of_a_slower_logger(tmp_path: Path, model: Model
 
 def test_means_of_a_faster_logger_about_each_row(tmp_path: Path, model: Model) -> None:
     record = side_by_side(tmp_path, model, 'match = "mean"', 60)
-    inner = record.contexts["temperature"][1:-1]
-    np.testing.assert_allclose(inner, np.arange(11, 16) - 0.05, atol=1e-9)
-    assert "means over 600 s about each row" in record.notes[-1]
+    found = record.contexts["temperature"]
+    np.testing.assert_allclose(found[1:-1], np.arange(11, 16), atol=1e-9)
+    assert np.isnan(found[[0, -1]]).all()  # half of these windows lies outside the file
+    assert record.notes[-1] == (
+        "weather.csv is taken as means over 600 s about each row, of 11 readings each"
+    )
 
 
 def test_means_on_the_rows_of_a_slower_logger(tmp_path: Path, model: Model) -> None:
-    record = side_by_side(tmp_path, model, 'match = "mean"', 1800)
-    assert record.time.tolist() == [0, 1800, 3600]
-    np.testing.assert_allclose(record.contexts["temperature"], [10, 13, 16])
-    np.testing.assert_allclose(record.readings[:, 0], [0.5, 3, 5.5])
-    assert "the record has the 3 rows of weather.csv" in record.notes[-1]
+    record = side_by_side(tmp_path, model, 'match = "mean"', 1200)
+    assert record.time.tolist() == [0, 1200]
+    np.testing.assert_allclose(record.contexts["temperature"], [12, 14])
+    np.testing.assert_allclose(record.readings, [[2, 4], [4, 8]])
+    assert "the record has 2 rows of weather.csv, with means over 1200 s" in record.notes[-1]
+
+
+def test_the_noise_that_a_model_states_is_not_that_of_a_mean(
+    tmp_path: Path, two_bars: dict[str, Any]
+) -> None:
+    two_bars["context"]["temperature"]["noise"] = 0.5
+    stated = Model.model_validate(two_bars)
+    said = "the noise that the model states of 'temperature' is that of one reading"
+    mean, nearest = (
+        side_by_side(tmp_path, stated, f'match = "{how}"', 60) for how in ("mean", "nearest")
+    )
+    assert said in mean.notes[-1]
+    assert said not in " ".join(nearest.notes)
 
 
 def test_a_channel_has_one_source_and_all_are_somewhere(tmp_path: Path, model: Model) -> None:
@@ -203,3 +240,32 @@ def test_a_channel_that_stands_still_is_warned_of(model: Model) -> None:
     count = 60
     frame = pl.DataFrame({"time": np.arange(count), "D1": np.arange(count), "S1": [7.0] * count})
     assert load_record(frame, model).warnings == ["S1 reads 7 in all 60 rows: it never moves"]
+
+
+def test_zones_that_differ_are_told_with_their_tables(tmp_path: Path, model: Model) -> None:
+    month(tmp_path, "main.csv", JANUARY)
+    write(tmp_path / "w.csv", "time,temperature\n2024-01-31T23:30+01:00,1\n")
+    write(tmp_path / "import.toml", 'files = ["main.csv"]\n[[beside]]\nfiles = ["w.csv"]\n')
+    with pytest.raises(InputError, match=r"zone under \[time\] and \[beside.time\] in import.toml"):
+        load_record(tmp_path, model)
+    with pytest.raises(InputError, match=r"zone under \[time\] in import.toml"):
+        load_record([tmp_path / "main.csv", tmp_path / "w.csv"], model, RecordMapping(
+            unused={"temperature": "not asked for", "D1": "-", "S1": "-"}))  # fmt: skip
+
+
+@pytest.mark.parametrize(("value", "warned"), [(-4.1, 1), (-3.9, 0), (103.9, 0), (104.1, 1)])
+def test_a_context_leaves_its_range_by_more_than_its_noise(
+    value: float, warned: int, two_bars: dict[str, Any]
+) -> None:
+    two_bars["context"]["load"].update(range=[0, 100], noise=1.0)
+    given = {"time": [0, 1], "D1": [1, 2], "S1": [1, 2], "load": [50.0, value]}
+    record = load_record(pl.DataFrame(given), Model.model_validate(two_bars))
+    assert sum("lies outside its range" in text for text in record.warnings) == warned
+
+
+def test_without_a_noise_any_value_beyond_the_range_is_told(two_bars: dict[str, Any]) -> None:
+    two_bars["context"]["load"].update(range=[0, 100])
+    two_bars["context"]["load"].pop("noise", None)
+    given = {"time": [0, 1], "D1": [1, 2], "S1": [1, 2], "load": [50.0, -0.1]}
+    record = load_record(pl.DataFrame(given), Model.model_validate(two_bars))
+    assert any("lies outside its range 0..100" in text for text in record.warnings)

@@ -207,3 +207,32 @@ def test_a_long_file_is_read_at_once(tmp_path: Path) -> None:
     found = table(tmp_path, f"time;D1;S1\n{rows}\n")
     assert found.numbers("S1")[-1] == -199_999.25
     assert read_clock(found, TimeColumns()).seconds[-1] == 199_999
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        ('time;D1;S1\n0;"1";2\n1;"2\n";2\n2;3;2\n', 3),
+        ('time;D1;S1\n0;1;2\n1;2;3" pipe\n2;3;2\n', 3),
+        ('time;"D1\n[mm]";S1\n0;1;2\n1;2;2\n2;3;2\n', None),
+    ],
+)
+def test_a_quote_that_does_not_end_in_its_line_is_named(
+    content: str, line: int | None, tmp_path: Path
+) -> None:
+    said = f"line {line}" if line else "line [12]"
+    with pytest.raises(InputError, match=f"a quote begins in the line.*{said}"):
+        table(tmp_path, content)
+
+
+def test_blank_lines_between_rows_are_passed_over(tmp_path: Path, one_sensor: Model) -> None:
+    content = "time;D1\n0;1\n\n1;2\n\n  \n2;3\n3;x\n"
+    found = table(tmp_path, content)
+    assert read_clock(found, TimeColumns()).seconds.tolist() == [0, 1, 2, 3]
+    assert "blank lines between rows are passed over: 3 (line 3, 5, 6)" in found.notes
+    with pytest.raises(InputError, match=r"'x' is no number .*line 8"):
+        load_record(tmp_path / "r.csv", one_sensor)
+    with pytest.raises(InputError, match=r"the time is missing .*line 6"):
+        read_clock(table(tmp_path, "time;D1\n0;1\n1;2\n\n2;3\n;\n3;4\n"), TimeColumns())
+    alone = table(tmp_path, "D1\n1\n\n3\n")
+    np.testing.assert_array_equal(alone.numbers("D1"), [1, np.nan, 3])

@@ -9,7 +9,8 @@ import pytest
 from rga.errors import InputError
 from rga.model import Model
 from rga.model.units import UNITS
-from rga.records import load_record
+from rga.records import RecordMapping, load_record
+from rga.records.mapping import Channel
 from rga.records.units import DIMENSIONS, conversion, name_and_unit, unit_of
 
 
@@ -112,3 +113,58 @@ def test_brackets_hold_a_unit_only_where_it_is_one() -> None:
     assert name_and_unit("d5 (mm)") == ("d5", "mm")
     assert name_and_unit("T [weird]") == ("T", "weird")
     assert name_and_unit("Temp, °C (LGR S/N: 12)") == ("Temp", "°C")
+
+
+@pytest.mark.parametrize("nothing", ["-", "", "n/a", "none", "[-]"])
+def test_a_dash_in_the_line_of_units_states_none(
+    nothing: str, tmp_path: Path, two_bars: dict[str, Any]
+) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text(f"time;D1;S1\ns;mm;{nothing}\n0;1;100\n1;1;200\n", encoding="utf-8")
+    record = load_record(path, Model.model_validate(two_bars))
+    assert record.readings[:, 1].tolist() == [100, 200]
+    assert "no unit is stated for S1 (microstrain): the model's is taken" in record.notes
+    path.write_text("time;D1;S1\ns;mm;m/m\n0;1;1e-4\n1;1;2e-4\n", encoding="utf-8")
+    record = load_record(path, Model.model_validate(two_bars))
+    np.testing.assert_allclose(record.readings[:, 1], [100, 200])
+
+
+def test_a_line_of_dashes_is_no_row_of_missing_values(
+    tmp_path: Path, two_bars: dict[str, Any]
+) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text("time;D1;S1\n-;-;-\n0;1;100\n1;-;200\n", encoding="utf-8")
+    record = load_record(path, Model.model_validate(two_bars))
+    np.testing.assert_array_equal(record.readings, [[1, 100], [np.nan, 200]])
+
+
+@pytest.mark.parametrize(
+    ("header", "units", "said"),
+    [
+        ("D1 [mm];S1 [µm/m]", "mm;mm/m", r"'S1' says 'µm/m', the line of units says 'mm/m'"),
+        ("D1 [mm];S1", "cm;µm/m", r"'D1' says 'mm', the line of units says 'cm'"),
+        ("D1 [mm];S1 [µm/m]", "mm;um/m", None),
+        ("D1 [mm];S1 [µm/m]", "-;-", None),
+    ],
+)
+def test_units_that_contradict_each_other_are_refused(
+    header: str, units: str, said: str | None, tmp_path: Path, two_bars: dict[str, Any]
+) -> None:
+    model = Model.model_validate(two_bars)
+    path = tmp_path / "r.csv"
+    path.write_text(f"time;{header}\ns;{units}\n0;1;100\n1;2;200\n", encoding="utf-8")
+    if said is None:
+        assert load_record(path, model).readings.tolist() == [[1, 100], [2, 200]]
+        return
+    with pytest.raises(InputError, match=said):
+        load_record(path, model)
+    stated = {"D1": Channel(unit="mm"), "S1": Channel(unit="mm/m")}
+    record = load_record(path, model, RecordMapping(channels=stated))
+    np.testing.assert_allclose(record.readings, [[1, 100_000], [2, 200_000]])
+
+
+def test_a_unit_in_the_name_holds_above_a_dash(tmp_path: Path, two_bars: dict[str, Any]) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text("time;D1 [cm];S1\ns;-;µm/m\n0;1;100\n1;2;200\n", encoding="utf-8")
+    record = load_record(path, Model.model_validate(two_bars))
+    np.testing.assert_allclose(record.readings, [[10, 100], [20, 200]])

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
-from itertools import takewhile
 from typing import NamedTuple
 
 from rga.building.sections.hollow import circular_hollow, rectangular_hollow
@@ -135,19 +134,27 @@ def _by_key() -> dict[str, str]:
 
 def _nearest(key: str) -> list[str]:
     """Names of the same family with the nearest sizes, or names that look alike."""
-    family = "".join(takewhile(str.isalpha, key))
-    sizes = _sizes(key)
-    alike = {name for own, name in _by_key().items() if own[: len(family)] == family and sizes}
-    same = [name for name in alike if len(_sizes(_key(name))) == len(sizes)]
-    if family and same:
+    family, sizes = _letters(key), _sizes(key)
+    alike = [own for own in _by_key() if sizes and _letters(own) == family]
+    if alike:
 
-        def away(name: str) -> tuple[float, str]:
-            own = _sizes(_key(name))
-            return sum(abs(a - b) for a, b in zip(own, sizes, strict=True)), name
+        def away(own: str) -> tuple[int, float, str]:
+            theirs = _sizes(own)
+            apart = sum(abs(a - b) for a, b in zip(theirs, sizes, strict=False))
+            return abs(len(theirs) - len(sizes)), apart, own
 
-        return sorted(same, key=away)[:NEAREST]
+        return list(dict.fromkeys(_by_key()[own] for own in sorted(alike, key=away)))[:NEAREST]
     near = get_close_matches(key, _by_key(), n=NEAREST, cutoff=0.5)
     return list(dict.fromkeys(_by_key()[one] for one in near))
+
+
+def _letters(key: str) -> str:
+    """Letters of a key, without the signs between its sizes.
+
+    >>> _letters("shs100x100x5"), _letters("he200a")
+    ('shs', 'hea')
+    """
+    return re.sub(r"[0-9.]+(x(?=[0-9]))?", "", key)
 
 
 def _sizes(key: str) -> list[float]:

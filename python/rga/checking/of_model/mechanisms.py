@@ -13,10 +13,10 @@ from rga.errors import InputError, UnstableStructureError
 from rga.model.schema import DOFS
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.response import node_name, patterns, respond_to
+from rga.simulation.paths.restraints import remedy
 
 #: motions that are told one by one
 MOST_TOLD = 8
-REMEDY = "add a member, a support or a stiffness there, or hold the plane"
 
 
 def mechanisms(over: OverRanges) -> Iterator[Finding]:
@@ -40,16 +40,17 @@ def mechanisms(over: OverRanges) -> Iterator[Finding]:
             "give it supports, or join it to what is held",
         )
     others = [one for one in motions if not _alone(one, together)]
+    mend = remedy(structure.arrays)
     for motion in others[:MOST_TOLD]:
         told = True
         yield _told(over, structure, names, motion)
     if len(others) > MOST_TOLD:
         more = len(others) - MOST_TOLD
-        yield Finding("error", "structure", f"{more} more motions meet no resistance", REMEDY)
+        yield Finding("error", "structure", f"{more} more motions meet no resistance", mend)
     if not told and not (together.members == 0).any():
         # Nothing is loose, but beside the stiffest parts the softest are lost in rounding.
-        remedy = "stiffnesses differ by too much: check units of E, A and I, then the supports"
-        yield Finding("error", error.where, error.what, remedy)
+        mend = "stiffnesses differ by too much: check units of E, A and I, then the supports"
+        yield Finding("error", error.where, error.what, mend)
 
 
 def unstable(over: OverRanges) -> UnstableStructureError | None:
@@ -96,5 +97,5 @@ def _told(over: OverRanges, structure: Structure, names: list[str], motion: Floa
         "error",
         parts("member", at_it) if at_it else "structure",
         f"nothing resists a motion of node {names[first]!r} in {dof}{with_it}",
-        REMEDY,
+        remedy(structure.arrays),
     )

@@ -173,7 +173,11 @@ def _content(
 
 
 def _show(counts: dict[str, int], notes: "list[Note]") -> None:
-    parts = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+    shown = dict(counts)
+    cut, frames = shown.pop("frames cut", 0), shown.pop("frames", 0)
+    parts = ", ".join(f"{count} {kind}" for kind, count in shown.items() if count)
+    if cut:
+        typer.echo(f"{frames} frames, {cut} of them cut: {counts['members']} members")
     typer.echo(parts or "nothing")
     for note in notes:
         typer.echo(str(note))

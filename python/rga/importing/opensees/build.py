@@ -101,10 +101,13 @@ class _Members:
     def _add_member(self, tag: str, element: Element, values: dict[str, float]) -> None:
         if element.command.lower().startswith("corot"):
             self._second_order(element.where, f"element {tag} is {element.command}")
-        if any(values.get(name, 1.0) <= 0 for name in ("A", "E")):
+        needed = ["A", "E"]
+        if element.kind == "frame":
+            needed += ["Iz"] if self.script.dimensions == 2 else ["Iy", "Iz", "G", "J"]
+        if missing := [name for name in needed if values.get(name, 0.0) <= 0]:
             self.draft.notes.refuse(
                 element.where,
-                f"element {tag} has no area or modulus above 0",
+                f"element {tag} has no {', '.join(missing)} above 0",
                 "correct it",
                 "partial",
             )

@@ -21,6 +21,7 @@ class OpenSeesHost:
         passed: commands passed over: name -> places.
         not_done: commands that only running would obey: words and place.
         unread: commands that this reader does not know: words and place.
+        unfollowed: code that is not read and may change the model: words and place.
     """
 
     def __init__(self, without: Collection[str] = ()) -> None:
@@ -30,6 +31,7 @@ class OpenSeesHost:
         self.passed: dict[str, list[str]] = {}
         self.not_done: list[tuple[str, str]] = []
         self.unread: list[tuple[str, str]] = []
+        self.unfollowed: list[tuple[str, str]] = []
 
     def skips(self, name: str) -> bool:
         """Whether a command is passed over, its words unseen."""

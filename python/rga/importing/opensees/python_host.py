@@ -10,7 +10,7 @@ from rga.importing.opensees.command_names import NOT_DONE, PASSED_OVER
 from rga.importing.opensees.commands import DEFINING
 from rga.importing.opensees.host import OpenSeesHost
 from rga.importing.reading import read_text
-from rga.importing.scripts.python import Opened, PythonInterpreter
+from rga.importing.scripts.python import Host, Opened, PythonInterpreter
 from rga.importing.scripts.python.opened import Anything
 from rga.importing.scripts.values import Unknown
 
@@ -18,6 +18,11 @@ from rga.importing.scripts.values import Unknown
 MODULES = (
     "openseespy.opensees", "opensees.openseespy", "opensees", "openseespy", "xara", "opensees.tcl",
     "openseespy.opensees.opensees",
+)  # fmt: skip
+#: modules of OpenSeesPy that show a model
+SHOWING = (
+    "openseespy.postprocessing", "openseespy.postprocessing.Get_Rendering",
+    "openseespy.postprocessing.ops_vis", "openseespy.postprocessing.internal_plotting_functions",
 )  # fmt: skip
 #: words by which an object of a model is made
 MAKING = ("Model", "BasicBuilder")
@@ -33,6 +38,8 @@ class PythonHost(OpenSeesHost):
 class Commands(Opened):
     """A module, or a model as an object: its names are commands."""
 
+    trust = "model"
+
     def __init__(self, host: PythonHost) -> None:
         self.host = host
 
@@ -46,11 +53,13 @@ class Commands(Opened):
 class One(Opened):
     """One command."""
 
+    trust = "model"
+
     def __init__(self, owner: Commands, name: str) -> None:
         self.owner, self.name = owner, name
 
     def attribute(self, name: str) -> Any:
-        return Anything(f"{self.name}.{name}")
+        return Anything(f"{self.name}.{name}", "model")
 
     def call(self, values: list[Any], named: dict[str, Any], where: str) -> Any:
         host = self.owner.host
@@ -66,7 +75,7 @@ class Other(Anything):
     """A name of the module that may be anything: when it is called it is not passed over."""
 
     def __init__(self, owner: Commands, name: str) -> None:
-        super().__init__(name)
+        super().__init__(name, "model")
         self.owner = owner
 
     def call(self, values: list[Any], named: dict[str, Any], where: str) -> Any:
@@ -100,6 +109,16 @@ def read_python(path: Path, host: PythonHost) -> list[tuple[str, str]]:
         InputError: it cannot be read.
     """
     commands = Commands(host)
-    interpreter = PythonInterpreter(path.name, dict.fromkeys(MODULES, commands), host.shapes)
-    interpreter.run(read_text(path))
+    modules: dict[str, Opened] = dict.fromkeys(MODULES, commands)
+    for name in SHOWING:
+        modules[name] = Anything(name, "shows")
+    known = Host(
+        host.shapes, host.skips, lambda: any(one.elements for one in host.models),
+        shared=True, without=host.without,
+    )  # fmt: skip
+    interpreter = PythonInterpreter(path.name, modules, known)
+    try:
+        interpreter.run(read_text(path))
+    finally:
+        host.unfollowed += interpreter.refusals
     return interpreter.assumed

@@ -95,6 +95,11 @@ def _say_others(
             "take it out where it does not shape the model",
             "partial",
         )
+    for words, where in host.unfollowed:
+        draft.notes.refuse(
+            where, words, "write out what it does, or take it out where it changes nothing",
+            "partial",
+        )  # fmt: skip
     for words, where in host.not_done:
         draft.notes.say("dropped", where, f"not done, only read: {words}")
     names = ", ".join(host.passed)

@@ -218,9 +218,12 @@ class _Reader:
             return cut.local(np.eye(3)[NODAL.index(direction)].tolist())
         return None
 
-    def _loads(self, name: str, member: Any, cut: CutMember, where: str) -> None:
+    def _loads(self, name: str, member: Any, cut: CutMember, own: str) -> None:
         units = self.units
-        for direction, size, place, case in member.PtLoads:
+        # Loads of a script stand in lines of their own.
+        lines = getattr(member, "load_lines", {})
+        for number, (direction, size, place, case, *_) in enumerate(member.PtLoads):
+            where = lines.get(("point", number), own)
             self.cases.add(case)
             along = self._direction(direction, cut)
             if along is None:
@@ -230,7 +233,8 @@ class _Reader:
                 continue
             force = along * float(size) * units.force
             cut.load_point(case, float(place) * units.length, force, where)
-        for direction, first, last, start, end, case, *_ in member.DistLoads:
+        for number, (direction, first, last, start, end, case, *_) in enumerate(member.DistLoads):
+            where = lines.get(("line", number), own)
             self.cases.add(case)
             along = self._direction(direction, cut)
             if along is None:

@@ -1,13 +1,14 @@
 """Scripts that make a PyNite model, read without running them."""
 
 import re
+from collections.abc import Collection
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 from rga.errors import InputError
 from rga.importing.reading import read_text
-from rga.importing.scripts.python import Opened, PythonInterpreter
+from rga.importing.scripts.python import Host, Opened, PythonInterpreter
 from rga.importing.scripts.python.opened import Anything, OpenedNames
 from rga.importing.scripts.values import Arguments, Unknown
 
@@ -35,11 +36,38 @@ METHODS: dict[str, tuple[str, ...]] = {
     "add_member_dist_load": ("member_name", "direction", "w1", "w2", "x1=", "x2=", "case="),
     "add_member_self_weight": ("global_direction", "factor", "case="),
 }  # fmt: skip
+#: where methods put what they name
+TABLES = {
+    "add_node": "nodes", "add_material": "materials", "add_section": "sections",
+    "add_steel_section": "sections", "add_member": "members", "add_spring": "springs",
+    "add_load_combo": "load_combos",
+}  # fmt: skip
+#: letters of the names that PyNite gives to parts without one
+NUMBERED = {"add_node": "N", "add_member": "M", "add_spring": "S"}
 #: methods that make parts which are no members
 OTHERS = frozenset((
     "add_plate", "add_quad", "add_rectangle_mesh", "add_annulus_mesh", "add_frustrum_mesh",
     "add_cylinder_mesh", "add_shear_wall", "add_mat_foundation",
 ))  # fmt: skip
+#: methods that analyse or show a model, and change nothing of it
+QUIET = frozenset((
+    "analyze", "analyze_PDelta", "analyze_linear", "analyze_modal", "analyze_pushover", "D", "F",
+    "FER", "K", "Kg", "P", "check_statics", "max_model_force", "orphaned_nodes", "unique_name",
+))  # fmt: skip
+#: results and plain values of nodes, members and springs
+RESULTS = frozenset((
+    *FREEDOMS, *(f"Rxn{axis}" for axis in ("FX", "FY", "FZ", "MX", "MY", "MZ")),
+    "ID", "L", "T", "X", "Y", "Z", "axial", "deflection", "distance", "f", "d", "k",
+    "moment", "name", "rel_deflection", "shear", "torque",
+))  # fmt: skip
+RESULT = re.compile(r"(max|min|plot)_\w+|\w+_(array|diagram)")
+#: parts of a model by name
+PARTS = frozenset((
+    "nodes", "materials", "sections", "members", "springs", "quads", "plates", "meshes",
+    "shear_walls", "mats", "load_combos", "load_cases", "solution",
+))  # fmt: skip
+#: modules of PyNite that show a model
+SHOWING = ("Visualization", "Rendering", "Reporting", "VisDeformed", "PynVisualization")
 #: names under which PyNite had its methods until version 1
 OLD = frozenset(("AddNode", "AddMember", "DefineSupport", "DefineReleases", "AddNodeLoad"))
 
@@ -49,21 +77,35 @@ def says_pynite(path: Path) -> bool:
     return IMPORT.search(read_text(path)) is not None
 
 
-def read_pynite_script(path: Path) -> tuple["Recorded", list[tuple[str, str]]]:
+def read_pynite_script(
+    path: Path, without: Collection[str] = ()
+) -> tuple["Recorded", list[tuple[str, str]]]:
     """The model that a script makes, and what was taken for granted.
+
+    Args:
+        path: the script.
+        without: modules that it imports and that do not change the model.
 
     Raises:
         InputError: it cannot be read, or makes no model.
     """
     made: list[Recorded] = []
     module = OpenedNames("Pynite", {"FEModel3D": _Making(made)})
-    names = ("Pynite", "PyNite", "Pynite.FEModel3D", "PyNite.FEModel3D")
+    modules: dict[str, Opened] = {}
+    for name in ("Pynite", "PyNite"):
+        modules |= {name: module, f"{name}.FEModel3D": module}
+        modules |= {f"{name}.{one}": Anything(one, "shows") for one in SHOWING}
     shaping = {*METHODS, *OTHERS, *OLD, "FEModel3D"}
-    interpreter = PythonInterpreter(path.name, dict.fromkeys(names, module), shaping.__contains__)
+    host = Host(
+        shaping.__contains__, QUIET.__contains__, lambda: any(one.members for one in made),
+        lambda name: name in RESULTS or RESULT.fullmatch(name) is not None, without=without,
+    )  # fmt: skip
+    interpreter = PythonInterpreter(path.name, modules, host)
     interpreter.run(read_text(path))
     chosen = next((one for one in made if one.members), None)
     if chosen is None:
         raise InputError("the script makes no model with members", str(path), "give one that does")
+    chosen.unfollowed += interpreter.refusals
     said = list(interpreter.assumed)
     if len([one for one in made if one.members]) > 1:
         said.append(("the script makes several models: the first was read", path.name))
@@ -72,6 +114,8 @@ def read_pynite_script(path: Path) -> tuple["Recorded", list[tuple[str, str]]]:
 
 class _Making(Opened):
     """`FEModel3D`, as a script calls it."""
+
+    trust = "model"
 
     def __init__(self, made: list["Recorded"]) -> None:
         self.made = made
@@ -85,9 +129,16 @@ class _Making(Opened):
 
 
 class Recorded(Opened):
-    """A model as a script builds it, with the parts of an `FEModel3D`."""
+    """A model as a script builds it, with the parts of an `FEModel3D`.
+
+    Attributes:
+        unfollowed: what is not followed and may change it: words and place.
+    """
+
+    trust = "model"
 
     def __init__(self) -> None:
+        self.unfollowed: list[tuple[str, str]] = []
         self.nodes: dict[str, Any] = {}
         self.materials: dict[str, Any] = {}
         self.sections: dict[str, Any] = {}
@@ -98,7 +149,7 @@ class Recorded(Opened):
         self.solution, self.solved_where = "", ""
 
     def attribute(self, name: str) -> Any:
-        return _Method(self, name)
+        return Anything(name, "model") if name in PARTS else _Method(self, name)
 
     def of(self, table: str, name: Any, where: str) -> Any:
         """A part by its name.
@@ -120,11 +171,13 @@ class Recorded(Opened):
 class _Method(Opened):
     """One method of a model."""
 
+    trust = "model"
+
     def __init__(self, model: Recorded, name: str) -> None:
         self.model, self.name = model, name
 
     def attribute(self, name: str) -> Any:
-        return Anything(f"{self.name}.{name}")
+        return Anything(f"{self.name}.{name}", "model")
 
     def call(self, values: list[Any], named: dict[str, Any], where: str) -> Any:
         if self.name in OLD:
@@ -140,6 +193,10 @@ class _Method(Opened):
             self.model.solution, self.model.solved_where = self.name, where
         parameters = METHODS.get(self.name)
         if parameters is None:
+            if self.name not in QUIET:
+                self.model.unfollowed.append(
+                    (f"{self.name!r} is no method that this reader knows", where)
+                )
             return Unknown(f"the result of {self.name}")
         given = Arguments(self.name, [], where)
         names = [parameter.removesuffix("=") for parameter in parameters]
@@ -151,8 +208,22 @@ class _Method(Opened):
                 raise given.error(f"its {parameter} is missing")
         for name, value in found.items():
             given.known(value, name)
+        if "name" in found:
+            self._name_anew(given, found)
         getattr(self, f"_{self.name}")(given, found, where)
         return found.get("name")
+
+    def _name_anew(self, given: Arguments, of: dict[str, Any]) -> None:
+        """See that a part has a name that no other has, as PyNite does; give it one for None."""
+        table = TABLES[self.name]
+        taken = getattr(self.model, table)
+        if of["name"] is None and self.name in NUMBERED:
+            letter, number = NUMBERED[self.name], 1
+            while f"{letter}{number}" in taken:
+                number += 1
+            of["name"] = f"{letter}{number}"
+        if str(of["name"]) in taken:
+            raise given.error(f"there is a {of['name']!r} in {table} already")
 
     def _add_node(self, given: Arguments, of: dict[str, Any], where: str) -> None:
         place = {axis: given.as_number(of[axis], axis) for axis in "XYZ"}
@@ -188,6 +259,7 @@ class _Method(Opened):
             Releases=[False] * 12,
             PtLoads=[],
             DistLoads=[],
+            load_lines={},
             where=where,
         )
 
@@ -239,6 +311,7 @@ class _Method(Opened):
     def _add_member_pt_load(self, given: Arguments, of: dict[str, Any], where: str) -> None:
         member = self.model.of("members", of["member_name"], where)
         size, place = (given.as_number(of[key], key) for key in ("P", "x"))
+        member.load_lines["point", len(member.PtLoads)] = where
         member.PtLoads.append((of["direction"], size, place, str(of.get("case", "Case 1"))))
 
     def _add_member_dist_load(self, given: Arguments, of: dict[str, Any], where: str) -> None:
@@ -248,6 +321,7 @@ class _Method(Opened):
         end = of.get("x2")
         end = self.model.length(member) if end is None else given.as_number(end, "x2")
         case = str(of.get("case", "Case 1"))
+        member.load_lines["line", len(member.DistLoads)] = where
         member.DistLoads.append((of["direction"], first, last, start, end, case))
 
     def _add_member_self_weight(self, given: Arguments, of: dict[str, Any], where: str) -> None:
@@ -257,6 +331,7 @@ class _Method(Opened):
         for member in self.model.members.values():
             weight = factor * member.material.rho * member.section.A
             end = self.model.length(member)
+            member.load_lines["line", len(member.DistLoads)] = where
             member.DistLoads.append((of["global_direction"], weight, weight, 0.0, end, case))
 
     def _among(self, given: Arguments, value: Any, known: tuple[str, ...]) -> None:

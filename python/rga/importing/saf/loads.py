@@ -6,9 +6,10 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.importing.cut import CutMember, clean
-from rga.importing.draft import ModelDraft
+from rga.importing.draft import NEAR, ModelDraft
 from rga.importing.saf.members import Members
 from rga.importing.saf.units import SafUnits
+from rga.importing.saf.words import word
 from rga.importing.sheets import Sheet, SheetRow, read_number
 
 GRAVITY = 9.81
@@ -59,7 +60,7 @@ class _Loads:
     def _direction(self, row: SheetRow, placed: CutMember | None) -> FloatArray | None:
         """Direction of a load: in local axes of a member, or in the file's at a node."""
         name = row.text("direction").lower().removeprefix("m")
-        local = row.text("coordinate system", "Global").lower() == "local"
+        local = word(row, "coordinate system", self.draft) == "local"
         if name not in DIRECTIONS:
             self._refuse(row, f"its direction {name!r} is not read")
             return None
@@ -99,7 +100,7 @@ class _Loads:
             if not vectors:
                 self._refuse(row, "its vector is not given")
                 return
-            local = row.text("coordinate system", "Global").lower() == "local"
+            local = word(row, "coordinate system", self.draft) == "local"
             size: FloatArray = vectors[0] * scale
             if placed is not None and not local:
                 size = placed.local(size.tolist())
@@ -138,7 +139,7 @@ class _Loads:
         for axis in ("ey", "ez"):
             if row.number_of(f"eccentricity {axis}", "m", self.table.small_length, 0.0):
                 self._refuse(row, "a line load off its member")
-        uniform = row.text("distribution", "Uniform").lower() == "uniform"
+        uniform = word(row, "distribution", self.draft) == "uniform"
         sizes: list[FloatArray]
         if row.text("direction").lower() == "vector":
             scale = row.scale("vector 1(x;y;z)", "N/m", self.table.line_load)
@@ -146,7 +147,7 @@ class _Loads:
             if not vectors or (not uniform and len(vectors) < 2):
                 self._refuse(row, "its vectors are not given")
                 return
-            local = row.text("coordinate system", "Global").lower() == "local"
+            local = word(row, "coordinate system", self.draft) == "local"
             sizes = [
                 (v if local else placed.local(v.tolist())) * scale
                 for v in (vectors[0], vectors[0 if uniform else 1])
@@ -158,7 +159,7 @@ class _Loads:
             first = row.number_of("value 1", "N/m", self.table.line_load)
             second = first if uniform else row.number_of("value 2", "N/m", self.table.line_load)
             sizes = [direction * first, direction * second]
-        if row.text("location", "Length").lower().startswith("proj"):
+        if word(row, "location", self.draft) == "projection":
             size = float(np.linalg.norm(sizes[0])) or float(np.linalg.norm(sizes[1])) or 1.0
             along = max((sizes[0], sizes[1]), key=lambda one: float(np.linalg.norm(one)))
             share = float(np.sqrt(max(0.0, 1 - (along[0] / max(np.linalg.norm(along), size)) ** 2)))
@@ -169,14 +170,16 @@ class _Loads:
         """Put a linear load on the parts of a member that it covers."""
         start = self._place(row, "start point", placed, 0.0)
         end = self._place(row, "end point", placed, placed.length)
-        if row.text("origin").lower() == "from end":
+        if word(row, "origin", self.draft) == "from end":
             start, end = placed.length - end, placed.length - start
             sizes = sizes[::-1]
-        if row.text("extent", "Full").lower() == "full" and start == end:
+        if word(row, "extent", self.draft) == "full":
+            near = NEAR * placed.length
+            whole = abs(start) <= near and abs(end - placed.length) <= near
+            if not whole and start != end:
+                self._refuse(row, "its extent is Full, and its points are not those of the whole")
+                return
             start, end = 0.0, placed.length
-        if end - start <= 0:
-            self._refuse(row, "a line load of no length")
-            return
         ends = (sizes[0], sizes[1])
         placed.load_line(row.needed("load case"), (start, end), ends, row.where)
 
@@ -191,7 +194,7 @@ class _Loads:
         """A place along a member [m]: a share of its length, or a length."""
         if row.raw(column) is None:
             return default
-        if row.text("coordinate definition", "Absolute").lower() == "relative":
+        if word(row, "coordinate definition", self.draft) == "relative":
             share = row.raw(column)
             return read_number(share, column, row.where) * placed.length
         return row.number_of(column, "m", self.table.length)
@@ -203,4 +206,4 @@ class _Loads:
         count = int(row.number_of("repeat (n)", default=1.0)) or 1
         for number in range(max(1, min(count, 1000))):
             place = first + number * step
-            yield placed.length - place if row.text("origin").lower() == "from end" else place
+            yield placed.length - place if word(row, "origin", self.draft) == "from end" else place

@@ -8,6 +8,7 @@ from rga.importing.cut import CutMember, add_cut
 from rga.importing.draft import ModelDraft
 from rga.importing.saf.properties import Properties
 from rga.importing.saf.units import SafUnits
+from rga.importing.saf.words import word
 from rga.importing.sheets import Sheet, SheetRow
 
 FREEDOMS = {"ux": "ux", "uy": "uy", "uz": "uz", "fix": "rx", "fiy": "ry", "fiz": "rz"}
@@ -53,7 +54,7 @@ class Members:
         for node in (*nodes, *row.names("internal nodes")):
             if node not in self.draft.nodes:
                 raise InputError(f"node {node!r} is in no sheet", row.where, "add it")
-        behaviour = row.text("behaviour in analysis", "Standard").lower()
+        behaviour = word(row, "behaviour in analysis", self.draft)
         axial = behaviour.startswith("axial")
         if behaviour in ("compression only", "tension only"):
             self.draft.notes.refuse(
@@ -94,7 +95,7 @@ class Members:
                 "throughout", "cut it into parts of a section each",
             )  # fmt: skip
         for axis in "yz":
-            for end in ("beg", "end"):
+            for end in ("beg", "begin", "end"):
                 name = f"analysis {axis} eccentricity of {end} node"
                 if row.number_of(name, "m", self.table.small_length, 0.0):
                     self._refuse(row, f"it lies off its nodes ({name})", "move its nodes")
@@ -124,7 +125,7 @@ class Members:
             self._refuse(row, "it has no length", "part its nodes")
             return None
         x = along / size
-        rule = row.text("lcs", "y by vector").lower()
+        rule = word(row, "lcs", self.draft)
         raw = [row.number_of(f"coordinate {axis}", "m", self.table.length, 0.0) for axis in "xyz"]
         given = np.array(self.draft.vector(raw))
         if "point" in rule:
@@ -138,7 +139,7 @@ class Members:
             level = np.cross([0.0, 0.0, 1.0], x)
             y = level if np.linalg.norm(level) > 1e-9 else np.array([0.0, 1.0, 0.0])
         y /= np.linalg.norm(y)
-        turn = np.radians(row.number_of("lcs rotation", default=0.0))
+        turn = np.radians(row.number_of("lcs rotation", "deg", "deg", 0.0))
         y = np.cos(turn) * y + np.sin(turn) * np.cross(x, y)
         return np.stack([x, y, np.cross(x, y)])
 
@@ -149,7 +150,7 @@ class Members:
         released: dict[str, dict[str, list[str]]] = {}
         springs: dict[str, dict[str, dict[str, float]]] = {}
         for row in self.sheets.get("RelConnectsStructuralMember", ()):
-            position = row.text("position", "Both").lower()
+            position = word(row, "position", self.draft)
             ends = {"begin": "i", "end": "j"}.get(position, "ij")
             for column, dof in FREEDOMS.items():
                 state = row.text(column, "Rigid").lower()

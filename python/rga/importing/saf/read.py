@@ -8,6 +8,7 @@ from rga.importing.saf.loads import add_loads
 from rga.importing.saf.members import Members
 from rga.importing.saf.properties import Properties
 from rga.importing.saf.units import SafUnits
+from rga.importing.saf.words import word
 from rga.importing.sheets import Sheet
 from rga.importing.workbook import read_properties
 
@@ -45,6 +46,18 @@ MATTERS = {
     "StructuralPointSupportDef": "moved supports",
 }
 
+#: sheets that shape no 1D model
+QUIET = frozenset((
+    "CompositeShapeDef", "StructuralCurveEdge", "StructuralCurveMemberVarying",
+    "StructuralLoadCombination", "StructuralLoadGroup", "StructuralProxyElement",
+    "StructuralProxyElementFaces", "StructuralProxyElementVertices", "StructuralStorey",
+))  # fmt: skip
+#: columns that name parts for other programs
+NAMING = frozenset((
+    "color", "cross-section type", "description", "description id of the profile", "id",
+    "parent id", "type",
+))  # fmt: skip
+
 
 def is_saf(sheets: dict[str, Sheet]) -> bool:
     """Whether a workbook is one of SAF."""
@@ -77,6 +90,7 @@ def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> ModelDraft
     for row in sheets.get("StructuralPointConnection", ()):
         place = [row.number_of(f"coordinate {axis}", "m", table.length) for axis in ("x", "y", "z")]
         draft.add_node(row.needed("name"), place, row.where)
+    sheets = _named(sheets)
     properties = Properties(sheets, table, draft, chosen)
     members = Members(sheets, table, draft, properties)
     members.add()
@@ -86,12 +100,18 @@ def read_saf(path: Path, sheets: dict[str, Sheet], chosen: Chosen) -> ModelDraft
     return draft
 
 
+def _named(sheets: dict[str, Sheet]) -> dict[str, Sheet]:
+    """Sheets by their names as SAF writes them, in whatever letters the file does."""
+    names = {name.lower(): name for name in (*READ, *MATTERS, *QUIET)}
+    return {names.get(name.strip().lower(), name): sheet for name, sheet in sheets.items()}
+
+
 def _add_supports(sheets: dict[str, Sheet], table: SafUnits, draft: ModelDraft) -> None:
     for row in sheets.get("StructuralPointSupport", ()):
         node = row.needed("node")
         held: list[str] = []
         for name, dof in FREEDOMS.items():
-            state = row.text(name, "Free").lower()
+            state = row.text(name).lower() or "not given"
             if state == "rigid":
                 held.append(dof)
             elif state == "flexible":
@@ -104,9 +124,10 @@ def _add_supports(sheets: dict[str, Sheet], table: SafUnits, draft: ModelDraft) 
                     draft.add_spring(node, None, dof, stiffness, row.where)
             elif state != "free":
                 draft.notes.refuse(
-                    row.where, f"{name} is {state}: not linear", "make it rigid or free", "partial"
-                )
-        if row.text("coordinate system", "Global").lower() == "local":
+                    row.where, f"{name} is {state}, none of rigid, free and flexible",
+                    "make it one of them", "partial",
+                )  # fmt: skip
+        if word(row, "coordinate system", draft) == "local":
             draft.notes.refuse(
                 row.where, "a support in local axes", "write it in global axes", "partial"
             )
@@ -121,13 +142,18 @@ def _say_sheets(sheets: dict[str, Sheet], draft: ModelDraft) -> None:
     quiet = []
     for name, sheet in sheets.items():
         if name in READ:
+            if columns := [one for one in sheet.unread() if one not in NAMING]:
+                said = f"columns that are not read: {', '.join(columns)}"
+                draft.notes.say("dropped", f"sheet {name}", said)
             continue
         rows = list(sheet)
         names = ", ".join(row.text("name") for row in rows if row.text("name"))
         shown = f"{names[:200]}{' ...' if len(names) > 200 else ''}"
-        if name in MATTERS and rows:
+        unknown = name.startswith(("Structural", "RelConnects")) and name not in QUIET
+        if (name in MATTERS or unknown) and rows:
+            what = MATTERS.get(name, "rows of a sheet that is not known")
             draft.notes.refuse(
-                f"sheet {name}", f"{len(rows)} {MATTERS[name]}: {shown}",
+                f"sheet {name}", f"{len(rows)} {what}: {shown}",
                 "model them otherwise, or leave them out", "partial",
             )  # fmt: skip
         elif rows:

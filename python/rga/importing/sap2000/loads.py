@@ -100,7 +100,7 @@ def _distributed(
         start, end = (_place(row, end, frame.length, units) for end in "AB")
         first, last = (direction * row.number(f"FOverL{end}") * units.line_load for end in "AB")
         case = row.text("LoadPat")
-        frame.load_line(case, (start, min(end, frame.length)), (first, last), row.where)
+        frame.load_line(case, (start, end), (first, last), row.where)
 
 
 def _point(row: TableRow, units: Units, draft: ModelDraft, frames: dict[str, CutMember]) -> None:

@@ -9,6 +9,7 @@ from rga.importing.cut import CutMember, add_cut, nodes_between
 from rga.importing.draft import ModelDraft
 from rga.importing.options import Chosen
 from rga.importing.reading import read_text
+from rga.importing.sap2000.active import hold_inactive
 from rga.importing.sap2000.axes import local_y
 from rga.importing.sap2000.loads import add_loads
 from rga.importing.sap2000.names import MATTERS, QUIET, READ
@@ -45,6 +46,7 @@ def read_sap2000(path: Path, chosen: Chosen) -> ModelDraft:
     system = chosen.system or _units(tables, path.name)
     reader = _Reader(tables, system, draft)
     reader.read()
+    hold_inactive(tables, draft)
     add_loads(tables, system, draft, reader.frames, reader.weights)
     _say_tables(tables, draft)
     return draft
@@ -79,18 +81,14 @@ class _Reader:
             for row in tables.of("FRAME AUTO MESH ASSIGNMENTS")
             if row.yes("AutoMesh") and row.yes("AtJoints")
         }
-        self.materials = {
-            row.text("Material"): row
-            for row in tables.of("MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES")
-        }
+        self.materials = tables.by(
+            "Material", "MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES"
+        )
         self.yields = {
             row.text("Material"): row.number("Fy", 0.0)
             for row in tables.of("MATERIAL PROPERTIES 03A - STEEL DATA")
         }
-        self.sections = {
-            row.text("SectionName"): row
-            for row in tables.of("FRAME SECTION PROPERTIES 01 - GENERAL")
-        }
+        self.sections = tables.by("SectionName", "FRAME SECTION PROPERTIES 01 - GENERAL")
 
     def read(self) -> None:
         """Read all of them."""
@@ -102,11 +100,9 @@ class _Reader:
                 raise InputError(f"coordinates are in {system!r}", row.where, "export them GLOBAL")
             place = [self.units.length * row.number(axis) for axis in ("XorR", "Y", "Z")]
             self.draft.add_node(row.text("Joint"), place, row.where)
-        assigned = {row.text("Frame"): row for row in self.tables.of("FRAME SECTION ASSIGNMENTS")}
-        angles = {
-            row.text("Frame"): row.number("Angle", 0.0)
-            for row in self.tables.of("FRAME LOCAL AXES ASSIGNMENTS 1 - TYPICAL")
-        }
+        assigned = self.tables.by("Frame", "FRAME SECTION ASSIGNMENTS")
+        axes = self.tables.by("Frame", "FRAME LOCAL AXES ASSIGNMENTS 1 - TYPICAL")
+        angles = {name: row.number("Angle", 0.0) for name, row in axes.items()}
         released = self._releases()
         for row in self.tables.of("CONNECTIVITY - FRAME"):
             self._add_frame(row, assigned, angles, released)
@@ -171,6 +167,7 @@ class _Reader:
             return
         y = local_y(along, angles.get(name, 0.0))
         x = along / np.linalg.norm(along)
+        self._bends(section, released.get(name, {"i": [], "j": []}))
         nodes = nodes_between(self.draft, *ends) if name in self.meshed else ends
         frame = add_cut(
             self.draft, name, nodes, self._section(section, material),
@@ -182,6 +179,16 @@ class _Reader:
             weight = self.materials[material].number("UnitWeight", 0.0)
             scale = self.units.force / self.units.length
             self.weights[name] = section.number("Area") * weight * scale
+
+    def _bends(self, section: TableRow, released: dict[str, list[str]]) -> None:
+        """See that a section has the second moments by which a frame bends."""
+        for field, dof in (("I33", "rz"), ("I22", "ry")):
+            hinged = all(dof in ends for ends in released.values())
+            if not hinged and section.number(field, 0.0) <= 0:
+                self.draft.notes.refuse(
+                    section.where, f"section {section.text('SectionName')!r} has no {field}, by "
+                    "which its frames bend", "give it", "values",
+                )  # fmt: skip
 
     def _material(self, name: str, given: TableRow) -> dict[str, float] | None:
         row = self.materials.get(name)

@@ -59,8 +59,15 @@ class TableRow:
         return number
 
     def yes(self, name: str) -> bool:
-        """Whether a field says yes."""
-        return self.get(name).lower() == "yes"
+        """Whether a field says yes.
+
+        Raises:
+            InputError: it says neither yes nor no.
+        """
+        word = self.get(name).lower()
+        if word not in ("", "yes", "no"):
+            raise InputError(f"{name} is {word!r}, neither Yes nor No", self.where, "write one")
+        return word == "yes"
 
 
 @dataclass
@@ -75,14 +82,30 @@ class Tables:
         """The rows of a table; none where it is not in the file."""
         return self.rows.get(name, [])
 
+    def by(self, key: str, name: str) -> dict[str, TableRow]:
+        """The rows of a table by a field that names each of them.
+
+        Raises:
+            InputError: a name stands twice.
+        """
+        found: dict[str, TableRow] = {}
+        for row in self.of(name):
+            if row.text(key) in found:
+                raise InputError(
+                    f"{key} {row.text(key)!r} stands twice in {name!r}, first in line "
+                    f"{found[row.text(key)].line}", row.where, "leave one of them",
+                )  # fmt: skip
+            found[row.text(key)] = row
+        return found
+
 
 def read_tables(text: str, file: str) -> Tables:
     """The tables of a file.
 
     Raises:
-        InputError: there is none, or the file ends within a row.
+        InputError: there is none, or the file ends before its line END TABLE DATA.
     """
-    tables = Tables()
+    tables, ended = Tables(), False
     current: list[TableRow] | None = None
     for number, (line, row) in enumerate(_rows(text, file)):
         if number > MOST_ROWS:
@@ -95,13 +118,17 @@ def read_tables(text: str, file: str) -> Tables:
             current = tables.rows.setdefault(name, [])
             tables.lines.setdefault(name, line)
         elif row.upper().startswith("END TABLE DATA"):
-            current = None
+            current, ended = None, True
         elif current is not None:
             current.append(TableRow(_fields(row), line))
         elif not row.startswith("File "):
             tables.others.append((row[:60], f"line {line}"))
     if not tables.rows:
         raise InputError('there is no line TABLE: "..."', file, "export the model as text tables")
+    if not ended:
+        raise InputError(
+            "the file has no line END TABLE DATA: its end is missing", file, "give all of it"
+        )
     return tables
 
 

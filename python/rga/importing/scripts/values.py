@@ -1,7 +1,7 @@
 """Values of a script, and arguments of its commands."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 from rga.errors import InputError
 
@@ -13,15 +13,21 @@ LONGEST = 300_000
 WEIGHT = 2_000
 
 
+#: what a thing that is not followed may do: show whatever it is given; compute, and leave alone
+#: what it is not given; run code of its own; or it is a part of the model itself
+Trust = Literal["shows", "computes", "foreign", "model"]
+
+
 class Unknown:
     """A value that only running the script would give.
 
     Attributes:
         reason: what gives it, for an error.
+        trust: what calling it may do.
     """
 
-    def __init__(self, reason: str) -> None:
-        self.reason = reason
+    def __init__(self, reason: str, trust: Trust = "computes") -> None:
+        self.reason, self.trust = reason, trust
 
 
 class Steps:

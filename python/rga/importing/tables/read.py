@@ -37,6 +37,8 @@ NEEDED = ("nodes", "members", "sections", "materials")
 #: names of properties as model files have them
 NAMES = {"e": "E", "a": "A", "iy": "Iy", "iz": "Iz", "j": "J", "asy": "Asy", "asz": "Asz",
          "yield strength": "yield_strength"}  # fmt: skip
+#: the property that each row must have
+FIRST = {"materials": "e", "sections": "a"}
 YES = {"1", "yes", "x", "true", "fixed", "rigid"}
 NO = {"", "0", "no", "-", "false", "free"}
 
@@ -61,21 +63,19 @@ def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> ModelDr
     for name in NEEDED:
         if name not in tables:
             raise InputError(f"there is no table {name!r}", str(path), f"add {', '.join(NEEDED)}")
-    flat = None
-    for axis, plane in (("y", "xz"), ("z", "xy"), ("x", "yz")):
-        if not tables["nodes"].has(axis):
-            flat = plane
+    flat = _plane(tables["nodes"])
     draft = ModelDraft(path.stem, chosen.accept, chosen.up or "z", flat)
     if flat:
         draft.notes.say("assumed", tables["nodes"].name, f"a model of the plane {flat}")
     for row in tables["nodes"]:
-        place = [row.number_of(axis, "m", default=0.0 if flat else None) for axis in "xyz"]
+        place = [row.number_of(axis, "m") if tables["nodes"].has(axis) else 0.0 for axis in "xyz"]
         draft.add_node(row.needed("name"), place, row.where)
     for kind, table in (("materials", draft.materials), ("sections", draft.sections)):
         for row in tables[kind]:
             name = row.needed("name")
             if name in table:
                 raise InputError(f"{name!r} is there already", row.where, "give it another name")
+            row.number_of(FIRST[kind], COLUMNS[kind][FIRST[kind]])
             table[name] = {
                 NAMES.get(column, column): row.number_of(column, si)
                 for column, si in COLUMNS[kind].items()
@@ -98,6 +98,16 @@ def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> ModelDr
     return draft
 
 
+def _plane(nodes: Sheet) -> str | None:
+    """The plane of a model of which one coordinate has no column."""
+    missing = [axis for axis in "xyz" if not nodes.has(axis)]
+    if len(missing) > 1:
+        raise InputError(
+            f"the columns {', '.join(missing)} are missing", nodes.name, "give two of x, y, z"
+        )
+    return "xyz".replace(missing[0], "") if missing else None
+
+
 def _member(row: SheetRow, draft: ModelDraft) -> None:
     kind = row.text("kind", "frame").lower()
     if kind not in ("truss", "frame"):
@@ -106,6 +116,13 @@ def _member(row: SheetRow, draft: ModelDraft) -> None:
         if row.needed(table) not in getattr(draft, f"{table}s"):
             name = row.needed(table)
             raise InputError(f"there is no {table} {name!r}", row.where, f"add it to {table}s")
+    own = draft.sections[row.needed("section")]
+    bending = [name for name in ("Iy", "Iz", "J") if not own.get(name)]
+    if kind == "frame" and (len(bending) == 3 if draft.plane else bending):
+        draft.notes.refuse(
+            row.where, f"its section {row.needed('section')!r} has no {', '.join(bending)}, and a "
+            "frame member bends and twists by them", "fill them, or make it a truss", "values",
+        )  # fmt: skip
     local_y = row.names("local y")
     if local_y and len(local_y) != 3:
         raise InputError("local y is no vector", row.where, "write it as 0;0;1")
@@ -131,6 +148,23 @@ def _yes(row: SheetRow, column: str) -> bool:
     return word in YES
 
 
+def _used(row: SheetRow, kind: str) -> None:
+    """See that a load gives values, and none that a load of its kind does not use."""
+    own = {"node": "fm", "member": "wp"}[kind]
+    values = [name for name, si in COLUMNS["loads"].items() if si and name != "at"]
+    given = [name for name in values if row.raw(name) is not None]
+    for name in given:
+        if name[0] not in own and row.number_of(name, COLUMNS["loads"][name]):
+            raise InputError(
+                f"{name!r} is given, which is no load on a {kind}", row.where,
+                "put it in a row of its own",
+            )  # fmt: skip
+    if row.raw("at") is not None and not any(name[0] == "p" for name in given):
+        raise InputError("'at' is given without px, py or pz", row.where, "give one of them")
+    if not given:
+        raise InputError("the load has no value", row.where, f"fill one of {', '.join(values)}")
+
+
 def _load(row: SheetRow, draft: ModelDraft) -> None:
     case, units = row.text("case", "loads"), COLUMNS["loads"]
 
@@ -141,6 +175,7 @@ def _load(row: SheetRow, draft: ModelDraft) -> None:
     node, member = row.text("node"), row.text("member")
     if bool(node) == bool(member):
         raise InputError("a load is on a node or on a member", row.where, "name one of them")
+    _used(row, "node" if node else "member")
     if node:
         draft.add_force(case, node, [*three("f"), *three("m")], row.where)
         return

@@ -11,17 +11,21 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.model import Model
+from rga.records.drafting.candidates import candidate_lines
 from rga.records.drafting.doubts import codes_in, gaps_in, readable, still_value
 from rga.records.drafting.matching import Match, matches
+from rga.records.drafting.told import Doubts
 from rga.records.drafting.toml import key, listed, text
 from rga.records.load import load_record
-from rga.records.mapping import TimeColumns, mapping_of
+from rga.records.mapping import TO_CHECK, TimeColumns, mapping_of
 from rga.records.read import read_table
 from rga.records.table import Table
 from rga.records.times import Clock, read_clock
 
 #: days of a spreadsheet between which numbers are taken for dates, 1982 to 2064
 _DAYS = (30_000, 60_000)
+#: likeness from which a match is no doubt: the same name, or the same place and kind
+SURE = 0.9
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,12 @@ class _Logger:
     time_lines: list[str] = field(default_factory=list)
     time: TimeColumns = field(default_factory=TimeColumns)
     doubts: list[str] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        """The names of its files."""
+        names = [table.path.name for table in self.tables]
+        return ", ".join(names) if len(names) < 4 else f"{names[0]} .. {names[-1]}"
 
     @property
     def first(self) -> Table:
@@ -83,18 +93,21 @@ def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> MappingD
     loggers = _loggers([read_table(path, None, known) for path in files])
     for logger in loggers:
         _look_at_time(logger)
-    found = matches(
+    found, unsure = matches(
         [one.first for one in loggers], model, [one.taken + one.empty for one in loggers]
     )
     sensors = [sum(m.group == k and m.name in model.sensors for m in found)
                for k in range(len(loggers))]  # fmt: skip
     main = max(range(len(loggers)), key=lambda k: (sensors[k], loggers[k].first.frame.height))
-    lines, doubts = _main_lines(loggers, main, found, model, folder)
+    doubts = Doubts()
+    lines = _all_lines(loggers, main, found, model, folder, doubts)
+    for doubt in unsure:
+        doubts.add(doubt)
     content = "\n".join(lines) + "\n"
     fault = _fault(content, folder, model)
     if fault is not None:
         content = f"# TO FILL IN: as it stands the record is not read: {fault}\n{content}"
-    return MappingDraft(content, found, doubts, fault)
+    return MappingDraft(content, found, doubts.told(), fault)
 
 
 def _fault(content: str, folder: Path, model: Model) -> str | None:
@@ -141,7 +154,10 @@ def _look_at_time(logger: _Logger) -> None:
     if clock is None:
         return
     if isinstance(clock.start, str) and datetime.fromisoformat(clock.start).tzinfo is None:
-        logger.time_lines.append('# zone = "Europe/Berlin"  # the stamps have none: state it')
+        logger.time_lines.append(
+            '# zone = "+01:00"  # the stamps have none: hours ahead of UTC, or a place such as '
+            '"Europe/Berlin" if the clock changes to summer time there'
+        )
         logger.doubts.append("the time stamps have no zone")
     if clock.time_format == "seconds":
         logger.doubts.append("the time is counted in seconds, the date is not known")
@@ -156,36 +172,52 @@ def _is_days(table: Table, column: str) -> bool:
     return values is not None and dated and bool(((values > _DAYS[0]) & (values < _DAYS[1])).all())
 
 
-def _main_lines(
-    loggers: Sequence[_Logger], main: int, found: Sequence[Match], model: Model, folder: Path
-) -> tuple[list[str], list[str]]:
-    """The lines of the mapping, and the doubts."""
+def _all_lines(
+    loggers: Sequence[_Logger],
+    main: int,
+    found: Sequence[Match],
+    model: Model,
+    folder: Path,
+    doubts: Doubts,
+) -> list[str]:
+    """The lines of the mapping."""
     lines = ["# How these files are read: a first guess of `rga import-record`, to be checked."]
-    doubts: list[str] = []
-    own = [one for one in found if one.group == main]
-    lines += _file_lines(loggers[main], own, model, folder, "", doubts)
     matched = {one.name for one in found}
     lacking = [name for name in model.sensors if name not in matched]
-    for name in lacking:
-        lines.append(f'{key(name)} = "TO CHECK: no column has a name like it"')
-        doubts.append(f"no column is like the sensor {name!r}: it is left out")
-    doubts += [
-        f"no column is like the context {name!r}: it is taken as not measured"
-        for name in model.context
-        if name not in matched
-    ]
-    for number, logger in enumerate(loggers):
-        if number == main:
-            continue
+    contexts = [name for name in model.context if name not in matched]
+    for match in found:
+        if match.likeness < SURE:
+            one = f"{{}} ({match.why})"
+            said = f"{match.name} is taken from {match.column!r}"
+            doubts.add(one, one, said)
+    order = [main, *(number for number in range(len(loggers)) if number != main)]
+    for number in order:
+        logger = loggers[number]
         theirs = [one for one in found if one.group == number]
-        names = ", ".join(table.path.name for table in logger.tables)
+        prefix = "" if number == main else "beside."
+        where = logger.name if len(loggers) > 1 else ""
+        if number != main:
+            lines += ["", "[[beside]]", *_matching_lines(loggers[main], logger)]
         if not theirs:
-            lines += ["", f"# {names}: no column is like a channel of the model"]
-            doubts.append(f"{names}: no column is like a channel of the model")
-            continue
-        lines += ["", "[[beside]]", *_matching_lines(loggers[main], logger)]
-        lines += _file_lines(logger, theirs, model, folder, "beside.", doubts)
-    return lines, doubts
+            doubts.add("no column is like a channel: its lines are remarks", where=logger.name)
+        open_ones = [*lacking, *contexts]
+        lines += _file_lines(logger, theirs, open_ones, model, folder, prefix, doubts, where)
+        if number == main:
+            lines += [f'{key(name)} = "{TO_CHECK}: no column has a name like it"'
+                      for name in lacking]  # fmt: skip
+    for name in lacking:
+        doubts.add(
+            "no column is like the sensor {}: it is left out",
+            "no columns are like the sensors {}: they are left out",
+            repr(name),
+        )
+    for name in contexts:
+        doubts.add(
+            "no column is like the context {}: it is taken as not measured",
+            "no columns are like the contexts {}: they are taken as not measured",
+            repr(name),
+        )
+    return lines
 
 
 def _matching_lines(main: _Logger, other: _Logger) -> list[str]:
@@ -196,27 +228,30 @@ def _matching_lines(main: _Logger, other: _Logger) -> list[str]:
         else 0.0
         for one in (main, other)
     ]
-    rates = f"# a row each {steps[1]:g} s, and each {steps[0]:g} s in the files above"
-    way = "mean" if steps[1] < steps[0] else ("interpolate" if steps[1] > steps[0] else "nearest")
-    return [f'match = "{way}"  {rates}; "nearest", "interpolate" or "mean"']
+    rates = f"a row each {steps[1]:g} s, and each {steps[0]:g} s in the files above"
+    if steps[0] == steps[1]:
+        return [f'match = "nearest"  # {rates}; or "interpolate", "mean"']
+    why = 'its value at the time of a row; "mean" where the files above hold means themselves'
+    return [f'match = "interpolate"  # {why}; {rates}']
 
 
 def _file_lines(
     logger: _Logger,
     found: Sequence[Match],
+    lacking: Sequence[str],
     model: Model,
     folder: Path,
     prefix: str,
-    doubts: list[str],
+    doubts: Doubts,
+    where: str,
 ) -> list[str]:
     """Keys of one logger; the lines end within its table of unused channels."""
     table = logger.first
     names = [Path(relpath(one.path, folder)).as_posix() for one in logger.tables]
-    said = ", ".join(Path(name).name for name in names)
     lines = [f"files = {listed(names)}"]
     lines += [f"# {table.format}: {note}" for note in (*table.notes, *table.warnings)]
-    where = "" if not prefix else f"{said}: "
-    doubts += [f"{where}{doubt}" for doubt in (*table.warnings, *logger.doubts)]
+    for doubt in (*table.warnings, *logger.doubts):
+        doubts.add(doubt, where=where)
     lines += _missing_lines(logger, doubts, where)
     if logger.clock is not None and logger.clock.columns:
         lines += [f"# {note}" for note in logger.clock.notes]
@@ -227,14 +262,22 @@ def _file_lines(
         lines.append(_channel_line(match, table, model, doubts))
     columns = {one.column for one in found}
     left = [c for c in table.frame.columns if c not in columns and c not in logger.taken]
+    if not found:
+        lines += candidate_lines(table, left, lacking, model)
     lines += ["", f"[{prefix}unused]"]
     for column in left:
-        lines.append(f"{key(column)} = {text(_reason(table, column))}")
-        doubts.append(f"{where}column {column!r} is left out: {_reason(table, column)}")
+        reason = _reason(table, column)
+        lines.append(f"{key(column)} = {text(reason)}")
+        doubts.add(
+            f"column {{}} is left out: {reason}",
+            f"columns {{}} are left out: {reason}",
+            repr(column),
+            where,
+        )
     return lines
 
 
-def _channel_line(match: Match, table: Table, model: Model, doubts: list[str]) -> str:
+def _channel_line(match: Match, table: Table, model: Model, doubts: Doubts) -> str:
     parts = [f"column = {text(match.column)}"]
     unit = table.units.get(match.column)
     sensor = model.sensors.get(match.name)
@@ -242,42 +285,46 @@ def _channel_line(match: Match, table: Table, model: Model, doubts: list[str]) -
     if unit is None:
         said = f"no unit is stated: {wanted} is taken"
         parts.append(f"unit = {text(wanted)}")
-        doubts.append(f"{match.name}: {said}, as in the model")
+        stated = "no unit is stated for {}: the model's is taken"
+        doubts.add(stated, stated, f"{match.name} ({wanted})")
     else:
         said = f"in {unit}" if unit == wanted else f"in {unit}, converted to {wanted}"
-    if match.likeness < 1:
-        doubts.append(f"{match.name} is taken from {match.column!r} ({match.why})")
     values = readable(table, match.column)
     if values is not None and (still := still_value(values)) is not None:
-        doubts.append(f"{match.name} reads {still:g} throughout: does it work?")
+        doubts.add(
+            f"{{}} reads {still:g} throughout: does it work?",
+            f"{{}} read {still:g} throughout: do they work?",
+            match.name,
+        )
     return f"{key(match.name)} = {{ {', '.join(parts)} }}  # {match.why}, {said}"
 
 
 def _reason(table: Table, column: str) -> str:
     values = readable(table, column)
     if values is None:
-        return "TO CHECK: it holds text or times, no numbers"
+        return f"{TO_CHECK}: it holds text or times, no numbers"
     if np.isnan(values).all():
         return "it holds no value"
     still = still_value(values)
     if still is not None:
-        return f"TO CHECK: it reads {still:g} throughout"
-    return "TO CHECK: no channel of the model has a name like it"
+        return f"{TO_CHECK}: it reads {still:g} throughout"
+    return f"{TO_CHECK}: no channel of the model has a name like it"
 
 
-def _missing_lines(logger: _Logger, doubts: list[str], where: str) -> list[str]:
-    codes: dict[float, list[str]] = {}
+def _missing_lines(logger: _Logger, doubts: Doubts, where: str) -> list[str]:
+    codes: dict[float, dict[str, int]] = {}
     for table in logger.tables:
         for column in table.frame.columns:
             values = readable(table, column) if column not in logger.taken else None
-            if values is not None:
-                for code, rows in codes_in(values).items():
-                    place = f"{rows} rows of {column} in {table.path.name}"
-                    codes.setdefault(code, []).append(place)
+            for code, rows in (codes_in(values) if values is not None else {}).items():
+                of_code = codes.setdefault(code, {})
+                of_code[column] = of_code.get(column, 0) + rows
     if not codes:
         return []
-    for code, places in codes.items():
-        doubts.append(f"{where}{code:g} stands in {', '.join(places[:5])}: is it a missing value?")
+    for code, columns in codes.items():
+        shown = ", ".join(f"{column} ({rows} rows)" for column, rows in list(columns.items())[:5])
+        more = f" and {len(columns) - 5} more columns" if len(columns) > 5 else ""
+        doubts.add(f"{code:g} stands in {shown}{more}: is it a missing value?", where=where)
     stated = listed([f"{code:g}" for code in codes])
     return [
         f"# missing = {stated}  # far from all else: take the # away if they are missing values"

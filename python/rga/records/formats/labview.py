@@ -163,7 +163,8 @@ def _rows(text: Text, lines: Sequence[str], segment: _Segment, separator: str) -
     names = checked_names(names, text, segment.header)
     body = "\n".join(lines[segment.header + 1 : segment.end]).encode()
     place = segment.header + 1
-    return read_rows(body, separator, names, text.path, place, segment.header, ragged=True)
+    frame, _ = read_rows(body, separator, names, text.path, place, segment.header, ragged=True)
+    return frame
 
 
 def _elapsed(text: Text, segment: _Segment, frame: pl.DataFrame, notation: Notation) -> FloatArray:

@@ -5,13 +5,13 @@ from collections.abc import Collection, Sequence
 
 from rga.errors import InputError
 from rga.records.formats.encoding import Text
-from rga.records.formats.rows import read_rows
+from rga.records.formats.rows import open_quote, read_rows
 from rga.records.formats.shape import Shape, find_shape, rows_above, split, uncommented
 from rga.records.mapping import FileMapping
 from rga.records.numbers import notation_of
 from rga.records.table import Table
 from rga.records.times.named import time_of
-from rga.records.units import name_and_unit, without_brackets
+from rga.records.units import name_and_unit, states_none, without_brackets
 
 #: bytes at the head of a file by which its shape and its notation are known
 HEAD = 1 << 18
@@ -50,6 +50,10 @@ def read_plain(text: Text, mapping: FileMapping, known: Collection[str]) -> Tabl
             str(text.path),
             "state header_line of the table that is meant in import.toml, or give it as a file",
         )
+    head = range(shape.data if shape.header is None else shape.header, min(shape.data, len(lines)))
+    opened = next((line for line in head if lines[line].count('"') % 2), None)
+    if opened is not None:
+        raise open_quote(text.path, opened)
     names = _names(lines, shape, text)
     return table_of(text, lines, shape, names, mapping, "plain text")
 
@@ -78,7 +82,7 @@ def table_of(
         ragged: rows may leave out cells at their end.
     """
     body = text.below(shape.data) if body is None else body
-    frame = read_rows(
+    frame, skipped = read_rows(
         body, shape.delimiter, names, text.path, shape.data, shape.header, ragged=ragged
     )
     units = _units(lines, shape, names)
@@ -101,6 +105,7 @@ def table_of(
         frame=frame,
         row_name="line",
         first=shape.data + 1,
+        skipped=skipped,
         format=format_name,
         units=units,
         names={name: one for name, (one, _) in bare.items() if one != name},
@@ -167,7 +172,8 @@ def _units(lines: Sequence[str], shape: Shape, names: Sequence[str]) -> dict[str
     if shape.units is None or shape.units >= len(lines):
         return {}
     said = (without_brackets(cell) for cell in split(lines[shape.units], shape.delimiter))
-    return {name: unit for name, unit in zip(names, said, strict=False) if name and unit}
+    pairs = zip(names, said, strict=False)
+    return {name: unit for name, unit in pairs if name and not states_none(unit)}
 
 
 def _notes(shape: Shape, mapping: FileMapping, decimal: str, thousands: str) -> list[str]:

@@ -18,8 +18,10 @@ def read_rows(
     header: int | None = None,
     *,
     ragged: bool = False,
-) -> pl.DataFrame:
-    """Rows as columns of text, null where a cell is empty.
+) -> tuple[pl.DataFrame, tuple[int, ...]]:
+    """Rows as columns of text, null where a cell is empty; and the blank lines between them.
+
+    A blank line is no row, unless there is but one column, whose value may be missing.
 
     Args:
         body: the rows, UTF-8 with line feeds.
@@ -30,12 +32,15 @@ def read_rows(
         header: line of the names, counted from 0.
         ragged: rows may leave out cells at their end.
 
+    Returns:
+        The columns, and the lines of the file that were passed over, counted from 1.
+
     Raises:
-        InputError: a row has more or fewer cells than there are names.
+        InputError: a row has more or fewer cells than there are names, or a quote does not end.
     """
     body = body.rstrip(b"\n\x1a\x00 ")
     if not body:
-        return pl.DataFrame(schema=dict.fromkeys(filter(None, names), pl.String))
+        return pl.DataFrame(schema=dict.fromkeys(filter(None, names), pl.String)), ()
     if delimiter == " ":
         body = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", body))
         delimiter = "\t"
@@ -46,8 +51,8 @@ def read_rows(
         )
     quoted = b'"' in body
     count = len(names)
-    lengths = _lengths(body, delimiter, quoted)
-    most = int(lengths.max() or 0) if len(lengths) else 0  # type: ignore[arg-type]
+    lengths = _lengths(body, delimiter, quoted, path, first)
+    most = int(lengths.max() or 0)  # type: ignore[arg-type]
     wide = max(count, most)
     if most > 10 * count + 1000:
         raise InputError(
@@ -72,18 +77,22 @@ def read_rows(
     kept = [one for one, name in zip(ids, names, strict=False) if name]
     frame = frame.select(kept).rename(dict(zip(kept, [n for n in names if n], strict=True)))
     filled = frame.select(pl.any_horizontal(pl.all().is_not_null())).to_series().arg_true()
-    # A file may end with blank lines; blank lines between rows are left to be found as missing.
-    return frame.head(int(filled[-1]) + 1 if len(filled) else 0)
+    frame = frame.head(int(filled[-1]) + 1 if len(filled) else 0)  # files may end with blank lines
+    blank = lengths.head(frame.height) == 0
+    if count < 2 or not blank.any():
+        return frame, ()
+    return frame.filter(~blank), tuple((blank.arg_true() + first + 1).to_list())
 
 
-def _lengths(body: bytes, delimiter: str, quoted: bool) -> pl.Series:
-    """How many cells every line has, int[lines]; none where quotes hold line feeds; 0 if blank."""
+def _lengths(body: bytes, delimiter: str, quoted: bool, path: Path, first: int) -> pl.Series:
+    """How many cells every line has, int[lines]; 0 if it is blank."""
     lines = pl.read_csv(b"line\n" + body, separator="\x01", quote_char=None, infer_schema=False)[
         "line"
     ].fill_null("")
     if quoted:
-        if (lines.str.count_matches('"', literal=True) % 2 != 0).any():
-            return pl.Series([], dtype=pl.Int64)
+        opened = (lines.str.count_matches('"', literal=True) % 2 != 0).arg_true()
+        if len(opened):
+            raise open_quote(path, first + int(opened[0]))
         lines = lines.str.replace_all('"[^"]*"', "q")
     counts = lines.str.count_matches(delimiter, literal=True).cast(pl.Int64) + 1
     blank = lines.str.strip_chars() == ""
@@ -111,8 +120,8 @@ def _check(
             raise InputError(
                 f"column {number + 1} has no name", f"{path}, line {header + 1}", "name it"
             )
-        raise _other_length(int(lengths[row]) if len(lengths) else count, count, path, first + row)
-    if ragged or not len(lengths):
+        raise _other_length(int(lengths[row]), count, path, first + row)
+    if ragged:
         return
     # Rows may all end with a delimiter.
     usual = lengths.filter(lengths > 0).mode().max() if (lengths > 0).any() else count
@@ -120,6 +129,15 @@ def _check(
     if len(odd):
         row = int(odd[0])
         raise _other_length(int(lengths[row]), count, path, first + row)
+
+
+def open_quote(path: Path, line: int) -> InputError:
+    """The error of a line, counted from 0, in which a quote begins and does not end."""
+    return InputError(
+        "a quote begins in the line and does not end there",
+        f"{path}, line {line + 1}",
+        "write the cell in one line, and in two quotes or in none",
+    )
 
 
 def _other_length(length: int, count: int, path: Path, line: int) -> InputError:

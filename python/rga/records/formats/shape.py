@@ -7,13 +7,13 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from rga.records.mapping import FileMapping
-from rga.records.numbers import MISSING_WORDS, THOUSANDS
-from rga.records.units import name_and_unit, unit_of, without_brackets
+from rga.records.numbers import MINUS, MISSING_WORDS, THOUSANDS
+from rga.records.units import name_and_unit, states_none, unit_of, without_brackets
 
 #: in the order in which they are taken where several fit; a blank stands for any run of them
 DELIMITERS = ("\t", ";", ",", "|", " ")
 _NUMBER = re.compile(
-    rf"(?=[+-]?[.,]?\d)[+-]?(\d{{1,3}}([{THOUSANDS}.,]\d{{3}})+|\d+)?([.,]\d*)?([eEdD][+-]?\d+)?"
+    rf"(?=[+{MINUS}-]?[.,]?\d)[+{MINUS}-]?(\d{{1,3}}([{THOUSANDS}.,]\d{{3}})+|\d+)?([.,]\d*)?([eEdD][+-]?\d+)?"
 )
 _TIME = re.compile(
     r"(\d{1,4}[-./]\d{1,2}[-./]\d{1,4}|\d{1,2}[-. ]?[A-Za-z]{3}[-. ]?\d{2,4})?[T ]*"
@@ -160,7 +160,9 @@ def _first_row(
 ) -> int | None:
     """Index among rows of the first that is data, as are those that follow it."""
     good = [_is_row(cells, fields, kinds, mapping.missing) for _, cells in rows]
-    return next((k for k, one in enumerate(good) if one and all(good[k : k + 3])), None)
+    # A line of dashes below the names states that there are no units, and no missing values.
+    held = [any(one.isdigit() for cell in cells for one in cell) for _, cells in rows]
+    return next((k for k, one in enumerate(good) if one and held[k] and all(good[k : k + 3])), None)
 
 
 def _headed(
@@ -253,7 +255,7 @@ def is_units(cells: list[str]) -> bool:
         return False
     if all(without_brackets(cell) != cell for cell in said):
         return True
-    return sum(unit_of(cell) is not None for cell in said) > 0.5 * len(said)
+    return sum(states_none(cell) or unit_of(cell) is not None for cell in said) > 0.5 * len(said)
 
 
 def _stated(

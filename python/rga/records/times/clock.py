@@ -1,6 +1,5 @@
 """The time axis of a file: time stamps or seconds, checked to increase."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
@@ -15,18 +14,10 @@ from rga.errors import InputError
 from rga.records.mapping import TimeColumns
 from rga.records.numbers import numbers_of
 from rga.records.table import StatedTime, Table
-from rga.records.times.written import moments_by, written_format
+from rga.records.times.counted import COMPACT, COUNTED, SECONDS, looks_like
+from rga.records.times.written import moments_by, possible_formats, without_late_midnights
 from rga.records.times.zone import in_zone, zone_of
-from rga.records.units import unit_of
-
-#: times that are numbers: how much one is [s], and the moment at which they are 0
-COUNTED = {
-    "excel": (86400.0, datetime(1899, 12, 30)),
-    "unix": (1.0, datetime(1970, 1, 1, tzinfo=UTC)),
-    "unix_ms": (1e-3, datetime(1970, 1, 1, tzinfo=UTC)),
-    "unix_us": (1e-6, datetime(1970, 1, 1, tzinfo=UTC)),
-    "unix_ns": (1e-9, datetime(1970, 1, 1, tzinfo=UTC)),
-}
+from rga.records.units import contradict, name_and_unit, unit_of
 
 
 @dataclass(frozen=True)
@@ -86,6 +77,14 @@ def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
             notes.append("the time stands in " + " and ".join(map(repr, own.columns)))
         return replace(own, format=time.format or own.format)
     columns = tuple(time.columns)
+    for column in columns:
+        named, said = name_and_unit(column)[1], table.units.get(column)
+        if named and said and contradict(named, said):
+            raise InputError(
+                f"the name of {column!r} says {named!r}, the line of units says {said!r}",
+                str(table.path),
+                "correct one of them",
+            )
     unit = unit_of(table.units.get(columns[0], "")) if len(columns) == 1 else None
     size = unit.size if unit is not None and unit.dimension == "time" else 1.0
     if own is not None and own.columns == columns:
@@ -122,24 +121,37 @@ class _Reading:
             return self._temporal(series[0])
         if stated.format in COUNTED:
             return self._counted(series[0], *COUNTED[stated.format])
+        if stated.format == SECONDS:
+            return self._elapsed(self._seconds(series[0]))
         texts = [values.cast(pl.String).to_list() for values in series]
         joined = [" ".join(parts) for parts in zip(*texts, strict=True)]
+        if stated.format is None and len(series) == 1 and self._is_number(series[0]):
+            return self._numbered(series[0])
+        joined, late = without_late_midnights(joined)
+        if late:
+            said = f"24:00 is midnight at the end of the day: {joined[late[0]]} and a day"
+            self.notes.append(f"{said}, in {len(late)} rows")
         if stated.format is not None:
-            return self._written(joined, stated.format)
-        if len(series) == 1 and self._is_number(series[0]):
-            return self._elapsed(self._seconds(series[0]) * stated.unit)
-        if not _is_iso(joined[0]) and (found := written_format(joined)) is not None:
-            self.notes.append(f"times are read as {found}")
-            return self._written(joined, found)
+            return self._written(joined, stated.format, late)
         wanted = "ISO 8601 like the first row, or seconds throughout"
-        if not _is_iso(joined[0]) and re.match(r"\d+[-/]\d+[-/]\d", joined[0]):
+        # A row that counts for the next day says nothing of the order of days.
+        telling = (
+            [one for row, one in enumerate(joined) if row not in set(late)] if late else joined
+        )
+        formats = [] if _is_iso(joined[0]) else possible_formats(telling or joined)
+        if len(formats) == 1:
+            self.notes.append(f"times are read as {formats[0]}")
+            return self._written(joined, formats[0], late)
+        if formats:
+            parts = "day, month and year" if "%y" in formats[0] else "day and month"
+            choices = " or ".join(f'"{one}"' for one in formats)
             raise InputError(
-                f"day and month of {joined[0]!r} cannot be told apart",
+                f"{parts} of {joined[0]!r} cannot be told apart",
                 self.table.where(0, self.where),
-                'state [time] format in import.toml, such as "%d/%m/%Y %H:%M:%S"',
+                f"state [time] format = {choices} in import.toml",
             )
-        clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted))
-        return clock if self.zone else replace(clock, start=joined[0])
+        clock = self._placed(self._moments(joined, datetime.fromisoformat, wanted), late)
+        return clock if self.zone or 0 in late else replace(clock, start=joined[0])
 
     def _temporal(self, series: pl.Series) -> Clock:
         moments = series.cast(pl.Datetime("us", getattr(series.dtype, "time_zone", None)))
@@ -148,16 +160,40 @@ class _Reading:
         stamps = np.array(moments.to_physical().to_numpy(), dtype=float) / 1e6
         return self._clock(stamps - stamps[0], moments[0].isoformat())
 
+    def _numbered(self, series: pl.Series) -> Clock:
+        """The clock of numbers, which are seconds unless they look like something else."""
+        numbers = self._seconds(series)
+        unit = self.table.units.get(series.name) or name_and_unit(series.name)[1] or ""
+        known = unit_of(unit)
+        if self.stated.start is not None or (known is not None and known.dimension == "time"):
+            return self._elapsed(numbers * self.stated.unit)
+        meant = looks_like(numbers)
+        if meant == COMPACT[14]:
+            self.notes.append(f"times are read as {meant}")
+            return self._written([f"{number:.0f}" for number in numbers], meant)
+        if meant == "unix":
+            self.notes.append(
+                'times are taken as seconds; state [time] format = "unix" if they count from 1970'
+            )
+        elif meant is not None:
+            choice = f'"{meant}"' if meant else '"excel", "unix_ms"'
+            raise InputError(
+                f"the times hardly are seconds: {series[0]} is the first",
+                self.table.where(0, self.where),
+                f'state [time] format = {choice} in import.toml, or "{SECONDS}" if they are',
+            )
+        return self._elapsed(numbers * self.stated.unit)
+
     def _counted(self, series: pl.Series, unit: float, zero: datetime) -> Clock:
         stamps = self._seconds(series) * unit
         return self._clock(stamps - stamps[0], self._after(zero, float(stamps[0])))
 
-    def _written(self, joined: list[str], pattern: str) -> Clock:
+    def _written(self, joined: list[str], pattern: str, late: Sequence[int] = ()) -> Clock:
         moments = moments_by(joined, pattern)
         if moments is None:
             parse = partial(_by_format, pattern=pattern)
             moments = self._moments(joined, parse, f"written as {pattern}")
-        return self._placed(moments)
+        return self._placed(moments, late)
 
     def _elapsed(self, stamps: FloatArray) -> Clock:
         """Time since what the format says is the start, or on a scale that it does not name."""
@@ -187,8 +223,20 @@ class _Reading:
             moment = moment.replace(tzinfo=zone_of(self.zone, str(self.table.path)))
         return moment.isoformat()
 
-    def _placed(self, moments: list[datetime]) -> Clock:
-        """The clock of moments as they are written."""
+    def _a_day_after(self, moment: datetime, row: int) -> datetime:
+        try:
+            return moment + timedelta(days=1)
+        except OverflowError:
+            raise InputError(
+                f"the day after {moment} is none of the years 1 to 9999",
+                self.table.where(row, self.where),
+                "correct the time",
+            ) from None
+
+    def _placed(self, moments: list[datetime], late: Sequence[int] = ()) -> Clock:
+        """The clock of moments as they are written; those of late rows are of the next day."""
+        for row in late:
+            moments[row] = self._a_day_after(moments[row], row)
         if self.zone is None or moments[0].tzinfo is not None:
             elapsed = np.array([(moment - moments[0]).total_seconds() for moment in moments])
             if moments[0].tzinfo is None and self.stated.columns != ("time",):

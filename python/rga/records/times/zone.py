@@ -18,6 +18,8 @@ def zone_of(text: str, where: str) -> tzinfo:
 
     >>> zone_of("+01:00", "r.csv"), zone_of("Europe/Berlin", "r.csv")
     (datetime.timezone(datetime.timedelta(seconds=3600)), zoneinfo.ZoneInfo(key='Europe/Berlin'))
+    >>> zone_of("UTC+1", "r.csv") == zone_of("+0100", "r.csv") == zone_of("+01:00", "r.csv")
+    True
 
     Raises:
         InputError: there is no such zone.
@@ -40,7 +42,9 @@ def in_zone(
     """Moments of a zone as microseconds since 1970 (UTC), int[n], in the order of their rows.
 
     Of the hour that comes twice when summer time ends, a row belongs to the second where the clock
-    has run back since the row before, and so do the rows that follow it.
+    has run back since the row before, and so do the rows that follow it. Rows that are there once
+    are taken as summer time, unless standard time leaves fewer gaps at either end of them: a file
+    may begin in the second hour.
 
     Args:
         moments: datetimes without a zone.
@@ -70,26 +74,38 @@ which runs back to 02:00:00'])
         return np.zeros(0, dtype=np.int64), int(first.is_null().arg_true()[0])
     early, late = (one.to_physical().to_numpy().copy() for one in (first, second))
     shown = local.to_physical().to_numpy()
-    ran_back, before = False, -2
-    unsure: list[int] = []
-    for row in np.flatnonzero(early != late).tolist():
-        if row != before + 1:
-            ran_back = False
-        elif not ran_back and shown[row] <= shown[row - 1]:
-            ran_back = True
-            unsure.clear()
+    steps = np.diff(shown)
+    usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0
+    twice = np.flatnonzero(early != late)
+    for rows in np.split(twice, np.flatnonzero(np.diff(twice) > 1) + 1):
+        if len(rows) == 0:
+            continue
+        night = local[int(rows[0])].date()
+        back = np.flatnonzero(np.diff(shown[rows]) <= 0)
+        if len(back):
+            rows = rows[back[0] + 1 :]
+            early[rows] = late[rows]
             notes.append(
-                f"the hour that comes twice on {local[row].date()} is told apart by the clock, "
-                f"which runs back to {local[row].time()}"
+                f"the hour that comes twice on {night} is told apart by the clock, which runs back "
+                f"to {local[int(rows[0])].time()}"
             )
-        if ran_back:
-            early[row] = late[row]
-        else:
-            unsure.append(row)
-        before = row
-    if unsure:
+            continue
+        summer, standard = (_gaps(one, rows, early, usual) for one in (early, late))
+        if standard < summer:
+            early[rows] = late[rows]
         notes.append(
-            f"the times from {local[unsure[0]]} on are of an hour that comes twice, and are there "
-            "once: they are taken as summer time"
+            f"the times from {local[int(rows[0])]} on are of an hour that comes twice, and are "
+            "there once: they are taken as "
+            + ("standard time, which leaves fewer gaps" if standard < summer else "summer time")
         )
     return early, None
+
+
+def _gaps(
+    read: NDArray[np.int64], rows: NDArray[np.intp], others: NDArray[np.int64], usual: float
+) -> int:
+    """How many gaps are at the ends of rows in one reading: steps beyond the usual one."""
+    first, last = int(rows[0]), int(rows[-1])
+    before = first > 0 and read[first] - others[first - 1] > 1.5 * usual
+    after = last + 1 < len(read) and others[last + 1] - read[last] > 1.5 * usual
+    return int(before) + int(after)

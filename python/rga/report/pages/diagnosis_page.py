@@ -131,9 +131,10 @@ def period(findings: Findings) -> str:
     length, unit = duration(float(record.time[-1] - record.time[0]))
     step, step_unit = duration(float(np.median(np.diff(record.time))))
     pieces = len(runs(account.held_out))
+    of = f" of {account.recorded}" if account.recorded > len(record) else ""
     held = f"{int(account.held_out.sum())} of them held out in {pieces} block"
     return (
-        f"{first} to {last} ({short(length)} {unit}), {len(record)} rows every "
+        f"{first} to {last} ({short(length)} {unit}), {len(record)}{of} rows every "
         f"{short(step)} {step_unit}, {held}{'s' if pieces != 1 else ''}"
     )
 

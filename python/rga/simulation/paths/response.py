@@ -9,6 +9,7 @@ from rga.arrays import FloatArray, LoadArrays, OutputArrays
 from rga.errors import InputError, UnstableStructureError
 from rga.model.schema import DOFS
 from rga.model.structure import OF_MEMBERS, Load, Structure
+from rga.simulation.paths.restraints import remedy
 
 
 def respond(structure: Structure, loads: list[Load], outputs: OutputArrays) -> FloatArray:
@@ -40,7 +41,7 @@ def refused(
     return UnstableStructureError(
         f"the structure can move: {place} meets no resistance",
         "members and supports",
-        "add a member, a support or a stiffness there, or hold the plane",
+        remedy(structure.arrays),
     )
 
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from rga.errors import InputError
-from rga.importing.scripts.python.library import BUILT_IN, METHODS, not_known, weight
+from rga.importing.scripts.python.library import BUILT_IN, METHODS, not_known, spoil, weight
+from rga.importing.scripts.python.modules import trust_of_built_in
 from rga.importing.scripts.python.opened import Anything, Opened
 from rga.importing.scripts.python.operators import COMPARING, UNARY, two
 from rga.importing.scripts.values import Steps, Unknown, checked_size
@@ -16,6 +17,13 @@ from rga.importing.scripts.values import Steps, Unknown, checked_size
 DEEPEST = 40
 #: characters of the longest format of a number in a text
 LONGEST_FORMAT = 8
+
+
+class LeavingPython(Exception):
+    """`break`, `continue`, `return` or the end of the script on its way out."""
+
+    def __init__(self, kind: str, value: Any = None) -> None:
+        self.kind, self.value = kind, value
 
 
 class Function:
@@ -31,10 +39,14 @@ class Evaluation:
     Attributes:
         names: variables of the script, and those of the function at work.
         libraries: modules whose names all stand open.
+        refusals: what is not followed and may change the model: words and place.
     """
 
     def __init__(self, file: str) -> None:
         self.file = file
+        self.refusals: list[tuple[str, str]] = []
+        #: whether the script goes on here is not known: what would leave, and why
+        self.leaving: tuple[str, Unknown] | None = None
         self.steps = Steps()
         self.everywhere: dict[str, Any] = {}
         self.names = self.everywhere
@@ -47,6 +59,32 @@ class Evaluation:
     def call_function(self, function: Function, values: list[Any], named: dict[str, Any]) -> Any:
         """Call a function of the script."""
         raise NotImplementedError
+
+    def reaches(self, value: Any) -> bool:
+        """Whether a value is the model or a part of it, has one in it, or changes it."""
+        raise NotImplementedError
+
+    def unread(self, node: ast.Call, function: Anything | Unknown, given: list[Any]) -> Any:
+        """The result of calling what is not evaluated; refused where it may change the model."""
+        raise NotImplementedError
+
+    def evaluated(
+        self,
+        node: ast.Call,
+        function: Callable[..., Any],
+        values: list[Any],
+        named: dict[str, Any],
+    ) -> Any:
+        """What a function of a library gives, or a method of a plain value."""
+        raise NotImplementedError
+
+    def plain(self, name: str) -> bool:
+        """Whether a name of a part of the model is a result or a number, and no part itself."""
+        raise NotImplementedError
+
+    def refuse(self, node: ast.AST, words: str) -> None:
+        """Note what is not followed and may change the model."""
+        self.refusals.append((words, self.where(node)))
 
     def value(self, node: ast.AST) -> Any:
         """The value of an expression.
@@ -86,13 +124,22 @@ class Evaluation:
             found = library.attribute(node.id)
             if not isinstance(found, Anything):
                 return found
-        return Unknown(f"{node.id}, which is not set")
+        trust = trust_of_built_in(node.id)
+        if trust is not None:
+            return Anything(node.id, trust)
+        return Unknown(f"{node.id}, which is not set", "foreign")
 
     def attribute(self, node: ast.Attribute) -> Any:
         owner = self.value(node.value)
         if isinstance(owner, Opened):
-            return owner.attribute(node.attr)
+            found = owner.attribute(node.attr)
+            part = type(found) is Anything and found.trust == "model"
+            if part and self.plain(node.attr):
+                return not_known(ast.unparse(node)[:40])
+            return found
         if isinstance(owner, Unknown):
+            if owner.trust == "model" and self.plain(node.attr):
+                return not_known(ast.unparse(node)[:40])
             return owner
         if node.attr in METHODS.get(type(owner), ()):
             return getattr(owner, node.attr)
@@ -116,21 +163,16 @@ class Evaluation:
                 named[keyword.arg] = found
             elif isinstance(found, dict):
                 named |= found
-        where = self.where(node)
+        where, every = self.where(node), [*values, *named.values()]
+        if type(function) is Anything or isinstance(function, Unknown):
+            return self.unread(node, function, every)
         if isinstance(function, Opened):
             return self.tried(node, function.call, values, named, where)
         if isinstance(function, Function):
             return self.call_function(function, values, named)
-        if isinstance(function, Unknown):
-            return not_known(ast.unparse(node.func)[:40])
         if not callable(function):
             return self.tried(node, lambda: function())
-        for given in (*values, *named.values()):
-            if isinstance(given, Function | Opened):
-                return not_known(ast.unparse(node.func)[:40])
-            if isinstance(given, Unknown) and getattr(function, "__name__", "") not in ("append",):
-                return given
-        return self.tried(node, function, *values, **named)
+        return self.evaluated(node, function, values, named)
 
     def _items(self, node: ast.AST, value: Any) -> list[Any]:
         return list(self.tried(node, list, value))
@@ -139,7 +181,7 @@ class Evaluation:
         """The items of an expression that is gone through."""
         found = self.value(node)
         if isinstance(found, Opened):
-            return not_known(ast.unparse(node)[:40])
+            return Unknown(f"the result of {ast.unparse(node)[:40]}", found.trust)
         return found if isinstance(found, Unknown) else self._items(node, found)
 
     def binary(self, node: ast.BinOp) -> Any:
@@ -183,7 +225,7 @@ class Evaluation:
             if isinstance(one, Unknown):
                 return one
         if isinstance(owner, Opened):
-            return not_known(ast.unparse(node)[:40])
+            return Unknown(f"the result of {ast.unparse(node)[:40]}", owner.trust)
         return self.tried(node, lambda: owner[place])
 
     def part(self, node: ast.Slice) -> Any:
@@ -296,10 +338,15 @@ class Evaluation:
                 )
             for one, item in zip(target.elts, values, strict=True):
                 self.bind(one, item)
+        elif isinstance(target, ast.Attribute):
+            if self.reaches(self.value(target.value)):
+                self.refuse(target, f"{ast.unparse(target)[:60]!r} of the model is set")
         elif isinstance(target, ast.Subscript):
             owner, place = self.value(target.value), self.value(target.slice)
-            if isinstance(place, Unknown) and isinstance(owner, list | dict):
-                owner.clear()
+            if isinstance(owner, Opened | Unknown) and self.reaches(owner):
+                self.refuse(target, f"{ast.unparse(target)[:60]!r} of the model is set")
+            elif isinstance(place, Unknown) and isinstance(owner, list | dict):
+                spoil(owner, place)
             elif isinstance(owner, list | dict | np.ndarray) and not isinstance(place, Unknown):
                 self.tried(target, owner.__setitem__, place, value)
 

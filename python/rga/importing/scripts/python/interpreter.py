@@ -5,10 +5,14 @@ import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from rga.errors import InputError
-from rga.importing.scripts.python.evaluation import DEEPEST, Evaluation, Function
-from rga.importing.scripts.python.library import MODULES, not_known
-from rga.importing.scripts.python.names import assigned, called, required
+from rga.importing.scripts.python.caution import Caution, Host
+from rga.importing.scripts.python.evaluation import DEEPEST, Function, LeavingPython
+from rga.importing.scripts.python.library import MODULES, not_known, spoil
+from rga.importing.scripts.python.modules import trust_of_module
+from rga.importing.scripts.python.names import called, required
 from rga.importing.scripts.python.opened import Anything, Opened, OpenedNames
 from rga.importing.scripts.python.operators import two
 from rga.importing.scripts.values import Unknown
@@ -17,32 +21,22 @@ from rga.importing.scripts.values import Unknown
 LONGEST_SCRIPT = 4 * 2**20
 
 
-class LeavingPython(Exception):
-    """`break`, `continue` or `return` on its way out."""
-
-    def __init__(self, kind: str, value: Any = None) -> None:
-        self.kind, self.value = kind, value
-
-
-class PythonInterpreter(Evaluation):
+class PythonInterpreter(Caution):
     """An interpreter of one script.
 
     Args:
         file: its name.
         modules: what the modules that it imports stand for, by name, beside `math` and `numpy`.
-        shapes: whether calling a name changes the model.
+        host: the program whose model it makes.
 
     Attributes:
         assumed: what it took for granted: words and place.
     """
 
-    def __init__(
-        self, file: str, modules: dict[str, Opened], shapes: Callable[[str], bool]
-    ) -> None:
-        super().__init__(file)
+    def __init__(self, file: str, modules: dict[str, Opened], host: Host) -> None:
+        super().__init__(file, host)
         self.modules = {**MODULES, **modules}
-        self.shapes = shapes
-        self.functions: dict[str, ast.FunctionDef] = {}
+        self.shared: set[str] = set()
         self.begun: set[str] = set()
         self.assumed: list[tuple[str, str]] = []
         self.depth = 0
@@ -70,13 +64,19 @@ class PythonInterpreter(Evaluation):
             ) from None
         except (ValueError, RecursionError, MemoryError) as error:
             raise InputError(f"this is no Python: {error}", self.file, "mend it") from None
-        self._each(tree.body)
-        self._not_called()
+        try:
+            self._each(tree.body)
+            self._not_called()
+        except LeavingPython as leaving:
+            if leaving.kind != "end":
+                raise InputError(
+                    f"this is no Python: {leaving.kind!r} stands alone", self.file, "mend it"
+                ) from None
 
     def _not_called(self) -> None:
         """Evaluate the one function that shapes a model and that nothing called."""
         calls = {name: {one for one, _ in called(node)} for name, node in self.functions.items()}
-        shaping = [name for name in self.functions if self._shaping(self.functions[name], set())]
+        shaping = [name for name in self.functions if self.shaping(self.functions[name])]
         roots = [
             name
             for name in shaping
@@ -85,6 +85,13 @@ class PythonInterpreter(Evaluation):
         if self.begun & set(shaping) or not roots:
             return
         first = self.functions[roots[0]]
+        if self.host.built():
+            for name in roots:
+                self.assumed.append(
+                    (f"function {name}, which nothing calls, is left out",
+                     self.where(self.functions[name]))
+                )  # fmt: skip
+            return
         if len(roots) > 1 or required(first):
             names = ", ".join(f"{name} (line {self.functions[name].lineno})" for name in roots)
             raise InputError(
@@ -98,13 +105,16 @@ class PythonInterpreter(Evaluation):
         self.call_function(self.everywhere[roots[0]], [], {})
 
     def _each(self, statements: Sequence[ast.stmt]) -> None:
-        for statement in statements:
+        for place, statement in enumerate(statements):
+            if self.leaving is not None:
+                return self.pass_over(statements[place:], self.leaving[1])
             self.steps.take(self.where(statement))
             do = DOING.get(type(statement))
             if do is None:
-                self._pass([statement], not_known(type(statement).__name__))
+                self.pass_over([statement], not_known(type(statement).__name__))
             else:
                 do(self, statement)
+        return None
 
     def call_function(self, function: Function, values: list[Any], named: dict[str, Any]) -> Any:
         node = function.node
@@ -117,48 +127,30 @@ class PythonInterpreter(Evaluation):
         frame |= named
         if node.args.vararg:
             frame[node.args.vararg.arg] = tuple(values[len(names) :])
+        if any(isinstance(one, ast.Yield | ast.YieldFrom) for one in ast.walk(node)):
+            if self.shaping(node):
+                self.refuse(node, f"function {name} changes the model item by item (yield)")
+            return not_known(name)
         for missing in [one for one in names if one not in frame]:
             frame[missing] = Unknown(f"{missing} of {name}, which is not given")
         here, self.names, self.depth = self.names, frame, self.depth + 1
+        shared, self.shared = self.shared, set()
         try:
             if isinstance(node, ast.Lambda):
                 return self.value(node.body)
             self._each(node.body)
+            if self.leaving is not None:
+                return self.leaving[1]
         except LeavingPython as leaving:
+            if leaving.kind == "end":
+                raise
             return leaving.value
         finally:
-            self.names, self.depth = here, self.depth - 1
+            self.leaving = None
+            for one in self.shared & frame.keys():
+                self.everywhere[one] = frame[one]
+            self.names, self.depth, self.shared = here, self.depth - 1, shared
         return None
-
-    def _pass(self, statements: Sequence[ast.AST], why: Unknown) -> None:
-        """Pass over what may or may not be done; what it sets is then not known.
-
-        Raises:
-            InputError: it would change the model.
-        """
-        for statement in statements:
-            for name, node in called(statement):
-                function = self.functions.get(name)
-                if self.shapes(name) or (function and self._shaping(function, set())):
-                    raise InputError(
-                        f"whether {name!r} is done cannot be known: it hangs on {why.reason}",
-                        self.where(node),
-                        "write out which is meant",
-                    )
-            for name in assigned(statement):
-                self.names[name] = why
-
-    def _shaping(self, function: ast.AST, seen: set[str]) -> bool:
-        """Whether a function, or one that it calls, changes the model."""
-        for name, _ in called(function):
-            if self.shapes(name):
-                return True
-            inner = self.functions.get(name)
-            if inner is not None and name not in seen:
-                seen.add(name)
-                if self._shaping(inner, seen):
-                    return True
-        return False
 
     def imports(self, node: ast.Import) -> None:
         for one in node.names:
@@ -183,7 +175,17 @@ class PythonInterpreter(Evaluation):
                 self.names[one.asname or one.name] = found
 
     def _module(self, name: str, node: ast.AST) -> Opened:
-        return self.modules.get(name) or Anything(name)
+        known = self.modules.get(name)
+        if known is not None:
+            return known
+        if name.partition(".")[0] in self.host.without or name in self.host.without:
+            return Anything(name)
+        trust = trust_of_module(name)
+        if trust == "foreign" and self.host.shared:
+            self.refuse(
+                node, f"the module {name!r} is not read, and may change the model when imported"
+            )
+        return Anything(name, trust)
 
     def assign(self, node: ast.Assign) -> None:
         value = self.value(node.value)
@@ -203,12 +205,19 @@ class PythonInterpreter(Evaluation):
         if isinstance(left, list) and isinstance(node.op, ast.Add):
             left.extend(self._items(node, right))
             return None
+        if isinstance(left, np.ndarray):
+            found = self.tried(node, two, type(node.op), left, right)
+            if isinstance(found, Unknown):
+                return self.bind(node.target, found)
+            # An array is changed where it is, also under its other names.
+            self.tried(node, np.copyto, left, found, casting="same_kind")
+            return None
         return self.bind(node.target, self.tried(node, two, type(node.op), left, right))
 
     def choose(self, node: ast.If) -> None:
         condition = self.value(node.test)
         if isinstance(condition, Unknown):
-            self._pass([*node.body, *node.orelse], condition)
+            self.pass_over([*node.body, *node.orelse], condition)
         else:
             self._each(node.body if self.tried(node.test, bool, condition) else node.orelse)
 
@@ -216,19 +225,19 @@ class PythonInterpreter(Evaluation):
         items = self.items(node.iter)
         if isinstance(items, Unknown):
             self.bind(node.target, items)
-            return self._pass([*node.body, *node.orelse], items)
+            return self.pass_over([*node.body, *node.orelse], items)
         for item in items:
             self.steps.take(self.where(node))
             self.bind(node.target, item)
             if not self._turn(node.body):
                 return None
-        return self._each(node.orelse)
+        return self._each(node.orelse) if self.leaving is None else None
 
     def repeat(self, node: ast.While) -> None:
         while True:
             condition = self.value(node.test)
             if isinstance(condition, Unknown):
-                return self._pass([*node.body, *node.orelse], condition)
+                return self.pass_over([*node.body, *node.orelse], condition)
             if not condition or not self._turn(node.body):
                 return None
 
@@ -236,8 +245,17 @@ class PythonInterpreter(Evaluation):
         """One turn of a loop; whether there may be another."""
         try:
             self._each(body)
+            if self.leaving is not None:
+                kind, why = self.leaving
+                if kind == "continue":
+                    self.leaving = None
+                    return True
+                # Whether there are more turns is not known: they may change nothing.
+                self.pass_over(body, why)
+                self.leaving = self.leaving if kind == "return" else None
+                return False
         except LeavingPython as leaving:
-            if leaving.kind == "return":
+            if leaving.kind in ("return", "end"):
                 raise
             return leaving.kind == "continue"
         return True
@@ -252,6 +270,26 @@ class PythonInterpreter(Evaluation):
                 defaults[one.arg] = self.value(default)
         self.functions[node.name] = node
         self.names[node.name] = Function(node, defaults)
+        for decorator in node.decorator_list:
+            made = self.value(decorator)
+            known = isinstance(made, Anything | Unknown) and made.trust in ("shows", "computes")
+            if not known and self.shaping(node):
+                self.refuse(decorator, f"what {ast.unparse(decorator)[:40]!r} makes of a function")
+
+    def delete(self, node: ast.Delete) -> None:
+        for target in node.targets:
+            if isinstance(target, ast.Name):
+                self.names.pop(target.id, None)
+            elif isinstance(target, ast.Attribute | ast.Subscript):
+                owner = self.value(target.value)
+                if self.reaches(owner) and isinstance(owner, Opened | Unknown):
+                    self.refuse(target, f"{ast.unparse(target)[:60]!r} of the model is deleted")
+                elif isinstance(target, ast.Subscript) and isinstance(owner, list | dict):
+                    place = self.value(target.slice)
+                    if isinstance(place, Unknown):
+                        spoil(owner, place)
+                    else:
+                        self.tried(target, owner.__delitem__, place)
 
     def attempt(self, node: ast.Try) -> None:
         self._each([*node.body, *node.orelse, *node.finalbody])
@@ -271,14 +309,34 @@ def _leave(kind: str) -> Callable[[PythonInterpreter, Any], None]:
 
 
 def _class(interpreter: PythonInterpreter, node: ast.ClassDef) -> None:
-    interpreter.names[node.name] = Unknown(f"the class {node.name}")
+    """A class is not evaluated; where it may change the model its name is taken as a part of it."""
+    changes = interpreter.shaping(node)
+    changes |= any(interpreter.reaches(interpreter.value(base)) for base in node.bases)
+    for statement in node.body:
+        if not isinstance(statement, ast.FunctionDef) and interpreter.shaping(statement):
+            interpreter.refuse(statement, f"class {node.name} changes the model where it stands")
+    interpreter.names[node.name] = Anything(node.name, "model" if changes else "computes")
 
 
 def _global(interpreter: PythonInterpreter, node: ast.Global) -> None:
-    """Names of the whole script in a function: what it sets afterwards is not known outside."""
+    """Names of the whole script in a function: they are set outside when it ends."""
     for name in node.names:
         if interpreter.names is not interpreter.everywhere:
-            interpreter.names.setdefault(name, interpreter.everywhere.get(name))
+            interpreter.shared.add(name)
+            if name in interpreter.everywhere:
+                interpreter.names.setdefault(name, interpreter.everywhere[name])
+
+
+def _nonlocal(interpreter: PythonInterpreter, node: ast.Nonlocal) -> None:
+    raise InputError(
+        f"{', '.join(node.names)} of a function around it is set", interpreter.where(node),
+        "give it as an argument, and return it",
+    )  # fmt: skip
+
+
+def _assert(interpreter: PythonInterpreter, node: ast.Assert) -> None:
+    if interpreter.shaping(node):
+        interpreter.value(node.test)
 
 
 def _nothing(interpreter: PythonInterpreter, node: Any) -> None:
@@ -303,8 +361,8 @@ DOING: dict[type[ast.stmt], Callable[[PythonInterpreter, Any], None]] = {
     ast.Continue: _leave("continue"),
     ast.ClassDef: _class,
     ast.Global: _global,
-    ast.Assert: _nothing,
+    ast.Assert: _assert,
     ast.Pass: _nothing,
-    ast.Delete: _nothing,
-    ast.Nonlocal: _nothing,
+    ast.Delete: PythonInterpreter.delete,
+    ast.Nonlocal: _nonlocal,
 }

@@ -90,6 +90,12 @@ METHODS: dict[type, frozenset[str]] = {
     str: frozenset(("upper", "lower", "strip", "startswith", "endswith", "split", "title")),
     np.ndarray: frozenset(("tolist", "copy", "sum", "min", "max", "mean", "flatten", "ravel")),
 }  # fmt: skip
+#: methods that change the list, table or set that they are of
+CHANGING = frozenset((
+    "add", "append", "discard", "extend", "insert", "pop", "remove", "setdefault", "update",
+))  # fmt: skip
+#: methods that show what is in a table
+VIEWS = frozenset(("copy", "get", "items", "keys", "values"))
 MODULES: dict[str, Opened] = {
     "math": OpenedNames("math", MATH),
     "numpy": OpenedNames("numpy", NUMPY),
@@ -101,6 +107,17 @@ def weight(value: Any) -> int:
     if isinstance(value, np.ndarray):
         return int(value.size)
     return len(value) if isinstance(value, str | list | tuple | dict | set | range) else 0
+
+
+def spoil(owner: Any, why: Unknown) -> None:
+    """Make a list, table or set one of which nothing is known."""
+    owner.clear()
+    if isinstance(owner, list):
+        owner.append(why)
+    elif isinstance(owner, dict):
+        owner[why] = why
+    else:
+        owner.add(why)
 
 
 def not_known(name: str) -> Unknown:

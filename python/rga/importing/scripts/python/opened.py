@@ -3,11 +3,17 @@
 from abc import ABC, abstractmethod
 from typing import Any
 
-from rga.importing.scripts.values import Unknown
+from rga.importing.scripts.values import Trust, Unknown
 
 
 class Opened(ABC):
-    """A module, class, object or function that stands for one of a library."""
+    """A module, class, object or function that stands for one of a library.
+
+    Attributes:
+        trust: what it may do to the model; "model": it is the model, or a part of it.
+    """
+
+    trust: Trust = "computes"
 
     @abstractmethod
     def attribute(self, name: str) -> Any:
@@ -21,22 +27,18 @@ class Opened(ABC):
         """
         return Unknown("the result of a library")
 
-    def shapes(self, name: str) -> bool:
-        """Whether calling a name of it changes the model."""
-        return False
-
 
 class Anything(Opened):
-    """Something of which nothing is known, nor of what it gives."""
+    """Something of which nothing is known but what it may do, nor of what it gives."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    def __init__(self, name: str, trust: Trust = "computes") -> None:
+        self.name, self.trust = name, trust
 
     def attribute(self, name: str) -> Any:
-        return Anything(f"{self.name}.{name}")
+        return Anything(f"{self.name}.{name}", self.trust)
 
     def call(self, values: list[Any], named: dict[str, Any], where: str) -> Any:
-        return Unknown(f"the result of {self.name}")
+        return Unknown(f"the result of {self.name}", self.trust)
 
 
 class OpenedNames(Opened):
