@@ -213,9 +213,9 @@ class TestSap2000Tables:
             ),
             ("I33=1.2E-05", "", "line 20: section .* has no I33, by which its frames bend"),
             ("I22=4.7E-06", "I22=0", "line 20: section .* has no I22"),
-            ("RelDistA=0.25", "RelDistA=1.5", "line 43: .*which is 3.7"),
-            ("RelDistA=0.25   RelDistB=1", "RelDistA=0.8   RelDistB=0.2", "line 43: .*backwards"),
-            ("RelDist=0.5", "RelDist=1.5", "line 48: a load at 5.6"),
+            ("RelDistA=0.25", "RelDistA=1.5", "line 44: .*which is 3.7"),
+            ("RelDistA=0.25   RelDistB=1", "RelDistA=0.8   RelDistB=0.2", "line 44: .*backwards"),
+            ("RelDist=0.5", "RelDist=1.5", "line 49: a load at 5.6"),
             ("U1=No   U2=No   U3=Yes", "U1=No   U2=N   U3=Yes", "U2 is 'n', neither"),
         ],
     )

@@ -228,4 +228,4 @@ class TestOpenSeesScriptSafety:
         line = "ops.eleLoad('-ele', 1, '-type', '-beamPoint', -4.0, {})\n"
         with pytest.raises(ImportRefused, match="line 11: a load at 5 m on member 1"):
             import_model(written("frame.py", OPENSEES + line.format(1.25)), units="kN, m")
-        assert sums(written("frame.py", OPENSEES + line.format(0.25))) == (0, 0, -20000)
+        assert sums(written("frame.py", OPENSEES + line.format(0.25))) == (0, 0, -24000)
