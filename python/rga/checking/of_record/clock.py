@@ -22,7 +22,7 @@ def clock(measured: Measured) -> Iterator[Finding]:
             "note",
             "record, time",
             "the times state no time zone: they are taken as UTC",
-            "nothing, unless onsets or zeros of the model are written with one",
+            "state [time] zone in import.toml where onsets or zeros of the model have one",
         )
     steps = np.diff(record.time)
     if not len(steps):
