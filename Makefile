@@ -5,10 +5,10 @@ DEV := .venv-dev/bin
 INSTALL := -m pip install --quiet --no-compile
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick docs test crates package clean wheel installed
+.PHONY: help run dev quick docs test crates lint tests clean wheel installed
 
 # Every core has its process of the tests: products in several threads would wait for each other.
-quick package: export OMP_NUM_THREADS = 1
+quick tests: export OMP_NUM_THREADS = 1
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
@@ -35,7 +35,7 @@ docs:  ## the pages of docs as a site that needs no network: site/index.html
 test: fresh = .venv-test
 test:  ## build and install rga in a fresh environment, and run every check
 	$(MAKE) --jobs 2 fresh=$(fresh) crates installed
-	$(MAKE) fresh=$(fresh) package
+	$(MAKE) --jobs 2 fresh=$(fresh) tests lint
 
 crates: export PYO3_PYTHON = $(PYTHON)
 crates:  ## every check of the Rust code
@@ -46,12 +46,14 @@ crates:  ## every check of the Rust code
 installed: wheel
 	$(fresh)/bin/python $(INSTALL) "$$(echo dist/rga-*.whl)[test]"
 
-package:  ## every check of the Python package, installed in the environment fresh=DIR
+lint:  ## style, types and imports of the Python package, by the environment fresh=DIR
 	$(fresh)/bin/ruff check
 	$(fresh)/bin/ruff format --check
 	$(fresh)/bin/mypy --strict python tests/typing
 	$(fresh)/bin/lint-imports --no-cache
 	$(fresh)/bin/python -m mypy.stubtest rga._core
+
+tests:  ## the tests of the Python package that is installed in the environment fresh=DIR
 	$(fresh)/bin/python -m pytest tests --pyargs rga rga_bench --numprocesses auto --dist worksteal
 
 # pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.

@@ -22,10 +22,10 @@ SETTING = ContextsSetting(
     gaps=("all",),
     manners=("same",),
     drifts=("none",),
-    rows=("noise", "true context", "best context", "prior mean"),
+    rows=("noise", "prior mean"),
     sizes=Sizes(source=128, unlabelled=32, stream=24, test=12),
 )
-TASKS = 2 * 4
+TASKS = 2 * 2
 #: `RGA_TEST_KILLS=50` kills more often
 KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 

@@ -65,9 +65,9 @@ def test_the_scatter_is_that_of_rows_in_which_nothing_acts(
         return found.problem.levels
 
     calm = off.rows(slice(0, half))
-    free = levels(off, None)
-    np.testing.assert_array_equal(levels(off, calm), levels(sound, calm))
-    assert free[1] > 1.5 * levels(off, calm)[1]
+    free, beside = levels(off, None), levels(off, calm)
+    np.testing.assert_array_equal(beside, levels(sound, calm))
+    assert free[1] > 1.5 * beside[1]
     np.testing.assert_array_equal(levels(off, off.rows(slice(0, 5))), free)
     unread = replace(calm, readings=np.zeros_like(calm.readings))
     np.testing.assert_array_equal(levels(off, unread), free)
