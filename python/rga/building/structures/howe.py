@@ -2,17 +2,9 @@
 
 from rga.building.builder import ModelBuilder
 from rga.building.quantities import Amount
-from rga.building.structures.given import AnyMaterial, AnySection, Joints, check_word
-from rga.building.structures.truss_chords import (
-    Ends,
-    Shape,
-    add_leaning,
-    add_verticals,
-    chords_of,
-    drawn_chords,
-    gable,
-    level,
-)
+from rga.building.structures.given import AnyMaterial, AnySection, Joints
+from rga.building.structures.leaning import leaning_truss
+from rga.building.structures.truss_chords import Ends, Shape
 
 
 def howe_truss(
@@ -57,10 +49,7 @@ def howe_truss(
     >>> len(model.members), len(model.nodes), model.members["L1-U2"].groups
     (26, 14, ['diagonals'])
     """
-    check_word(shape, ("parallel", "gable"), "shape", f"truss {name!r}")
-    roof = shape == "gable"
-    line = chords_of(name, span, height, panels, gable if roof else level, ends, joints, even=roof)
-    if roof:
-        check_word(ends, ("inclined",), "ends of a gable", f"truss {name!r}")
-    truss = drawn_chords(name, line, chords, diagonals, verticals, material)
-    return add_leaning(add_verticals(truss, line), line, falling=roof)
+    return leaning_truss(
+        name, span, height, panels, chords, diagonals, verticals, material, shape, ends, joints,
+        pushed=True,
+    )  # fmt: skip

@@ -1,6 +1,7 @@
 """Values of Python expressions, by their syntax tree."""
 
 import ast
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -33,7 +34,7 @@ class Function:
         self.node, self.defaults = node, defaults
 
 
-class Evaluation:
+class Evaluation(ABC):
     """Evaluates expressions; a subclass knows statements, and calls functions.
 
     Attributes:
@@ -56,18 +57,19 @@ class Evaluation:
         """A place in words."""
         return f"line {getattr(node, 'lineno', 1)}"
 
+    @abstractmethod
     def call_function(self, function: Function, values: list[Any], named: dict[str, Any]) -> Any:
         """Call a function of the script."""
-        raise NotImplementedError
 
+    @abstractmethod
     def reaches(self, value: Any) -> bool:
         """Whether a value is the model or a part of it, has one in it, or changes it."""
-        raise NotImplementedError
 
+    @abstractmethod
     def unread(self, node: ast.Call, function: Anything | Unknown, given: list[Any]) -> Any:
         """The result of calling what is not evaluated; refused where it may change the model."""
-        raise NotImplementedError
 
+    @abstractmethod
     def evaluated(
         self,
         node: ast.Call,
@@ -76,11 +78,10 @@ class Evaluation:
         named: dict[str, Any],
     ) -> Any:
         """What a function of a library gives, or a method of a plain value."""
-        raise NotImplementedError
 
+    @abstractmethod
     def plain(self, name: str) -> bool:
         """Whether a name of a part of the model is a result or a number, and no part itself."""
-        raise NotImplementedError
 
     def refuse(self, node: ast.AST, words: str) -> None:
         """Note what is not followed and may change the model."""
