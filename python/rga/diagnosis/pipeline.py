@@ -174,7 +174,7 @@ def _diagnose(
     ]
     reasons += beyond_stated(found.problem, {fault.sensor for fault in prepared.faults})
     short = too_short(whole.data, before, whole.deviation)
-    curved = patterns.nonlinear(found.problem)
+    curved = patterns.nonlinear(found.at_fit)
     structure = bool(reasons or short or curved) or share > criteria.structure.share
     said = verdict(found, bool(prepared.faults), structure)
     pattern = spared(
@@ -247,10 +247,11 @@ def _confirmed(found: Found, screening: Screening, progress: Progress) -> Found:
     doubtful = problem is not found.problem
     if doubtful:
         found = weighed(problem, found.base, found.fit, screening, progress)
-    sloped, curved = bends(found.problem), curves(found.problem)
+    fitted = found.at_fit
+    sloped, curved = bends(fitted), curves(fitted)
     if sloped or curved:
         doubtful = True
-        free = with_free_slopes(found.problem, sloped, free_channels(found.problem, curved))
+        free = with_free_slopes(fitted, sloped, free_channels(fitted, curved))
         standing = without_needless(free, found)
         if len(standing.hypotheses) < len(found.fit.hypotheses):
             problem, standing = settled_with(found.base, found.problem, standing)

@@ -59,6 +59,16 @@ class Found:
     alternatives: tuple[tuple[Alternative, ...], ...]
     log_odds: tuple[float, ...]
 
+    @property
+    def at_fit(self) -> Problem:
+        """The problem about the causes as they are fitted.
+
+        It was posed a little beside them, which what is left of a large cause would show as a
+        curve.
+        """
+        simulator = self.fit.simulator(self.base)
+        return replace(self.problem, simulator=simulator, simulated=self.fit.simulated)
+
 
 def search(
     start: Problem,

@@ -107,7 +107,7 @@ def unexplained(account: DiagnosisArrays) -> dict[str, object]:
         return shown
     problem = account.found.problem
     contexts = known_contexts(problem, set(account.record.contexts))
-    found, bending = leftovers(problem, contexts), bends(problem)
+    found, bending = leftovers(problem, contexts), bends(account.found.at_fit)
     units = {name: one.unit for name, one in account.model.context.items()}
     if found:
         time = problem.data.time

@@ -47,6 +47,8 @@ def test_what_is_hidden_is_named_and_nothing_else(
     assert named == {(kind, place.get("sensor")) for kind, place, _ in hidden}
     assert len(found.log_odds) == len(found.alternatives) == len(hidden)
     assert all(odds > 20 for odds in found.log_odds)
+    shown = found.problem.data.predict(found.fit.simulator(found.base))
+    np.testing.assert_allclose(found.at_fit.simulated, shown, rtol=1e-12, atol=1e-15)
     for ranked in found.alternatives:
         assert [one.behind for one in ranked] == sorted(one.behind for one in ranked)
 
