@@ -52,6 +52,14 @@ PrintPdf = Annotated[
         "--pdf", help="Write report.pdf too: by a browser that is installed, else WeasyPrint."
     ),
 ]
+GivenContexts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--contexts",
+        metavar="NAME=VALUE,...",
+        help="Values of context variables, and of time; repeatable.",
+    ),
+]
 Workers = Annotated[
     int, typer.Option("--workers", min=1, help="Processes at work on this machine.")
 ]
@@ -88,3 +96,16 @@ def setting(text: str, option: str) -> tuple[str, float]:
         raise InputError(
             f"{text!r} sets no number", option, f"write {option} name=value, such as temperature=35"
         ) from None
+
+
+def settings(texts: list[str] | None, option: str) -> dict[str, float]:
+    """Names with their numbers, of texts as NAME=VALUE,NAME=VALUE.
+
+    Raises:
+        InputError: one gives no number.
+
+    >>> settings(["snow=2, air=0", "wind=3"], "--contexts")
+    {'snow': 2.0, 'air': 0.0, 'wind': 3.0}
+    """
+    pairs = [pair for text in texts or [] for pair in text.split(",") if pair.strip()]
+    return dict(setting(pair, option) for pair in pairs)

@@ -1,6 +1,6 @@
 """Contexts as a caller gives them: by name, or as a table with a column for each."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from datetime import datetime
 from typing import Any, Protocol, TypeAlias
 
@@ -24,24 +24,35 @@ class ColumnTable(Protocol):
 Contexts: TypeAlias = Mapping[str, ArrayLike] | ColumnTable
 
 
-def by_name(given: Contexts) -> Mapping[str, ArrayLike]:
+def contexts_by_name(given: Contexts, known: Collection[str]) -> Mapping[str, ArrayLike]:
     """Contexts by name. Times that are dates, or text of ISO 8601, become seconds since 1970.
 
     Args:
         given: names with values, or a table with a column for each: polars, pandas or alike.
+        known: names of the contexts of the model. A table may have more columns: readings, notes.
 
     Raises:
-        InputError: this is neither, or a time cannot be read.
+        InputError: this is neither, there is no such context, or a time cannot be read.
 
     >>> import polars as pl
-    >>> table = by_name(pl.DataFrame({"time": ["2024-01-01", "2024-01-02"], "load": [1, 2]}))
-    >>> np.diff(table["time"]), table["load"].tolist()
-    (array([86400.]), [1, 2])
+    >>> times = ["2024-01-01", "2024-01-02"]
+    >>> given = pl.DataFrame({"time": times, "load": [1, 2], "note": ["dry", "wet"]})
+    >>> table = contexts_by_name(given, ["load"])
+    >>> np.diff(table["time"]), table["load"].tolist(), "note" in table
+    (array([86400.]), [1, 2], False)
     """
     if isinstance(given, Mapping):
         named = dict(given)
+        if unknown := [name for name in named if name != "time" and name not in known]:
+            raise InputError(
+                f"there is no context variable {unknown[0]!r}",
+                "contexts",
+                f"the model has {', '.join(known) or 'none'}",
+            )
     elif hasattr(given, "columns") and hasattr(given, "__getitem__"):
-        named = {str(column): np.asarray(given[column]) for column in given.columns}
+        columns = {str(column): column for column in given.columns}
+        wanted = [name for name in ("time", *known) if name in columns]
+        named = {name: np.asarray(given[columns[name]]) for name in wanted}
     else:
         raise InputError(
             f"contexts are a {type(given).__name__}",

@@ -18,7 +18,7 @@ from rga.model.readings import Readings
 from rga.model.schema import Model
 from rga.model.structure import Structure, build_structure
 from rga.simulation.assembly import Assembly
-from rga.simulation.contexts import Contexts, by_name
+from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.derivatives.forward import jacobian, pull_back
 from rga.simulation.dispatch import ResponsePlan, answer
 
@@ -255,10 +255,7 @@ class Simulator:
         return DifferentiableSimulator(self, None if time is None else np.asarray(time, float))
 
     def _table(self, contexts: Contexts) -> Values:
-        named = by_name(contexts)
-        if not isinstance(contexts, Mapping):
-            # A table may have more columns than contexts: readings, notes.
-            named = {name: named[name] for name in ("time", *self.model.context) if name in named}
+        named = contexts_by_name(contexts, self.model.context)
         given = {name: _numbers(name, value) for name, value in named.items()}
         rows = max((len(column) for column in given.values()), default=1)
         if not rows:

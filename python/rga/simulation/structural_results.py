@@ -20,6 +20,7 @@ from rga.model.effect import Values, when_all_act
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.notebook import short_html
+from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.paths.response import respond
 from rga.simulation.simulator import Response, Simulator
 from rga.simulation.stresses import Stresses, section_stresses
@@ -45,7 +46,7 @@ class Results:
 
     Attributes:
         model: the model.
-        contexts: the contexts, float[rows] each, `time` [s] among them.
+        contexts: the contexts, float[rows] each, `time` [s] among them where it was given.
         stations: places along every member, 0..1, float[stations].
         displacements: ux, uy, uz [m], rx, ry, rz [rad] of the nodes, float[rows, nodes, 6].
         held: nodes that supports or springs to the ground hold.
@@ -139,8 +140,8 @@ class Results:
     def to_frame(self) -> pl.DataFrame:
         """All results in one table: row, time, quantity, of, at, value, unit.
 
-        `of` is a node or a member, `at` a place along a member, else null. Quantities are those of
-        the attributes; a stress is named after its fibre.
+        `of` is a node or a member, `at` a place along a member, else null, as is a time that was
+        not given. Quantities are those of the attributes; a stress is named after its fibre.
         """
         nodes, members = list(self.model.nodes), list(self.model.members)
         force, moment = ["N"] * 3, ["N m"] * 3
@@ -183,6 +184,7 @@ class Results:
     ) -> pl.DataFrame:
         """Values float[rows, places, (stations,) names] as a table with one value a line."""
         rows, count = len(values), len(places)
+        time = self.contexts.get("time", np.full(rows, np.nan))
         at = self.stations if values.ndim == 4 else np.array([np.nan])
         # One axis each of rows, places, stations and quantities.
         shape = (rows, count, len(at), len(names))
@@ -195,19 +197,19 @@ class Results:
         return pl.DataFrame(
             {
                 "row": spread(np.arange(1, rows + 1), 0),
-                "time": spread(self.contexts["time"], 0),
+                "time": spread(time, 0),
                 "quantity": spread(np.array(names), 3),
                 "of": spread(np.array(places), 1),
                 "at": spread(at, 2),
                 "value": values.ravel(),
                 "unit": spread(np.array(units), 3),
             }
-        ).with_columns(pl.col("at").fill_nan(None))
+        ).with_columns(pl.col("time", "at").fill_nan(None))
 
 
 def results(
     model: Model | str | Path,
-    contexts: Mapping[str, ArrayLike] | None = None,
+    contexts: Contexts | None = None,
     *,
     stations: int = 11,
 ) -> Results:
@@ -237,13 +239,18 @@ def results(
             section_outputs(list(structure.members.values()), places),
         )
 
-    response = _respond(model, contexts or {}, wanted)
+    given = {} if contexts is None else contexts_by_name(contexts, model.context)
+    response = _respond(model, given, wanted)
     found = response.quantities
     rows, nodes, members = len(found), len(model.nodes), len(model.members)
     motions, reactions, forces = np.split(found, np.cumsum([6 * nodes, 6 * len(held)]), axis=1)
     return Results(
         model=model,
-        contexts=response.contexts,
+        contexts={
+            name: column
+            for name, column in response.contexts.items()
+            if name != "time" or name in given
+        },
         stations=places,
         displacements=motions.reshape(rows, nodes, 6),
         held=held,

@@ -17,11 +17,14 @@ from rga_bench.samples.logger_file import (
     logger_file,
 )
 
+#: of the steel that all are built of, S355 [Pa]
+YIELD_STRENGTH = 3.55e8
 #: the oldest moment that an archive can state: archives of the same files are the same
 NO_DATE = (1980, 1, 1, 0, 0, 0)
 
 MAPPING = f"""\
 # How to read logger.csv: what its lines, columns and cells mean.
+files = ["logger.csv"]
 encoding = "{ENCODING}"
 delimiter = ";"
 decimal = ","
@@ -63,6 +66,10 @@ def sample_files(design: SampleDesign) -> dict[str, bytes]:
     about = {"client": design.client, "structure": design.title}
     model = {"rga_model": 1, "name": design.title, "about": about} | {
         key: value for key, value in case.model.items() if key not in ("rga_model", "name")
+    }
+    model["materials"] = {
+        name: {**material, "yield_strength": YIELD_STRENGTH}
+        for name, material in case.model["materials"].items()
     }
     log = logger_file(case, design.site, design.station, design.start, design.seed)
     mapping = MAPPING.format(header_line=log.header_line, units_line=log.header_line + 1)

@@ -160,6 +160,25 @@ def test_noise_of_a_dataset_is_the_sensors(tmp_path: Path, model_file: Path) -> 
         assert (noisy[name] - clean[name]).std() == pytest.approx(sensor.noise, rel=0.1)
 
 
+def test_results_take_contexts_as_they_are_written_and_from_a_file(
+    tmp_path: Path, model_file: Path, rga: Rga
+) -> None:
+    written, rows = tmp_path / "written.csv", tmp_path / "rows.csv"
+    rga("results", model_file, "--contexts", "load=5e4, temperature=20", "-o", written)
+    table = pl.read_csv(written)
+    assert table["time"].null_count() == len(table), "no time was given"
+    assert set(table["row"]) == {1}
+    rows.write_text("time,load\n0,0\n60,5e4\n", encoding="utf-8")
+    both = tmp_path / "both.csv"
+    rga("results", model_file, rows, "--contexts", "temperature=20", "-o", both)
+    second = pl.read_csv(both).filter(pl.col("row") == 2)
+    assert set(second["time"]) == {60.0}
+    np.testing.assert_allclose(second["value"], table["value"], rtol=1e-12)
+    lacking = rga("results", model_file, "--contexts", "load=5e4", "-o", both)
+    assert lacking.code == 2
+    assert "temperature" in lacking.err
+
+
 def test_whatif_compares_with_mid_range(tmp_path: Path, model_file: Path, rga: Rga) -> None:
     outcome = rga("whatif", model_file, "--set", "load=1e5", "--json")
     result = json.loads(outcome.out)

@@ -238,6 +238,15 @@ def test_a_time_without_a_zone(start: str, said: bool, model: Model, measured: M
     assert found.ok
 
 
+def test_codes_for_missing_values_are_no_zeros(model: Model, measured: Making) -> None:
+    started_anew = SAID["started anew"][0]
+    coded = every(at(slice(20, 200, 40), -9999.0), "U")
+    for change, about_zeros in ((started_anew, True), (lambda r: coded(started_anew(r)), False)):
+        found = check(model, change(measured())).findings
+        assert any(one.where == "zeros of the record" for one in found) == about_zeros
+    assert any("-9999" in one.what for one in found)
+
+
 def test_latent_contexts_hide_no_unit(model: Model, measured: Making) -> None:
     record = measured()
     record = replace(record, contexts={n: c for n, c in record.contexts.items() if n != "wind"})

@@ -366,3 +366,17 @@ class TestRefused:
     def test_more_than_memory_holds_is_refused(self) -> None:
         with pytest.raises(InputError, match="more than fit into memory"):
             results(beam(PINNED, SLIDING), {"time": np.arange(1_000_000.0)}, stations=1001)
+
+
+def test_a_table_of_contexts_may_have_more_columns(two_bars: dict[str, Any]) -> None:
+    model = read_model(two_bars, "two bars")
+    values = {"load": [0.0, 5e4], "temperature": [10.0, 20.0]}
+    table = pl.DataFrame({**values, "note": ["calm", "windy"]})
+    from_table, by_name = results(model, table), results(model, values)
+    np.testing.assert_array_equal(from_table.section_forces, by_name.section_forces)
+    assert set(from_table.contexts) == set(values)
+
+
+def test_a_context_that_there_is_not_is_no_context(two_bars: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match=r"'lode'.*the model has temperature, load"):
+        results(read_model(two_bars, "two bars"), {"load": 0, "temperature": 10, "lode": 5e4})

@@ -9,6 +9,7 @@ import numpy as np
 
 from rga.checking.finding import Finding
 from rga.checking.measured import Measured
+from rga.checking.of_record.codes import codes
 from rga.diagnosis.preparation.zeros.levels import Compared
 from rga.diagnosis.preparation.zeros.restarted import jump_of_many
 from rga.diagnosis.preparation.zeros.undeclared_zeros import off_by_constants
@@ -26,10 +27,11 @@ DECLARE = (
 def zeros(measured: Measured) -> Iterator[Finding]:
     """Channels that jump together, read zero again, or are off by constants.
 
-    Where contexts had to be guessed nothing is told: they would take up what zeros do.
+    Where contexts had to be guessed nothing is told: they would take up what zeros do. Nor is it
+    where numbers stand for missing values: as readings they look like jumps and zeros.
     """
     data = measured.data
-    if data.belief.inferred or not data.sensors:
+    if data.belief.inferred or not data.sensors or any(codes(measured)):
         return
     compared = Compared.of(measured.model, measured.over.simulator, data)
     row, jump = zero_from(compared), jump_of_many(compared)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from rga.cli.options import ModelFile, setting
+from rga.cli.options import GivenContexts, ModelFile, settings
 
 
 class NamedPart(StrEnum):
@@ -24,13 +24,6 @@ Drawing = Annotated[
     typer.Option(
         "-o", "--output", metavar="FILE",
         help="File for the drawing: .svg, .png, or .html for a page that turns with the mouse.",
-    ),
-]  # fmt: skip
-Contexts = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--contexts", metavar="NAME=VALUE,...",
-        help="Contexts of loads, displacements and forces; the others stand at mid-range.",
     ),
 ]  # fmt: skip
 Names = Annotated[
@@ -63,7 +56,7 @@ Width = Annotated[
 def draw(
     model: ModelFile,
     output: Drawing = Path("drawing.svg"),
-    contexts: Contexts = None,
+    contexts: GivenContexts = None,
     names: Names = None,
     load: Loads = None,
     deformed: Deformed = False,
@@ -74,13 +67,14 @@ def draw(
     dark: Dark = False,
     width: Width = 10.0,
 ) -> None:
-    """Draw a model: members, supports, loads and sensors, its deformed shape and forces."""
+    """Draw a model: members, supports, loads and sensors, its deformed shape and forces.
+
+    Contexts of loads, displacements and forces that are not given stand at mid-range.
+    """
     from rga.drawing import draw as write
     from rga.drawing.content import NAMED
     from rga.model import load_model
 
-    pairs = [pair for text in contexts or [] for pair in text.split(",") if pair.strip()]
-    given = dict(setting(pair, "--contexts") for pair in pairs)
     chosen = [part.value for part in names or []]
     drawn = write(
         load_model(model),
@@ -93,7 +87,7 @@ def draw(
         deformed=deformed,
         scale=scale,
         forces=forces,
-        contexts=given,
+        contexts=settings(contexts, "--contexts"),
         dark=dark,
     )
     typer.echo(f"The drawing is {drawn}.")

@@ -1,18 +1,20 @@
 """`rga results`: displacements, reactions, section forces and stresses."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.options import ModelFile, OutputFile
+from rga.cli.options import GivenContexts, ModelFile, OutputFile, settings
 
-Contexts = Annotated[
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+ContextFile = Annotated[
     Path | None,
     typer.Argument(
-        metavar="CONTEXTS",
-        help="Context variables (CSV or Parquet), with time where it matters; left out where no "
-        "context drives the model.",
+        metavar="FILE",
+        help="Context variables (CSV or Parquet), a row each, with time where it matters.",
     ),
 ]
 Stations = Annotated[
@@ -21,16 +23,25 @@ Stations = Annotated[
 
 
 def results(
-    model: ModelFile, output: OutputFile, contexts: Contexts = None, stations: Stations = 11
+    model: ModelFile,
+    output: OutputFile,
+    file: ContextFile = None,
+    contexts: GivenContexts = None,
+    stations: Stations = 11,
 ) -> None:
-    """Write displacements, rotations, reactions, N, V, M and stresses (CSV or Parquet)."""
+    """Write displacements, rotations, reactions, N, V, M and stresses (CSV or Parquet).
+
+    Contexts come from a file or from `--contexts`, or from both: what is given there stands in all
+    rows of the file. Those that drive nothing may be left out.
+    """
     from rga.model import load_model
     from rga.model.effect import when_all_act
     from rga.records import load_contexts
     from rga.simulation import results as results_of
 
     structure = load_model(model)
-    given = load_contexts(contexts, structure).values if contexts else {}
+    rows = load_contexts(file, structure).values if file else {}
+    given: dict[str, ArrayLike] = {**rows, **settings(contexts, "--contexts")}
     found = results_of(structure, given, stations=stations)
     found.write(output)
     begun = when_all_act(structure.effects.values())

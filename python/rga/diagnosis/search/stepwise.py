@@ -61,11 +61,7 @@ class Found:
 
     @property
     def at_fit(self) -> Problem:
-        """The problem about the causes as they are fitted.
-
-        It was posed a little beside them, which what is left of a large cause would show as a
-        curve.
-        """
+        """The problem about the causes as fitted; posed a little beside them, it looks curved."""
         simulator = self.fit.simulator(self.base)
         return replace(self.problem, simulator=simulator, simulated=self.fit.simulated)
 

@@ -289,6 +289,7 @@ def _channel_line(match: Match, table: Table, model: Model, doubts: Doubts) -> s
         doubts.add(stated, stated, f"{match.name} ({wanted})")
     else:
         said = f"in {unit}" if unit == wanted else f"in {unit}, converted to {wanted}"
+        said = said.removeprefix(f"in {unit}, ") if match.why.endswith(f"in {unit}") else said
     values = readable(table, match.column)
     if values is not None and (still := still_value(values)) is not None:
         doubts.add(
