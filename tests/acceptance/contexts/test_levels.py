@@ -14,7 +14,7 @@ from rga_bench.contexts.stream_results import StreamResult, results_of_streams
 from rga_bench.contexts.twin_run import LearnedOnce, TwinStream
 
 #: where the model is right but for some sensors, what is learned are these
-FEW = replace(SIZES, stream=60, test=80, unlabelled=60)
+FEW = replace(SIZES, stream=60)
 RIGHT = task(gap="noise only", drifts=("sensor",), sizes=FEW)
 
 
