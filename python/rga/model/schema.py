@@ -85,14 +85,29 @@ class Section(Part):
     fibres: dict[str, tuple[Number, Number]] = {}
 
 
-class Releases(Part):
+class Ends(Part):
+    """What each end of a member has: `i` is its first node, `j` its second."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named(cls, given: Any) -> Any:
+        if isinstance(given, Mapping) and (
+            others := [end for end in given if end not in cls.model_fields]
+        ):
+            raise ValueError(
+                f"{others[0]!r} is no end of a member: i is that at its first node, j at its second"
+            )
+        return given
+
+
+class Releases(Ends):
     """Degrees of freedom that the member does not pass on at its ends, in local axes."""
 
     i: list[Dof] = []
     j: list[Dof] = []
 
 
-class EndSprings(Part):
+class EndSprings(Ends):
     """Stiffness of the connection of the member's ends, in local axes [N m/rad or N/m]."""
 
     i: dict[Dof, Positive] = {}
