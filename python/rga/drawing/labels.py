@@ -49,6 +49,7 @@ class Room:
         width: float = 0.0,
         letter: float = LETTER,
         over: bool = False,
+        rivals: FloatArray | None = None,
     ) -> PlacedLabel | None:
         """The best free place beside a point, which is taken from then on; None where none is.
 
@@ -58,6 +59,8 @@ class Room:
             width: of the mark that stands at the point [inch].
             letter: width of a letter [inch].
             over: the label may stand on its place and on lines.
+            rivals: points that a reader may take the label for, float[k, 2] [inch]: the middle of
+                the label stands nearer to its own; None: a line leads from the label to its point.
 
         >>> room = Room()
         >>> [room.place("S1", (0.0, 0.0)).box[0] > 0, room.place("S2", (0.0, 0.0)).box[0] > 0]
@@ -73,6 +76,10 @@ class Room:
                 found.append((step * len(SIDES) + side, (x, y, x + wide, y + high)))
         boxes = np.array([box for _, box in found])
         free = self._free(boxes)
+        if rivals is not None and len(rivals):
+            middles = (boxes[:, None, :2] + boxes[:, None, 2:]) / 2
+            nearest = np.linalg.norm(middles - rivals, axis=2).min(axis=1)
+            free &= np.linalg.norm(middles[:, 0] - at, axis=1) <= nearest + 1e-9
         if not free.any():
             return None
         covered = np.zeros(len(boxes)) if over else self._covered(boxes)
