@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from unicodedata import east_asian_width
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 
@@ -94,7 +95,7 @@ class Room:
     def _around(at: Point, wide: float, high: float) -> Box:
         return at[0] - wide / 2, at[1] - high / 2, at[0] + wide / 2, at[1] + high / 2
 
-    def _free(self, boxes: FloatArray) -> FloatArray:
+    def _free(self, boxes: FloatArray) -> NDArray[np.bool_]:
         free = np.ones(len(boxes), dtype=bool)
         if self.boxes:
             taken = np.array(self.boxes)
