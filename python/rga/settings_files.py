@@ -23,7 +23,7 @@ def read_table(path: Path, what: str) -> dict[str, object]:
         InputError: the file cannot be read, or holds no table.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
         content = tomllib.loads(text) if path.suffix == ".toml" else json.loads(text)
     except OSError as error:
         reason = (error.strerror or "unreadable").lower()

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from unicodedata import east_asian_width
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 
@@ -49,6 +50,7 @@ class Room:
         width: float = 0.0,
         letter: float = LETTER,
         over: bool = False,
+        rivals: FloatArray | None = None,
     ) -> PlacedLabel | None:
         """The best free place beside a point, which is taken from then on; None where none is.
 
@@ -58,6 +60,8 @@ class Room:
             width: of the mark that stands at the point [inch].
             letter: width of a letter [inch].
             over: the label may stand on its place and on lines.
+            rivals: points that a reader may take the label for, float[k, 2] [inch]: the middle of
+                the label stands nearer to its own; None: a line leads from the label to its point.
 
         >>> room = Room()
         >>> [room.place("S1", (0.0, 0.0)).box[0] > 0, room.place("S2", (0.0, 0.0)).box[0] > 0]
@@ -73,6 +77,10 @@ class Room:
                 found.append((step * len(SIDES) + side, (x, y, x + wide, y + high)))
         boxes = np.array([box for _, box in found])
         free = self._free(boxes)
+        if rivals is not None and len(rivals):
+            middles = (boxes[:, None, :2] + boxes[:, None, 2:]) / 2
+            nearest = np.linalg.norm(middles - rivals, axis=2).min(axis=1)
+            free &= np.linalg.norm(middles[:, 0] - at, axis=1) <= nearest + 1e-9
         if not free.any():
             return None
         covered = np.zeros(len(boxes)) if over else self._covered(boxes)
@@ -87,7 +95,7 @@ class Room:
     def _around(at: Point, wide: float, high: float) -> Box:
         return at[0] - wide / 2, at[1] - high / 2, at[0] + wide / 2, at[1] + high / 2
 
-    def _free(self, boxes: FloatArray) -> FloatArray:
+    def _free(self, boxes: FloatArray) -> NDArray[np.bool_]:
         free = np.ones(len(boxes), dtype=bool)
         if self.boxes:
             taken = np.array(self.boxes)

@@ -67,7 +67,7 @@ def _read(source: Any, chosen: Chosen) -> tuple[ModelDraft, str]:
     """The draft of a source, and where it is from."""
     if isinstance(source, str | Path):
         path = Path(source)
-        return (_read_csv([path], chosen) if path.is_dir() else _read_file(path, chosen)), str(path)
+        return _read_path(path, chosen), str(path)
     from rga.importing.pynite import is_pynite, read_pynite
 
     if is_pynite(source):
@@ -79,6 +79,16 @@ def _read(source: Any, chosen: Chosen) -> tuple[ModelDraft, str]:
         f"{type(source).__name__} is nothing that can be read", "source",
         "give a path, paths of tables, or a PyNite model",
     )  # fmt: skip
+
+
+def _read_path(path: Path, chosen: Chosen) -> ModelDraft:
+    try:
+        return _read_csv([path], chosen) if path.is_dir() else _read_file(path, chosen)
+    except InputError as error:
+        if not error.where.startswith(("line ", "lines ")):
+            raise
+        # Notes stand below the name of the file, an error stands alone.
+        raise InputError(error.what, f"{path}, {error.where}", error.remedy) from None
 
 
 def _read_file(path: Path, chosen: Chosen) -> ModelDraft:

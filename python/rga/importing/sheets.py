@@ -22,14 +22,19 @@ class Sheet:
         columns: place of each column by its name without unit, in small letters.
         units: of the columns that state one.
         cells: rows below the heads, with their numbers in the file.
+        decimal_comma: whether a comma in a number is its decimal sign, as in a text file, where
+            none can part columns that semicolons or tabs part, and none in quotes.
         asked: columns that a reader has asked for.
+        decimal_signs: a cell that was read with each.
     """
 
     name: str
     columns: dict[str, int]
     units: dict[str, str]
     cells: list[tuple[int, Sequence[Any]]]
+    decimal_comma: bool = False
     asked: set[str] = field(default_factory=set)
+    decimal_signs: dict[str, str] = field(default_factory=dict)
 
     def __iter__(self) -> "Iterator[SheetRow]":
         for number, cells in self.cells:
@@ -119,7 +124,25 @@ class SheetRow:
             if default is None:
                 raise InputError(f"{name!r} is empty", self.where, "fill it")
             return default
-        return read_number(cell, name, self.where) * self.scale(name, si, unit)
+        return self.number_in(cell, name) * self.scale(name, si, unit)
+
+    def number_in(self, cell: Any, name: str) -> float:
+        """What a cell of a column says as a number, in the notation of the sheet.
+
+        Raises:
+            InputError: it is none, or the sheet has decimal points and decimal commas.
+        """
+        if not (self.sheet.decimal_comma and isinstance(cell, str)):
+            return read_number(cell, name, self.where)
+        signs = self.sheet.decimal_signs
+        signs |= {sign: signs.get(sign, cell.strip()) for sign in ".," if sign in cell}
+        if len(signs) > 1:
+            raise InputError(
+                f"{name!r} is {cell.strip()[:40]!r}: the table has points and commas in numbers "
+                f"({signs['.'][:40]!r}, {signs[','][:40]!r}), and what a comma means is in doubt",
+                self.where, "write all with the same decimal sign, and none between thousands",
+            )  # fmt: skip
+        return read_number(cell.replace(",", "."), name, self.where, cell)
 
     def scale(self, name: str, si: str, unit: str | None = None) -> float:
         """SI units per unit of a column."""
@@ -135,8 +158,14 @@ class SheetRow:
         return to_si(stated, si, f"{self.sheet.name}, column {name!r}")
 
 
-def read_number(cell: Any, name: str, where: str) -> float:
+def read_number(cell: Any, name: str, where: str, written: Any = None) -> float:
     """A cell as a finite number.
+
+    Args:
+        cell: with a decimal point.
+        name: of its column.
+        where: it stands.
+        written: the cell as it stands in the file, where it differs.
 
     Raises:
         InputError: it is none.
@@ -146,7 +175,8 @@ def read_number(cell: Any, name: str, where: str) -> float:
     except (TypeError, ValueError):
         number = float("nan")
     if not abs(number) < 1e300:
-        raise InputError(f"{name!r} is {str(cell)[:40]!r}, no number", where, "write a number")
+        shown = str(cell if written is None else written)[:40]
+        raise InputError(f"{name!r} is {shown!r}, no number", where, "write a number")
     return number
 
 
@@ -160,11 +190,12 @@ def _under_heads(name: str, number: int, row: Sequence[Any], places: set[int]) -
             )  # fmt: skip
 
 
-def sheet_of(name: str, rows: Iterator[Sequence[Any]], *, headed: bool = False) -> Sheet | None:
+def sheet_of(name: str, rows: Iterator[Sequence[Any]], *, from_text: bool = False) -> Sheet | None:
     """A sheet of its rows, the first of which that is not empty has the heads; None: it is empty.
 
     Args:
-        headed: whether every cell must stand under a head, as commas that part cells demand.
+        from_text: whether they are of a text file: every cell must stand under a head, since a
+            decimal comma may have parted two, and a comma in a number is its decimal sign.
 
     Raises:
         InputError: a column stands twice, a cell has no head, or there are too many rows.
@@ -182,7 +213,7 @@ def sheet_of(name: str, rows: Iterator[Sequence[Any]], *, headed: bool = False) 
                 "give the part that describes the structure",
             )
         if columns:
-            if headed:
+            if from_text:
                 _under_heads(name, number, row, set(columns.values()))
             cells.append((number, row))
             continue
@@ -200,4 +231,4 @@ def sheet_of(name: str, rows: Iterator[Sequence[Any]], *, headed: bool = False) 
                 units[title] = head["unit"].strip()
         if not columns:
             raise InputError("the heads of columns are no text", name, "name the columns")
-    return Sheet(name, columns, units, cells) if columns else None
+    return Sheet(name, columns, units, cells, from_text) if columns else None

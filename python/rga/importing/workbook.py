@@ -69,7 +69,7 @@ def _sheets(data: bytes, path: Path) -> Any:
 
 
 def read_csv_folder(paths: list[Path]) -> dict[str, Sheet]:
-    """CSV files as sheets, by their names without suffix; commas or semicolons part the columns.
+    """CSV files as sheets, by their names without suffix; commas, semicolons or tabs part columns.
 
     Raises:
         InputError: one cannot be read, or has no rows.
@@ -78,10 +78,10 @@ def read_csv_folder(paths: list[Path]) -> dict[str, Sheet]:
     for path in paths:
         text = read_text(path)
         first = text.partition("\n")[0]
-        delimiter = ";" if first.count(";") > first.count(",") else ","
+        delimiter = max(",", ";", "\t", key=first.count)
         try:
             rows = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)
-            sheet = sheet_of(path.name, iter(rows), headed=True)
+            sheet = sheet_of(path.name, iter(rows), from_text=True)
         except csv.Error as error:
             raise InputError(
                 f"the table cannot be read: {error}", str(path), "mend its quotes"

@@ -11,7 +11,16 @@ from pydantic import BaseModel, ConfigDict, field_validator, model_validator
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model.action import Action
-from rga.model.parameter import Driven, Estimated, Parameter, Place, Prior, marks, resolve
+from rga.model.parameter import (
+    AnyNumber,
+    Driven,
+    Estimated,
+    Parameter,
+    Place,
+    Prior,
+    marks,
+    resolve,
+)
 from rga.model.quantities import value_words
 
 if TYPE_CHECKING:
@@ -47,8 +56,8 @@ class Effect(BaseModel):
     vocabulary: ClassVar[dict[str, type["Effect"]]] = {}
 
     kind: str
-    onset: float | str | None = None
-    end: float | str | None = None
+    onset: AnyNumber | str | None = None
+    end: AnyNumber | str | None = None
     profile: Literal["step", "ramp"] = "step"
 
     #: Name in prose; left out, the kind with spaces.

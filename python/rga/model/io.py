@@ -104,7 +104,7 @@ def model_content(model: Model) -> dict[str, Any]:
 
 
 def _parse(raw: bytes, suffix: str) -> Any:
-    text = raw.decode("utf-8")
+    text = raw.decode("utf-8-sig")
     if suffix == ".toml":
         return tomllib.loads(text)
     if suffix in (".yaml", ".yml"):

@@ -8,6 +8,12 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from rga.arrays import FloatArray
+from rga.no_booleans import NO_BOOLEAN
+
+#: infinite and undefined ones among them
+AnyNumber = Annotated[float, NO_BOOLEAN]
+Number = Annotated[float, Field(allow_inf_nan=False), NO_BOOLEAN]
+NotNegative = Annotated[float, Field(ge=0), NO_BOOLEAN]
 
 
 class Driven(BaseModel):
@@ -21,8 +27,8 @@ class Driven(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     context: str
-    times: float = Field(default=1.0, allow_inf_nan=False)
-    minus: float = Field(default=0.0, allow_inf_nan=False)
+    times: Number = 1.0
+    minus: Number = 0.0
     log10: bool = False
 
     def follow(self, context: FloatArray) -> FloatArray:
@@ -39,13 +45,12 @@ class Estimated(BaseModel):
     """A parameter that a diagnosis found, with its 90 % credible interval."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
-    value: float = Field(allow_inf_nan=False)
-    ci90: tuple[float, float]
+    value: Number
+    ci90: tuple[AnyNumber, AnyNumber]
 
 
 #: 95 % point of the standard normal distribution
 NORMAL_90 = 1.6448536269514722
-Number = Annotated[float, Field(allow_inf_nan=False)]
 Value = Number | Driven | Estimated
 
 

@@ -20,18 +20,19 @@ from pydantic import (
 
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment, seconds
-from rga.model.parameter import Number, listed
+from rga.model.parameter import AnyNumber, NotNegative, Number, listed
 from rga.model.pictured import Pictured
 from rga.model.references import EVERYTHING_READ, Mistake, effect_mistakes, mistakes, refuse
 from rga.model.units import UNITS
 from rga.model.vocabulary import field_texts, kind_text
+from rga.no_booleans import NO_BOOLEAN
 
 #: key of what a file has besides, in the context of a validation
 UNREAD = "unread"
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
 Vector = tuple[Number, Number, Number]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NO_BOOLEAN]
 
 
 class Part(BaseModel):
@@ -62,9 +63,9 @@ class Material(Part):
     """
 
     E: Positive
-    nu: Annotated[float, Field(gt=-1, lt=0.5)] = 0.3
+    nu: Annotated[float, Field(gt=-1, lt=0.5), NO_BOOLEAN] = 0.3
     alpha: Number = 0.0
-    density: Annotated[float, Field(ge=0)] = 0.0
+    density: NotNegative = 0.0
     yield_strength: Positive | None = None
 
 
@@ -76,22 +77,37 @@ class Section(Part):
     """
 
     A: Positive
-    Iy: Annotated[float, Field(ge=0)] = 0.0
-    Iz: Annotated[float, Field(ge=0)] = 0.0
-    J: Annotated[float, Field(ge=0)] = 0.0
+    Iy: NotNegative = 0.0
+    Iz: NotNegative = 0.0
+    J: NotNegative = 0.0
     Asy: Positive | None = None
     Asz: Positive | None = None
     fibres: dict[str, tuple[Number, Number]] = {}
 
 
-class Releases(Part):
+class Ends(Part):
+    """What each end of a member has: `i` is its first node, `j` its second."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named(cls, given: Any) -> Any:
+        if isinstance(given, Mapping) and (
+            others := [end for end in given if end not in cls.model_fields]
+        ):
+            raise ValueError(
+                f"{others[0]!r} is no end of a member: i is that at its first node, j at its second"
+            )
+        return given
+
+
+class Releases(Ends):
     """Degrees of freedom that the member does not pass on at its ends, in local axes."""
 
     i: list[Dof] = []
     j: list[Dof] = []
 
 
-class EndSprings(Part):
+class EndSprings(Ends):
     """Stiffness of the connection of the member's ends, in local axes [N m/rad or N/m]."""
 
     i: dict[Dof, Positive] = {}
@@ -143,7 +159,7 @@ class Mass(Part):
     """
 
     node: str
-    mass: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    mass: Annotated[float, Field(ge=0, allow_inf_nan=False), NO_BOOLEAN]
     inertia: tuple[Number, Number, Number] = (0.0, 0.0, 0.0)
 
 
@@ -187,11 +203,11 @@ class Sensor(Part):
     direction: Vector | None = None
     relative_to: str | None = None
     member: str | None = None
-    at: Annotated[float, Field(ge=0, le=1)] = 0.5
+    at: Annotated[float, Field(ge=0, le=1), NO_BOOLEAN] = 0.5
     y: Number = 0.0
     z: Number = 0.0
     total: bool = False
-    zero: tuple[float | str, float | str] | None = None
+    zero: tuple[AnyNumber | str, AnyNumber | str] | None = None
     noise: Positive | None = None
     groups: list[str] = []
 
@@ -261,7 +277,7 @@ class Model(Pictured, Part):
     model_config = ConfigDict(serialize_by_alias=True, validate_by_name=True)
 
     schema_file: Annotated[str | None, Field(alias="$schema")] = None
-    rga_model: Literal[1]
+    rga_model: Annotated[Literal[1], NO_BOOLEAN]
     name: str
     about: About = About()
     plane: Literal["xy", "xz", "yz"] | None = None

@@ -70,7 +70,8 @@ def sources_of(
             "the model has no sensor or context variable for " + quoted(unknown, len(unknown)),
             where,
             "list what is not used under [unused] in import.toml, with the reason, or name the "
-            "column of a channel: [channels] NAME = { column = ... }",
+            "column of a channel: [channels] NAME = { column = ... }; "
+            "`rga import-record FILES --model MODEL` writes a first import.toml",
         )
     return sources
 

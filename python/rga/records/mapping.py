@@ -16,12 +16,13 @@ from pydantic import (
 )
 
 from rga.errors import InputError
+from rga.no_booleans import NO_BOOLEAN
 
 MAPPING_NAME = "import.toml"
 #: begins a reason that `rga import-record` gave, and that nobody has confirmed
 TO_CHECK = "TO CHECK"
-_Finite = Annotated[float, Field(allow_inf_nan=False)]
-_Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_Finite = Annotated[float, Field(allow_inf_nan=False), NO_BOOLEAN]
+_Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NO_BOOLEAN]
 _Line = Annotated[int, Field(ge=1, strict=True)]
 _Sign = Annotated[str, Field(min_length=1, max_length=1)]
 
@@ -78,7 +79,7 @@ class Channel(_Table):
 
     column: str | None = None
     unit: str | None = None
-    sign: Literal[1, -1] = 1
+    sign: Annotated[Literal[1, -1], NO_BOOLEAN] = 1
     missing: list[str] = []
 
     _missing_as_words = field_validator("missing", mode="before")(_as_words)

@@ -185,7 +185,7 @@ def read_effects(path: str | Path) -> dict[str, Effect]:
     """
     path = Path(path)
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         reason = (error.strerror or "unreadable").lower()
         raise InputError(

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from rga.errors import InputError
 from rga.findings.criteria import Criteria
 from rga.inference.networks.settings import TrainingSettings
+from rga.no_booleans import NO_BOOLEAN
 from rga.settings_files import read_table, validated
 
 Inference = Literal["auto", "joint", "networks", "amortised"]
@@ -59,18 +60,18 @@ class Settings(BaseModel):
     calibration_rows: Count | None = None
     packet: Count | None = None
     detector: Literal["monitor", "window"] = "monitor"
-    arl0: Annotated[float, Field(ge=100, le=1e12)] = 10_000.0
-    window: Annotated[int, Field(ge=2, le=1_000_000)] = 100
-    z: Annotated[float, Field(gt=0, le=1e6)] = 4.0
+    arl0: Annotated[float, Field(ge=100, le=1e12), NO_BOOLEAN] = 10_000.0
+    window: Annotated[int, Field(ge=2, le=1_000_000), NO_BOOLEAN] = 100
+    z: Annotated[float, Field(gt=0, le=1e6), NO_BOOLEAN] = 4.0
     persistence: tuple[Count, Count] = (4, 6)
     policy: PolicyName = "event"
     interval: Count | None = None
     settle: Count | None = None
-    usual: Annotated[float, Field(gt=0.5, lt=1)] = 0.99
-    growth: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 2.0
-    design_rows: Annotated[int, Field(ge=128, le=10_000_000)] = 4096
-    repository_z: Annotated[float, Field(gt=0, le=1e6)] = 4.0
-    distinct: Annotated[float, Field(gt=0)] | None = None
+    usual: Annotated[float, Field(gt=0.5, lt=1), NO_BOOLEAN] = 0.99
+    growth: Annotated[float, Field(gt=1, allow_inf_nan=False), NO_BOOLEAN] = 2.0
+    design_rows: Annotated[int, Field(ge=128, le=10_000_000), NO_BOOLEAN] = 4096
+    repository_z: Annotated[float, Field(gt=0, le=1e6), NO_BOOLEAN] = 4.0
+    distinct: Annotated[float, Field(gt=0), NO_BOOLEAN] | None = None
     training: TrainingSettings = TrainingSettings()
     criteria: Criteria = Criteria()
 

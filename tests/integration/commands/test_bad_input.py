@@ -54,7 +54,7 @@ RECORDS: dict[str, tuple[str | bytes, str | None, list[str]]] = {
     "huge value": ("time,D1,S1\n0,1,2\n1,1e300,2\n", None, ["1e+300", "line 3", "'D1'"]),
     "infinite value": ("time,D1,S1\n0,1,2\n1,-inf,2\n", None, ["infinite", "line 3", "'D1'"]),
     "channel without values": ("time,D1,S1\n0,1,\n1,1,\n", None, ["'S1' holds no value"]),
-    "unknown channel": ("time,D1,S1,S9\n0,1,2,3\n", None, ["'S9'", "[unused]"]),
+    "unknown channel": ("time,D1,S1,S9\n0,1,2,3\n", None, ["'S9'", "rga import-record FILES"]),
     "missing channel": ("time,D1\n0,1\n", None, ["sensors 'S1'", "[unused]"]),
     "no sensor at all": (
         "time,load\n0,1\n",

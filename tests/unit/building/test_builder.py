@@ -142,8 +142,12 @@ WRONG: dict[str, tuple[Callable[[ModelBuilder], Any], str]] = {
     "no name": (lambda b: b.add_node("", 1), "'' is no name"),
     "kind": (lambda b: b.add_member("A", "C", "beam", kind="cable"), "kind: Input should be"),
     "release": (
-        lambda b: b.add_member("A", "C", "beam", releases={"i": ["r1"], "k": ["rx"]}),
-        "releases.i.0: Input should be 'ux', 'uy', 'uz', 'rx', 'ry' or 'rz'; releases.k: ",
+        lambda b: b.add_member("A", "C", "beam", releases={"i": ["r1"], "j": ["rx", "q"]}),
+        "releases.i.0: Input should be 'ux', 'uy', 'uz', 'rx', 'ry' or 'rz'; releases.j.1: ",
+    ),
+    "end": (
+        lambda b: b.add_member("A", "C", "beam", releases={"start": ["ry"]}),
+        "releases: 'start' is no end of a member: i is that at its first node, j at its second",
     ),
     "local_y": (lambda b: b.add_member("A", "C", "beam", local_y=(0, 0, 0)), "points nowhere"),
     "section": (lambda b: b.add_section("x", "IPE 301"), "did you mean IPE 300"),
@@ -164,7 +168,10 @@ WRONG: dict[str, tuple[Callable[[ModelBuilder], Any], str]] = {
     "group": (lambda b: b.load_case("f", uniform={"roof": (0, 0, 1)}), "no member or group 'roof'"),
     "sensor kind": (lambda b: b.sensor("s", "stress", member="A-B"), "is no kind of sensor"),
     "sensor unit": (lambda b: b.sensor("s", "strain", member="A-B", unit="kg"), "the unit 'kg'"),
-    "sensor key": (lambda b: b.sensor("s", "strain", member="A-B", on=1), "on: Extra inputs"),
+    "sensor key": (
+        lambda b: b.sensor("s", "strain", member="A-B", on=1),
+        "on: this key is unknown",
+    ),
     "direction": (
         lambda b: b.sensor("s", "displacement", node="A", direction="left"),
         "'left' is no direction",

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 import rga
 from every_kind_bridge import bridge
+from rga.building import howe_truss
 from rga.drawing.content import asked, gather
 from rga.drawing.sheet.sheet import sheet, sheet_bytes
 from rga.errors import InputError
@@ -93,6 +94,17 @@ class TestSheets:
         said = texts(sheet_bytes(content, "svg"))
         assert perf_counter() - begun < 10
         assert f"{len(content.scene.nodes) + len(content.scene.members)} names without room" in said
+
+    def test_on_a_phone_members_and_forces_without_room_are_counted(self) -> None:
+        truss = howe_truss("roof", 20.0, 2.4, 7, chords="SHS 120x6.3", diagonals="SHS 80x5")
+        truss.load_case("snow", down=dict.fromkeys(truss.nodes_in("top chord"), "17 kN"))
+        content = gather(truss.build(), asked({"names": "members", "forces": "N"}))
+        said = texts(sheet_bytes(content, "svg", 3.75))
+        lost = next(one for one in said if one.endswith("without room"))
+        values, names = (int(part.split()[0]) for part in lost.split(" and "))
+        assert names == len([name for name in content.scene.members if name not in said])
+        assert values > 0
+        assert not any("without room" in one for one in texts(sheet_bytes(content, "svg")))
 
     def test_a_name_is_text_whatever_it_holds(self, hostile: Model, tmp_path: Path) -> None:
         drawing = sheet_bytes(gather(hostile, asked({"names": ["nodes", "members"]})), "svg")

@@ -30,3 +30,15 @@ class TestRoom:
         left, bottom, right, top = placed.box
         covered = (line > (left, bottom)) & (line < (right, top))
         assert not covered.all(axis=1).any()
+
+    def test_a_label_stands_nearer_to_its_point_than_any_rival(self) -> None:
+        points = np.column_stack([np.arange(8) * 0.3, np.zeros(8)])
+        room = Room(boxes=[(0.5, -0.2, 0.7, 0.2)])
+        placed = [room.place("L1-L2", at, rivals=points) for at in points]
+        found = [one is not None for one in placed]
+        assert any(found)
+        assert not found[2]  # nothing is free about it but places beside its neighbours
+        for k, one in enumerate(placed):
+            if one is not None:
+                middle = np.reshape(one.box, (2, 2)).mean(axis=0)
+                assert np.argmin(np.linalg.norm(points - middle, axis=1)) == k

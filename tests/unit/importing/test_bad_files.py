@@ -46,3 +46,18 @@ def test_a_script_of_too_many_lines_is_one_error(
     path.write_text("set a 1\n" * 2000, encoding="utf-8")
     with pytest.raises(InputError, match="more than 1000 steps"):
         import_model(path, units="kN, m")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("frame.tcl", "model basic -ndm 2 -ndf 3\nnode\n"),
+        ("frame.py", "import openseespy.opensees as ops\nx = (\n"),
+    ],
+)
+def test_a_faulty_line_is_named_with_its_file(tmp_path: Path, name: str, text: str) -> None:
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        import_model(path, units="kN, m")
+    assert error.value.where == f"{path}, line 2"

@@ -138,3 +138,35 @@ class TestTables:
     ) -> None:
         with pytest.raises(InputError, match=said):
             import_model(folder(**{table: text}))
+
+
+class TestDecimalCommas:
+    @pytest.mark.parametrize("sign", [";", "\t"])
+    def test_they_are_read_where_semicolons_or_tabs_part_columns(
+        self, folder: Callable[..., Path], sign: str
+    ) -> None:
+        nodes = "name,x [m],z [m]\nA,0'0,0\nB,4'25,0\nC,4,3\n".replace(",", sign).replace("'", ",")
+        found = import_model(folder(nodes=nodes))
+        assert found.model.nodes["B"] == (4.25, 0.0, 0.0)
+        said = [note.what for note in found.notes]
+        assert "commas in numbers are decimal: 0,0 is 0" in said
+
+    def test_they_are_read_in_quotes(self, folder: Callable[..., Path]) -> None:
+        nodes = 'name,x [m],z [m]\nA,0,0\nB,"4,125",0\nC,4,3\n'
+        found = import_model(folder(nodes=nodes))
+        assert found.model.nodes["B"] == (4.125, 0.0, 0.0)
+        said = [note.what for note in found.notes]
+        assert "commas in numbers are decimal: 4,125 is 4.125" in said
+
+    @pytest.mark.parametrize("cell", ["1.234,5", "1,234.5", "1,5"])
+    def test_points_and_commas_together_are_refused(
+        self, folder: Callable[..., Path], cell: str
+    ) -> None:
+        nodes = f"name;x [m];z [m]\nA;0;0.5\nB;{cell};0\nC;4;3\n"
+        with pytest.raises(InputError, match="points and commas in numbers"):
+            import_model(folder(nodes=nodes))
+
+    def test_no_comma_is_one_of_thousands(self, folder: Callable[..., Path]) -> None:
+        nodes = "name;x [m];z [m]\nA;0;0\nB;1,234,567;0\nC;4;3\n"
+        with pytest.raises(InputError, match="'x' is '1,234,567', no number"):
+            import_model(folder(nodes=nodes))

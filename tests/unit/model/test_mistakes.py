@@ -111,3 +111,9 @@ def test_an_effect_that_does_not_fit_is_named(two_bars: dict[str, Any]) -> None:
     assert mistakes(two_bars) == ["effects.warmth: groups: there is no group 'deck' in the model"]
     with pytest.raises(ValueError, match=r"effects\.warmth\.kind: 'ghost' is no kind"):
         read_effect({"kind": "ghost"}, "warmth")
+
+
+def test_the_ends_of_a_member_are_named(two_bars: dict[str, Any]) -> None:
+    two_bars["members"]["west"]["end_springs"] = {"end": {"ry": 1e6}}
+    with pytest.raises(InputError, match=r"members\.west\.end_springs: 'end' is no end of a"):
+        read_model(two_bars, "model.json")

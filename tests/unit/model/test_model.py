@@ -114,3 +114,11 @@ def test_effects_that_do_nothing_are_refused(
     two_bars["effects"]["hidden"] = effect
     with pytest.raises(InputError, match=expected):
         read_model(two_bars, "model.json")
+
+
+def test_a_byte_order_mark_before_a_file_is_passed_over(
+    two_bars: dict[str, Any], tmp_path: Path
+) -> None:
+    path = tmp_path / "model.json"
+    path.write_text(json.dumps(two_bars), encoding="utf-8-sig")
+    assert load_model(path).name == two_bars["name"]

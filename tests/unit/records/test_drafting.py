@@ -144,6 +144,17 @@ def test_the_command_writes_once(tmp_path: Path, model_file: Path, rga: Callable
     assert not list(tmp_path.glob(".rga-*"))
 
 
+@pytest.mark.parametrize("rows", ["", "2024-01-01 00:00,ok,good\n2024-01-01 00:10,ok,good\n"])
+def test_a_file_without_a_number_is_refused(
+    tmp_path: Path, model_file: Path, rga: Callable[..., Any], rows: str
+) -> None:
+    (tmp_path / "r.csv").write_text(f"time,state,remark\n{rows}", encoding="utf-8")
+    outcome = rga("import-record", tmp_path / "r.csv", "--model", model_file)
+    assert outcome.code == 2
+    assert "r.csv" in outcome.err
+    assert not (tmp_path / "import.toml").exists()
+
+
 @pytest.mark.parametrize("kind", ["import", "settings"])
 def test_schemas_are_printed(kind: str, rga: Callable[..., Any]) -> None:
     content = json.loads(rga("schema", kind).out)

@@ -55,3 +55,7 @@ class TestPdf:
         content = (tmp_path / "report.pdf").read_bytes()
         assert content.startswith(b"%PDF")
         assert content.rstrip().endswith(b"%%EOF")
+
+    def test_a_report_is_printed_on_a4(self) -> None:
+        template = Path(pdf.__file__).parent / "templates" / "report.html.j2"
+        assert "@page { size: A4;" in template.read_text(encoding="utf-8")

@@ -39,17 +39,19 @@ def draw_names(canvas: Canvas, content: Content, sensors: Mapping[str, FloatArra
         if len(places) > MOST_NAMED:
             missed += len(places)
             continue
+        # A member is long and hides what leads to its middle: its name must stand by itself.
+        rivals = np.array([at for _, at in places]) if kind == "members" else None
         colour = canvas.palette.steel if kind == "members" else canvas.palette.ink
         for name, at in places:
             letter = LETTER * (1.15 if "weight" in look else 1.0)
-            placed = canvas.room.place(label(name, LONGEST), at, width, letter)
+            placed = canvas.room.place(label(name, LONGEST), at, width, letter, rivals=rivals)
             if placed is None:
                 missed += 1
                 continue
             left, bottom, right, top = placed.box
             near = np.clip(at, (left, bottom), (right, top))
             if np.linalg.norm(near - at) > FAR:
-                canvas.lines([np.array([at, near])], canvas.palette.faint, 0.5, zorder=3)
+                canvas.lines([np.array([at, near])], canvas.palette.steel, 0.6, zorder=8)
             canvas.text(
                 placed.text,
                 (left, bottom),

@@ -79,10 +79,13 @@ def sheet(
             )
         )  # fmt: skip
         missed = draw_view(axes, content, panel.view)
-        if missed:
+        if any(missed.values()):
+            lost = " and ".join(
+                f"{n} {what}{'s' if n > 1 else ''}" for what, n in missed.items() if n
+            )
             drawn.text(
                 (panel.left + panel.wide - 0.15) / width, 1 - panel.top / high,
-                f"{missed} name{'s' if missed > 1 else ''} without room", fontsize=7,
+                f"{lost} without room", fontsize=7,
                 ha="right", va="top", color=palette.steel,
             )  # fmt: skip
     if found:

@@ -37,10 +37,14 @@ def draw_deformed(canvas: Canvas, scene: Scene, shape: Deformed) -> None:
         canvas.lines(curves[chosen], canvas.palette.deformed, width, zorder=5)
 
 
-def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> None:
-    """Values across the members, and the largest of them written."""
+def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> int:
+    """Values across the members, and the largest of them written.
+
+    Returns:
+        How many of these found no room.
+    """
     if diagram.largest == 0:
-        return
+        return 0
     factor, _ = scale(diagram.unit, diagram.largest)
     both = diagram.quantity == "N"
     reach = (HALF if both else REACH) / diagram.largest
@@ -66,11 +70,16 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> None:
         written.append((abs(float(values[k])), top, short(float(values[k]) * factor)))
     for colour, polygons in areas.items():
         canvas.areas(polygons, colour, colour, 0.6, zorder=4, alpha=0.45)
+    missed = 0
+    tops = np.array([top for _, top, _ in written])
     for _, top, text in sorted(written, key=lambda one: -one[0])[:WRITTEN]:
-        placed = canvas.room.place(text, top, over=both)
-        if placed is not None:
+        placed = canvas.room.place(text, top, over=both, rivals=tops)
+        if placed is None:
+            missed += 1
+        else:
             paper = {"facecolor": canvas.palette.paper, "alpha": 0.75, "lw": 0, "pad": 0.4}
             canvas.text(text, placed.box[:2], canvas.palette.ink, va="bottom", bbox=paper)
+    return missed
 
 
 def _across(along: FloatArray) -> FloatArray:

@@ -43,11 +43,11 @@ def seen(content: Content, view: View) -> FloatArray:
     return np.vstack(parts)
 
 
-def draw_view(axes: Axes, content: Content, view: View) -> int:
+def draw_view(axes: Axes, content: Content, view: View) -> dict[str, int]:
     """Draw one view into axes, as large as they are.
 
     Returns:
-        How many names found no room.
+        How many labels found no room: "value" of forces, "name".
     """
     palette = palette_of(content)
     canvas = canvas_in(axes, view, seen(content, view), margin_of(content), palette)
@@ -57,9 +57,10 @@ def draw_view(axes: Axes, content: Content, view: View) -> int:
     draw_springs(canvas, content.springs, scene)
     draw_ties(canvas, scene)
     draw_masses(canvas, scene)
+    values = 0
     if content.response is not None:
         for diagram in content.response.diagrams:
-            draw_diagram(canvas, scene, diagram)
+            values += draw_diagram(canvas, scene, diagram)
         if content.response.deformed is not None:
             draw_deformed(canvas, scene, content.response.deformed)
     draw_loads(canvas, content.loads, scene)
@@ -67,7 +68,7 @@ def draw_view(axes: Axes, content: Content, view: View) -> int:
     if content.shown.local_axes:
         draw_local_axes(canvas, scene)
     _foot(canvas)
-    return draw_names(canvas, content, placed)
+    return {"value": values, "name": draw_names(canvas, content, placed)}
 
 
 def _foot(canvas: Canvas) -> None:

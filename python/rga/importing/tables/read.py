@@ -94,6 +94,7 @@ def read_tables(sheets: dict[str, Sheet], path: Path, chosen: Chosen) -> ModelDr
         draft.add_spring(row.needed("node"), row.text("to") or None, dof, stiffness, row.where)
     for row in tables.get("loads", ()):
         _load(row, draft)
+    _say_commas(tables, draft)
     _say_rest(tables, draft)
     return draft
 
@@ -130,10 +131,7 @@ def _member(row: SheetRow, draft: ModelDraft) -> None:
     for dof in (*released["i"], *released["j"]):
         if dof not in DOFS:
             raise InputError(f"{dof!r} is no degree of freedom", row.where, ", ".join(DOFS))
-    try:
-        vector = [float(part) for part in local_y] or None
-    except ValueError:
-        raise InputError("local y is no vector", row.where, "write it as 0;0;1") from None
+    vector = [row.number_in(part, "local y") for part in local_y] or None
     draft.add_member(
         row.needed("name"), (row.needed("start"), row.needed("end")), row.needed("section"),
         row.needed("material"), row.where, kind="truss" if kind == "truss" else "frame",
@@ -185,6 +183,15 @@ def _load(row: SheetRow, draft: ModelDraft) -> None:
     if any(point):
         place = row.number_of("at", "m")
         draft.load_member(case, member, row.where, point=point, x=place)
+
+
+def _say_commas(tables: dict[str, Sheet], draft: ModelDraft) -> None:
+    for sheet in tables.values():
+        if cell := sheet.decimal_signs.get(","):
+            read = f"{float(cell.replace(',', '.')):.12g}"
+            draft.notes.say(
+                "assumed", sheet.name, f"commas in numbers are decimal: {cell} is {read}"
+            )
 
 
 def _say_rest(tables: dict[str, Sheet], draft: ModelDraft) -> None:

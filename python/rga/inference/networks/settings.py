@@ -4,10 +4,12 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-Weight = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Rate = Annotated[float, Field(gt=0, lt=1)]
-Count = Annotated[int, Field(ge=1, le=1_000_000)]
-Share = Annotated[float, Field(ge=0, lt=1)]
+from rga.no_booleans import NO_BOOLEAN
+
+Weight = Annotated[float, Field(ge=0, allow_inf_nan=False), NO_BOOLEAN]
+Rate = Annotated[float, Field(gt=0, lt=1), NO_BOOLEAN]
+Count = Annotated[int, Field(ge=1, le=1_000_000), NO_BOOLEAN]
+Share = Annotated[float, Field(ge=0, lt=1), NO_BOOLEAN]
 
 
 class TrainingSettings(BaseModel):

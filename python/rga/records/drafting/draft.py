@@ -11,6 +11,7 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.model import Model
+from rga.records.channels import quoted
 from rga.records.drafting.candidates import candidate_lines
 from rga.records.drafting.doubts import codes_in, gaps_in, readable, still_value
 from rga.records.drafting.matching import Match, matches
@@ -87,12 +88,13 @@ def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> MappingD
         folder: where the mapping is to stand.
 
     Raises:
-        InputError: a file cannot be read.
+        InputError: a file cannot be read, or no column of any holds a number.
     """
     known = {*model.sensors, *model.context}
     loggers = _loggers([read_table(path, None, known) for path in files])
     for logger in loggers:
         _look_at_time(logger)
+    _some_numbers(loggers)
     found, unsure = matches(
         [one.first for one in loggers], model, [one.taken + one.empty for one in loggers]
     )
@@ -108,6 +110,20 @@ def draft_mapping(files: Sequence[Path], model: Model, folder: Path) -> MappingD
     if fault is not None:
         content = f"# TO FILL IN: as it stands the record is not read: {fault}\n{content}"
     return MappingDraft(content, found, doubts.told(), fault)
+
+
+def _some_numbers(loggers: Sequence[_Logger]) -> None:
+    """See that some column may be a channel."""
+    if any({*one.first.frame.columns} - {*one.taken, *one.empty} for one in loggers):
+        return
+    frame = loggers[0].first.frame
+    rows, names = frame.height, quoted(frame.columns)
+    raise InputError(
+        f"no column beside the time holds a number: {rows} rows were read of the columns {names}",
+        ", ".join(one.name for one in loggers),
+        "give a logger's file with readings; where columns or rows are found wrongly, write "
+        "delimiter, header_line and data_line into an import.toml",
+    )
 
 
 def _fault(content: str, folder: Path, model: Model) -> str | None:

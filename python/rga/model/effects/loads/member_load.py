@@ -2,10 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from rga.model.effect import Effect, Values
-from rga.model.parameter import Number, Parameter, Place, Value, listed
+from rga.model.parameter import NotNegative, Number, Parameter, Place, Value, listed
 from rga.model.structure import Load, Spread, Structure
 
 LOCAL = ("x", "y", "z")
@@ -31,7 +31,7 @@ class MemberLoad(Effect):
     axis: Literal["x", "y", "z"] = "y"
     trapezoid: tuple[Number, Number, Number, Number] | None = None
     point: tuple[Number, Number, Number] | None = None
-    x: Annotated[float, Field(ge=0)] = 0.0
+    x: NotNegative = 0.0
     factor: Annotated[Value, Parameter("-", 0.0)] = 1.0
 
     @model_validator(mode="after")
