@@ -229,7 +229,7 @@ class RealityGapAnalysis:
             standing.stage = "report"
 
     def _detect(self, first: int, end: int) -> None:
-        alarm = self.synchrony.alarm(first, self._calibration.ledger.residuals[:end])
+        alarm = self.synchrony.alarm(first, end, self._calibration.ledger.residuals)
         if alarm is None or self.standing.alarm is not None:
             return
         self.standing.alarm, self.standing.since = alarm.row, alarm.since
@@ -270,9 +270,9 @@ class RealityGapAnalysis:
             return
         latent, width = self._latent()
         chosen = novel(
-            ledger.gaps[first:end],
+            ledger.gaps(first, end),
             ledger.contexts[first:end][:, latent],
-            errors=ledger.gaps[:first],
+            errors=ledger.gaps(0, first),
             stored=self._archive.run.simulated(version=state.version).contexts[:, latent],
             width=width,
             z=self._settings.repository_z,
@@ -358,7 +358,8 @@ class RealityGapAnalysis:
 
     def _begin_again(self, first: int | None) -> None:
         if self._settings.level != "A":
-            self.synchrony.begin_again(first, self._calibration.ledger.residuals)
+            ledger = self._calibration.ledger
+            self.synchrony.begin_again(first, len(ledger), ledger.residuals)
         self.standing.synchronised = self.standing.row
 
     def _go_on(self, last: bool, open_alarm: bool = False) -> None:

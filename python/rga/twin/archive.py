@@ -109,7 +109,7 @@ class Archive:
         """Keep what was inferred and simulated for rows."""
         rows = slice(first, end)
         self._open.inferred(first, ledger.contexts[rows], ledger.spread[rows], version)
-        self._open.gaps(first, ledger.simulated[rows], ledger.gaps[rows], version)
+        self._open.gaps(first, ledger.simulated[rows], ledger.gaps(first, end), version)
 
     def keep_novel(
         self, version: int, row: int, contexts: FloatArray, simulated: FloatArray

@@ -37,9 +37,7 @@ class FollowedRows:
     def __init__(
         self, exchange: QueryResponse, archive: Archive, station: Station, model: Model
     ) -> None:
-        self.ledger = RowBuffer.empty(
-            len(station.channels), len(station.measured), len(model.context)
-        )
+        self.ledger = RowBuffer(len(station.channels), len(station.measured), len(model.context))
         self._exchange, self._archive, self._station = exchange, archive, station
         self._names, self._laws = list(model.context), list(model.context.values())
         self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
@@ -81,19 +79,19 @@ class FollowedRows:
 
     def gap(self, first: int, end: int, share: float = 0.0) -> float:
         """Gap of rows over the gap to expect of a model that is off by a share [-]."""
-        rows = slice(first, end)
+        ledger = self.ledger
         return against_expected(
-            self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise, share
+            ledger.gaps(first, end), ledger.simulated[first:end], self.noise, share
         )
 
     def scatter_share(self, first: int, end: int) -> float:
         """Share by which the model is off on calibrated rows [-]."""
-        rows = slice(first, end)
-        return scatter_share(self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise)
+        ledger = self.ledger
+        return scatter_share(ledger.gaps(first, end), ledger.simulated[first:end], self.noise)
 
     def known(self, first: int, end: int) -> int:
         """How many of some rows have a gap."""
-        return int(np.isfinite(self.ledger.gaps[first:end]).any(axis=1).sum())
+        return int(np.isfinite(self.ledger.gaps(first, end)).any(axis=1).sum())
 
     @property
     def latent(self) -> list[int]:
@@ -173,7 +171,8 @@ class FollowedRows:
         contexts = np.tile(self._ranges.mean(axis=1), (count, 1))
         spread = np.tile(np.ptp(self._ranges, axis=1) / np.sqrt(12), (count, 1))
         measured = self._measured
-        contexts[:, measured] = self._told()[0][rows]
+        told = self.ledger.told[rows]
+        contexts[:, measured] = np.where(np.isnan(told), contexts[:, measured], told)
         spread[:, measured] = [self._laws[column].noise or 0.0 for column in measured]
         return contexts, spread
 
@@ -181,9 +180,6 @@ class FollowedRows:
     def _measured(self) -> list[int]:
         return [self._names.index(name) for name in self._station.measured]
 
-    def _told(self) -> tuple[FloatArray, NDArray[np.bool_]]:
-        return self.ledger.last_measured(self._ranges.mean(axis=1)[self._measured])
-
     def _complete(self, rows: slice) -> NDArray[np.bool_]:
         """Whether all measured contexts are there, bool[rows, 1]."""
-        return self._told()[1][rows, None]
+        return np.asarray(np.isfinite(self.ledger.measured[rows]).all(axis=1, keepdims=True))
