@@ -269,13 +269,13 @@ class RealityGapAnalysis:
         if not state.latent:
             return
         latent, width = self._latent()
+        mean, deviation = self._calibration.rows.moments.before(first)
         chosen = novel(
             ledger.gaps(first, end),
             ledger.contexts[first:end][:, latent],
-            errors=ledger.gaps(0, first),
+            bound=mean + self._settings.repository_z * deviation,
             stored=self._archive.run.simulated(version=state.version).contexts[:, latent],
             width=width,
-            z=self._settings.repository_z,
             distinct=self.standing.distinct,
         )
         if chosen:

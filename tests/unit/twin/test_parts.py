@@ -205,10 +205,9 @@ def test_only_credible_and_distinct_contexts_are_novel() -> None:
     found = novel(
         gaps,
         contexts,
-        errors=np.array([[0.5], [1.0], [1.5]]),
+        bound=np.array([2.2]),
         stored=np.array([[0.4], [0.6]]),
         width=np.ones(1),
-        z=3.0,
         distinct=0.3,
     )
     # Row 0 is known, 2 repeats 1, the gap of 3 is not credible, 4 has none.

@@ -16,6 +16,7 @@ from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q5, sha256
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.row_buffer import RowBuffer
+from rga.twin.row_moments import GapMoments
 from rga.twin.simulation_model import SimulationModel
 
 
@@ -24,6 +25,7 @@ class FollowedRows:
 
     Attributes:
         ledger: they.
+        moments: of their gaps.
         noise: standard deviation of each channel's noise, float[channels]; NaN for one that is
             not to be looked at.
 
@@ -38,6 +40,7 @@ class FollowedRows:
         self, exchange: QueryResponse, archive: Archive, station: Station, model: Model
     ) -> None:
         self.ledger = RowBuffer(len(station.channels), len(station.measured), len(model.context))
+        self.moments = GapMoments(self.ledger)
         self._exchange, self._archive, self._station = exchange, archive, station
         self._names, self._laws = list(model.context), list(model.context.values())
         self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
@@ -54,6 +57,7 @@ class FollowedRows:
         """
         self.ledger = ledger
         ledger.leave_out(self._station.channels, stuck)
+        self.moments = GapMoments(ledger)
         if calibrated:
             self.noise = noise_of(self._stated, ledger, calibrated)
 
@@ -117,6 +121,7 @@ class FollowedRows:
         version = self._exchange.twin.state.version
         answer = self._exchange.ask(self._question(first, end, version, contexts))
         self.ledger.simulated[rows] = np.where(self._complete(rows), answer.simulated, np.nan)
+        self.moments.changed(first)
         self._archive.keep_rows(first, end, version, self.ledger)
 
     def under(
