@@ -74,6 +74,8 @@ def verdict_sentence(findings: "Findings") -> str:
         )
     elif findings.verdict == "nothing_wrong":
         sentences.append("Nothing is wrong with the model that these data could show.")
+        if near := not_ruled_out(findings):
+            sentences.append(f"Not ruled out, and too little to be named: {'; or '.join(near)}.")
     elif findings.verdict == "unknown":
         sentences.append(
             "Something speaks against the model, and no kind of effect that is known explains it."
@@ -87,6 +89,15 @@ def verdict_sentence(findings: "Findings") -> str:
     if findings.verdict in ("partial", "unknown"):
         sentences.append(f"What stays unexplained: {findings.unexplained.looks_like}.")
     return " ".join(sentences)
+
+
+def not_ruled_out(findings: "Findings") -> list[str]:
+    """Where nothing is named, what comes so near that no effect at all is hardly likelier."""
+    if findings.verdict != "nothing_wrong":
+        return []
+    least = -findings.criteria.rivals.log_odds
+    near = [one for one in findings.explanations if one.effects and one.log_odds > least]
+    return [one.words for one in near[:RIVALS]]
 
 
 def _cause_words(cause: "Cause") -> str:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from plane_models import E, model
-from rga.diagnosis.member_stresses import member_stresses
+from rga.diagnosis.member_stresses import MemberStress, member_stresses
 from rga.findings.arrays import DiagnosisArrays
 from rga.model import read_model
 from rga.model.io import model_content
@@ -89,6 +89,19 @@ class TestStressTable:
             "strength."
         )
         assert consequence({"bc": found["bc"]}) == ""
+
+    def test_what_is_added_counts_and_not_the_share_of_little(self) -> None:
+        def at(stress: float) -> MemberStress:
+            return MemberStress(moment=0.0, stress=stress, utilisation=None, left=1.0)
+
+        found = {"brace": (at(1.4e6), at(7.1e6)), "chord": (at(-96e6), at(-126e6))}
+        assert consequence(found).startswith("The stress of chord grows by 31")
+        found["chord"] = at(-96e6), at(-96e6)
+        assert consequence(found).startswith("The stress of brace grows by 407")
+        found["brace"] = at(1.4e6), at(1.5e6)
+        assert consequence(found) == ""
+        found["brace"] = at(0.0), at(7e6)
+        assert consequence(found).startswith("The stress of brace grows from 0")
 
     def test_without_a_yield_strength_nothing_is_used_up(self) -> None:
         loss = {"loss": {"kind": "member_stiffness", "member": "ab", "factor": 0.75}}

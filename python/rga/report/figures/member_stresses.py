@@ -7,7 +7,7 @@ from rga.diagnosis.member_forces import IDLE
 from rga.diagnosis.member_stresses import MemberStress
 from rga.quantities import DASH, fixed, number, percent
 
-#: growth of a stress below which it is not worth a sentence
+#: what is added to a stress, over the largest of all, that is not worth a sentence
 GROWS = 0.01
 
 
@@ -29,20 +29,22 @@ class StressTable:
 
 
 def consequence(stresses: Mapping[str, tuple[MemberStress, MemberStress]]) -> str:
-    """The member whose stress grows most, in a sentence; empty where none does by a hundredth."""
+    """The member to whose stress most is added, in a sentence; empty where it is too little."""
     heaviest = max((abs(given.stress) for given, _ in stresses.values()), default=0.0)
-    grown = {
-        name: abs(extended.stress) / abs(given.stress)
+    added = {
+        name: abs(extended.stress) - abs(given.stress)
         for name, (given, extended) in stresses.items()
-        if abs(given.stress) > IDLE * heaviest
     }
-    if not grown or max(grown.values()) < 1 + GROWS:
+    if not added or max(added.values()) <= GROWS * heaviest:
         return ""
-    name = max(grown, key=lambda one: grown[one])
+    name = max(added, key=lambda one: added[one])
     given, extended = stresses[name]
+    by = ""
+    if abs(given.stress) > IDLE * heaviest:
+        by = f" by {percent(100 * added[name] / abs(given.stress), sign=False)},"
     said = (
-        f"The stress of {name} grows by {percent(100 * (grown[name] - 1), sign=False)}, from "
-        f"{number(abs(given.stress) / 1e6)} to {number(abs(extended.stress) / 1e6)} MPa"
+        f"The stress of {name} grows{by} from {number(abs(given.stress) / 1e6)} to "
+        f"{number(abs(extended.stress) / 1e6)} MPa"
     )
     if given.utilisation is None or extended.utilisation is None:
         return said + "."

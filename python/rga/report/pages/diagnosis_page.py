@@ -11,7 +11,7 @@ from rga.diagnosis.member_stresses import member_stresses
 from rga.drawing.figure_style import FONTS
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
-from rga.findings.phrases import effect_words, kind_words
+from rga.findings.phrases import effect_words, kind_words, not_ruled_out
 from rga.findings.schema import Cause
 from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.sensors.sensor_fault import is_fault
@@ -30,7 +30,7 @@ from rga.report.figures.unseen import draw_unseen
 from rga.report.pages.cards import card, generic, moment, plain
 from rga.report.pages.evidence import evidence
 from rga.report.pages.fault_tolerant_parts import part
-from rga.report.text.actions import BY_VERDICT, actions
+from rga.report.text.actions import BY_VERDICT, NOT_RULED_OUT, actions
 
 VERDICTS = {
     "nothing_wrong": "Nothing wrong found",
@@ -66,7 +66,7 @@ def page(findings: Findings) -> dict[str, Any]:
         "gain": gain(findings),
         "since": _since(findings.account),
         "warnings": list(dict.fromkeys([*findings.warnings, *record.warnings])),
-        "next": BY_VERDICT[findings.verdict],
+        "next": NOT_RULED_OUT if not_ruled_out(findings) else BY_VERDICT[findings.verdict],
         "tasks": part("What to do first", tasks, findings),
         "cards": [
             {

@@ -20,6 +20,11 @@ BY_VERDICT = {
     "log book there and then.",
     "unidentifiable": "Measure more: what was sought cannot show in these data.",
 }
+#: and where nothing is wrong, yet something is not ruled out
+NOT_RULED_OUT = (
+    "The model as it is predicts this record. Look at what is not ruled out at the next "
+    "inspection, and measure more there if it would matter."
+)
 #: what a place is a part of, and what stands before its name
 PARTS = ("member", "group", "support", "sensor", "context", "effect", "material")
 OF = {"member": "member ", "group": "the group ", "effect": "the load "}
