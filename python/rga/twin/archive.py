@@ -124,8 +124,12 @@ class Archive:
         self._open.findings(row, findings)
 
     def keep(self, name: str, data: bytes, row: int) -> None:
-        """Keep a checkpoint."""
+        """Keep what is asked for as of a row."""
         self._open.keep(name, data, row)
+
+    def checkpoint(self, name: str, data: bytes) -> None:
+        """Keep what a run goes on from, in place of what the last step kept."""
+        self._open.checkpoint(name, data)
 
     def event(self, event: Event) -> None:
         """Keep what happened to the twin."""
