@@ -229,7 +229,7 @@ class RealityGapAnalysis:
             standing.stage = "report"
 
     def _detect(self, first: int, end: int) -> None:
-        alarm = self.synchrony.alarm(first, self._calibration.ledger.residuals[:end])
+        alarm = self.synchrony.alarm(first, end, self._calibration.ledger.residuals)
         if alarm is None or self.standing.alarm is not None:
             return
         self.standing.alarm, self.standing.since = alarm.row, alarm.since
@@ -269,13 +269,13 @@ class RealityGapAnalysis:
         if not state.latent:
             return
         latent, width = self._latent()
+        mean, deviation = self._calibration.rows.moments.before(first)
         chosen = novel(
-            ledger.gaps[first:end],
+            ledger.gaps(first, end),
             ledger.contexts[first:end][:, latent],
-            errors=ledger.gaps[:first],
+            bound=mean + self._settings.repository_z * deviation,
             stored=self._archive.run.simulated(version=state.version).contexts[:, latent],
             width=width,
-            z=self._settings.repository_z,
             distinct=self.standing.distinct,
         )
         if chosen:
@@ -358,7 +358,8 @@ class RealityGapAnalysis:
 
     def _begin_again(self, first: int | None) -> None:
         if self._settings.level != "A":
-            self.synchrony.begin_again(first, self._calibration.ledger.residuals)
+            ledger = self._calibration.ledger
+            self.synchrony.begin_again(first, len(ledger), ledger.residuals)
         self.standing.synchronised = self.standing.row
 
     def _go_on(self, last: bool, open_alarm: bool = False) -> None:

@@ -109,7 +109,7 @@ class Archive:
         """Keep what was inferred and simulated for rows."""
         rows = slice(first, end)
         self._open.inferred(first, ledger.contexts[rows], ledger.spread[rows], version)
-        self._open.gaps(first, ledger.simulated[rows], ledger.gaps[rows], version)
+        self._open.gaps(first, ledger.simulated[rows], ledger.gaps(first, end), version)
 
     def keep_novel(
         self, version: int, row: int, contexts: FloatArray, simulated: FloatArray
@@ -124,8 +124,12 @@ class Archive:
         self._open.findings(row, findings)
 
     def keep(self, name: str, data: bytes, row: int) -> None:
-        """Keep a checkpoint."""
+        """Keep what is asked for as of a row."""
         self._open.keep(name, data, row)
+
+    def checkpoint(self, name: str, data: bytes) -> None:
+        """Keep what a run goes on from, in place of what the last step kept."""
+        self._open.checkpoint(name, data)
 
     def event(self, event: Event) -> None:
         """Keep what happened to the twin."""

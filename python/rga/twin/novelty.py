@@ -42,10 +42,9 @@ def novel(
     gaps: FloatArray,
     contexts: FloatArray,
     *,
-    errors: FloatArray,
+    bound: FloatArray,
     stored: FloatArray,
     width: FloatArray,
-    z: float,
     distinct: float,
 ) -> list[int]:
     """Rows to store, by the paper's two checks, each against what the rows before it added.
@@ -56,10 +55,9 @@ def novel(
     Args:
         gaps: squared gaps of the rows, float[n, channels], NaN where missing.
         contexts: of the rows, float[n, contexts].
-        errors: squared gaps so far, float[m, channels].
+        bound: mean + z standard deviations of the errors known so far, float[channels].
         stored: contexts in the repository, float[k, contexts].
         width: of the range of each context: distances are in shares of it, float[contexts].
-        z: width of the bound.
         distinct: the threshold.
 
     Returns:
@@ -67,8 +65,7 @@ def novel(
     """
     if not len(contexts):
         return []
-    bound = np.nanmean(errors, axis=0) + z * np.nanstd(errors, axis=0)
-    credible: NDArray[np.bool_] = ~(gaps > bound).any(axis=1) & np.isfinite(gaps).any(axis=1)
+    credible = np.asarray(~(gaps > bound).any(axis=1) & np.isfinite(gaps).any(axis=1))
     known = cKDTree(stored / width) if len(stored) else None
     chosen: list[int] = []
     for row in np.flatnonzero(credible):

@@ -12,7 +12,7 @@ from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.digital_twin import TwinState, follow
 from rga.twin.history import Event, History, Version
-from rga.twin.messages.hardware import Station
+from rga.twin.messages.hardware import Packet, Station
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
 from rga.twin.repository import RunView
 from rga.twin.row_buffer import RowBuffer
@@ -77,16 +77,12 @@ def ledger_of(
     view: RunView, channels: int, measured: int, contexts: int, at_the_time: bool = False
 ) -> RowBuffer:
     """The rows of a run, with what was inferred and simulated last, or at the time."""
-    ledger = RowBuffer.empty(channels, measured, contexts)
+    ledger = RowBuffer(channels, measured, contexts)
     seen = view.measured()
     rows = len(seen.rows)
     if not rows:
         return ledger
-    ledger.time, ledger.readings = seen.time, seen.readings
-    ledger.measured = seen.contexts.reshape(rows, measured)
-    for name in ("contexts", "spread"):
-        setattr(ledger, name, np.full((rows, contexts), np.nan))
-    ledger.simulated = np.full((rows, channels), np.nan)
+    ledger.append(Packet(0, seen.time, seen.readings, seen.contexts.reshape(rows, measured)))
     inferred, gaps = view.inferred(at_the_time=at_the_time), view.gaps(at_the_time=at_the_time)
     if len(inferred.rows):
         ledger.contexts[inferred.rows] = inferred.contexts
@@ -151,7 +147,7 @@ def history_of(view: RunView) -> History:
         inferred=ledger.contexts[:, latent],
         spread=ledger.spread[:, latent],
         simulated=ledger.simulated,
-        gaps=ledger.gaps,
+        gaps=ledger.gaps(0, len(ledger)),
         noise=noise_of(stated, ledger, standing.calibrated or len(ledger)),
         events=view.events(),
         versions=_versions(view, record, state),

@@ -1,7 +1,6 @@
 """The rows of a run in memory: measured, inferred and simulated."""
 
 from collections.abc import Container, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,47 +8,75 @@ from numpy.typing import NDArray
 from rga.arrays import FloatArray
 from rga.twin.messages.hardware import Packet
 
+#: rows for which there is room at first; it is doubled when it is full, so that a row costs the
+#: same however many there are
+ROOM = 64
 
-@dataclass
+
 class RowBuffer:
     """Rows so far; NaN where nothing was measured, inferred or simulated.
 
+    Args:
+        channels, measured, contexts: how many channels, measured contexts and contexts there are.
+
     Attributes:
-        time: float[rows], seconds since the first row.
-        readings: float[rows, channels].
-        measured: measured contexts, float[rows, measured].
-        contexts, spread: all contexts and their standard deviations, float[rows, contexts].
-        simulated: float[rows, channels].
         stuck: channels that stand still: they have no residuals, bool[channels].
     """
 
-    time: FloatArray
-    readings: FloatArray
-    measured: FloatArray
-    contexts: FloatArray
-    spread: FloatArray
-    simulated: FloatArray
-    stuck: NDArray[np.bool_]
-
-    @classmethod
-    def empty(cls, channels: int, measured: int, contexts: int) -> "RowBuffer":
-        """A ledger without rows."""
-
-        def none(width: int) -> FloatArray:
-            return np.zeros((0, width))
-
-        return cls(
-            np.zeros(0),
-            none(channels),
-            none(measured),
-            none(contexts),
-            none(contexts),
-            none(channels),
-            np.zeros(channels, dtype=np.bool_),
-        )
+    def __init__(self, channels: int, measured: int, contexts: int) -> None:
+        widths = {
+            "time": 1,
+            "readings": channels,
+            "measured": measured,
+            "told": measured,
+            "contexts": contexts,
+            "spread": contexts,
+            "simulated": channels,
+        }
+        self._tables = {name: np.full((ROOM, width), np.nan) for name, width in widths.items()}
+        self._rows = 0
+        self.stuck: NDArray[np.bool_] = np.zeros(channels, dtype=np.bool_)
 
     def __len__(self) -> int:
-        return len(self.time)
+        return self._rows
+
+    @property
+    def time(self) -> FloatArray:
+        """Seconds since the first row, float[rows]."""
+        return self._table("time")[:, 0]
+
+    @property
+    def readings(self) -> FloatArray:
+        """float[rows, channels]."""
+        return self._table("readings")
+
+    @property
+    def measured(self) -> FloatArray:
+        """Measured contexts, float[rows, measured]."""
+        return self._table("measured")
+
+    @property
+    def told(self) -> FloatArray:
+        """Measured contexts with the last known value where one is missing, float[rows, measured].
+
+        NaN before the first.
+        """
+        return self._table("told")
+
+    @property
+    def contexts(self) -> FloatArray:
+        """All contexts, float[rows, contexts]."""
+        return self._table("contexts")
+
+    @property
+    def spread(self) -> FloatArray:
+        """Standard deviations of the contexts, float[rows, contexts]."""
+        return self._table("spread")
+
+    @property
+    def simulated(self) -> FloatArray:
+        """float[rows, channels]."""
+        return self._table("simulated")
 
     def leave_out(self, channels: Sequence[str], stuck: Container[str]) -> None:
         """Look no more at channels that stand still.
@@ -62,32 +89,43 @@ class RowBuffer:
 
     def append(self, packet: Packet) -> None:
         """Add the rows of a packet."""
-        rows = len(packet.time)
-        self.time = np.concatenate([self.time, packet.time])
-        self.readings = np.concatenate([self.readings, packet.readings])
-        self.measured = np.concatenate([self.measured, packet.contexts])
-        for name in ("contexts", "spread", "simulated"):
-            table = getattr(self, name)
-            setattr(self, name, np.concatenate([table, np.full((rows, table.shape[1]), np.nan)]))
+        first, end = self._rows, self._rows + len(packet.time)
+        room = len(self._tables["time"])
+        if end > room:
+            more = max(end, 2 * room) - room
+            self._tables = {
+                name: np.pad(table, ((0, more), (0, 0)), constant_values=np.nan)
+                for name, table in self._tables.items()
+            }
+        before = self.told[-1:]
+        self._rows = end
+        self.time[first:] = packet.time
+        self.readings[first:] = packet.readings
+        self.measured[first:] = packet.contexts
+        self.told[first:] = carried_on(before, packet.contexts)
 
-    @property
-    def residuals(self) -> FloatArray:
-        """Measured minus simulated, float[rows, channels]; NaN for channels that are stuck."""
-        return np.where(self.stuck, np.nan, self.readings - self.simulated)
+    def residuals(self, first: int, end: int) -> FloatArray:
+        """Measured minus simulated, float[end - first, channels]; NaN for stuck channels."""
+        left = self.readings[first:end] - self.simulated[first:end]
+        return np.where(self.stuck, np.nan, left)
 
-    @property
-    def gaps(self) -> FloatArray:
-        """Squares of the residuals, float[rows, channels]."""
-        return np.asarray(self.residuals**2)
+    def gaps(self, first: int, end: int) -> FloatArray:
+        """Squares of the residuals, float[end - first, channels]."""
+        return np.asarray(self.residuals(first, end) ** 2)
 
-    def last_measured(self, middle: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
-        """Measured contexts with the last known value where one is missing, and complete rows.
+    def _table(self, name: str) -> FloatArray:
+        return self._tables[name][: self._rows]
 
-        Args:
-            middle: taken before the first known value, float[measured].
-        """
-        known = np.isfinite(self.measured)
-        start = np.concatenate([middle[None], np.nan_to_num(self.measured)])
-        last = np.where(known, np.arange(1, len(known) + 1)[:, None], 0)
-        last = np.maximum.accumulate(last, axis=0)
-        return np.take_along_axis(start, last, axis=0), np.asarray(known.all(axis=1))
+
+def carried_on(before: FloatArray, values: FloatArray) -> FloatArray:
+    """Values with the last known one where one is missing, of the shape of `values`.
+
+    Args:
+        before: what was known before them, float[0 or 1, columns].
+        values: float[rows, columns], NaN where missing.
+    """
+    rows, columns = values.shape
+    start = before if len(before) else np.full((1, columns), np.nan)
+    table = np.concatenate([start, values])
+    last = np.where(np.isfinite(values), np.arange(1, rows + 1)[:, None], 0)
+    return np.take_along_axis(table, np.maximum.accumulate(last, axis=0), axis=0)

@@ -288,7 +288,7 @@ class Running:
         standing.optimism, standing.state = calibration.optimism, calibration.state
         standing.learned_under, standing.own = self._twin.state.version, self._own
         self._archive.keep("standing", standing.model_dump_json().encode(), row)
-        self._archive.keep("synchrony", self.analysis.synchrony.to_bytes(), row)
+        self._archive.checkpoint("synchrony", self.analysis.synchrony.to_bytes())
         for name in ESTIMATORS:
             estimator: ContextEstimator | None = getattr(calibration, name)
             if estimator is not None and estimator is not self._kept.get(name):
@@ -308,7 +308,7 @@ class Running:
         self._check_learner()
         self.resumed_at = self.row
         self._twin.state = replay(view, station.channels)
-        synchrony = view.kept("synchrony")
+        synchrony = view.checkpoint("synchrony")
         assert synchrony is not None  # every step keeps it
         self.analysis.synchrony.restore(synchrony)
         ledger = ledger_of(

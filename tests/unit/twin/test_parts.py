@@ -1,11 +1,13 @@
 """The parts of the twin: messages, the exchange, T2, what gap to expect."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import read_model
 from rga.records import Record
@@ -203,10 +205,9 @@ def test_only_credible_and_distinct_contexts_are_novel() -> None:
     found = novel(
         gaps,
         contexts,
-        errors=np.array([[0.5], [1.0], [1.5]]),
+        bound=np.array([2.2]),
         stored=np.array([[0.4], [0.6]]),
         width=np.ones(1),
-        z=3.0,
         distinct=0.3,
     )
     # Row 0 is known, 2 repeats 1, the gap of 3 is not credible, 4 has none.
@@ -242,34 +243,58 @@ def test_noise_is_estimated_where_it_is_not_stated() -> None:
     slow = np.sin(np.arange(4000) / 300)[:, None] * [10.0, 10.0]
     readings = slow + draw.normal(0, [0.2, 0.2], (4000, 2))
     readings[7, 1] = np.nan
-    ledger = RowBuffer.empty(2, 0, 0)
+    ledger = RowBuffer(2, 0, 0)
     ledger.append(Packet(0, np.arange(4000.0), readings, np.zeros((4000, 0))))
     np.testing.assert_allclose(noise_of([0.5, None], ledger, 4000), [0.5, 0.2], rtol=0.05)
     ledger.leave_out(("sound", "stuck"), ("stuck",))
     np.testing.assert_array_equal(noise_of([0.5, 0.1], ledger, 4000), [0.5, np.nan])
 
 
-def test_missing_contexts_are_carried_on_and_reported() -> None:
-    ledger = RowBuffer.empty(1, 2, 2)
-    ledger.measured = np.array([[np.nan, 1.0], [5.0, np.nan], [np.nan, 3.0]])
-    measured, complete = ledger.last_measured(np.array([9.0, 9.0]))
-    np.testing.assert_array_equal(measured, [[9, 1], [5, 1], [5, 3]])
-    np.testing.assert_array_equal(complete, [False, False, False])
+def test_missing_contexts_are_carried_on_from_packet_to_packet() -> None:
+    nan = np.nan
+    measured = np.array([[nan, 1.0], [5.0, nan], [nan, 3.0], [nan, nan], [6.0, nan]])
+    told = [[nan, 1], [5, 1], [5, 3], [5, 3], [6, 3]]
+    for cuts in ([], [1], [2, 3], [1, 2, 3, 4]):
+        ledger = RowBuffer(1, 2, 2)
+        for first, end in pairwise([0, *cuts, 5]):
+            time = np.arange(float(first), end)
+            ledger.append(Packet(first, time, np.zeros((end - first, 1)), measured[first:end]))
+        np.testing.assert_array_equal(ledger.told, told)
+        np.testing.assert_array_equal(ledger.measured, measured)
+
+
+def test_rows_stay_as_the_buffer_grows() -> None:
+    readings = np.random.default_rng(1).random((1000, 3))
+    ledger = RowBuffer(3, 0, 1)
+    for first in range(0, 1000, 7):
+        part = readings[first : first + 7]
+        time = first + np.arange(float(len(part)))
+        ledger.append(Packet(first, time, part, np.zeros((len(part), 0))))
+        ledger.simulated[first:] = 0.5
+        ledger.contexts[first:] = first
+    np.testing.assert_array_equal(ledger.time, np.arange(1000.0))
+    np.testing.assert_array_equal(ledger.gaps(100, 1000), (readings[100:] - 0.5) ** 2)
+    np.testing.assert_array_equal(ledger.contexts[:, 0], np.arange(1000) // 7 * 7)
+    assert np.isnan(ledger.spread).all()
 
 
 def test_the_window_survives_a_restart() -> None:
     residuals = np.random.default_rng(2).random((300, 3))
     residuals[200:, 1] -= 6
+
+    def read(first: int, end: int) -> FloatArray:
+        return residuals[first:end]
+
     channels, settings = ("D1", "D2", "D3"), Settings(window=50)
     whole = WindowRule(channels, settings)
-    whole.begin_again(0, residuals[:50])
+    whole.begin_again(0, 50, read)
     split = WindowRule(channels, settings)
-    split.begin_again(0, residuals[:50])
-    assert split.alarm(50, residuals[:202]) is None
+    split.begin_again(0, 50, read)
+    assert split.alarm(50, 202, read) is None
     resumed = WindowRule(channels, settings)
     resumed.restore(split.to_bytes())
-    found = resumed.alarm(202, residuals)
+    found = resumed.alarm(202, 300, read)
     assert found is not None
-    assert found == whole.alarm(50, residuals)
+    assert found == whole.alarm(50, 300, read)
     assert (found.row, found.since, found.sensors) == (204, 199, ("D2",))
     assert resumed.to_bytes() == whole.to_bytes()

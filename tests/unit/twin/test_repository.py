@@ -144,6 +144,26 @@ def test_the_last_checkpoint_of_a_name_is_read(run: Run) -> None:
     assert run.as_of(row=0).kept("network") == b"\x00\x01"
 
 
+def test_a_checkpoint_is_written_over_and_falls_with_its_step(run: Run) -> None:
+    assert run.checkpoint("detector") is None
+    for number in range(3):
+        with run.step() as step:
+            step.checkpoint("detector", b"state %d" % number)
+            step.checkpoint("other", b"")
+    with pytest.raises(RuntimeError, match="ended"):
+        step.checkpoint("detector", b"late")
+
+    def failing() -> None:
+        with run.step() as step:
+            step.checkpoint("detector", b"never")
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        failing()
+    assert run.checkpoint("detector") == b"state 2"
+    assert run.checkpoint("other") == b""
+
+
 def test_a_run_as_it_stood(run: Run) -> None:
     with run.step() as step:
         step.version(**version(1, 0))

@@ -14,7 +14,7 @@ from sqlalchemy import text
 from rga.errors import InputError
 from rga.twin.repository import Repository, migrations, tables
 from rga.twin.repository.database import database
-from stored_runs import alter
+from stored_runs import IDENTITY, alter
 
 
 def test_migrations_make_the_tables_of_the_code(place: str) -> None:
@@ -28,6 +28,33 @@ def test_migrations_make_the_tables_of_the_code(place: str) -> None:
         connection.execute(text("DROP TABLE kept"))
         assert compare_metadata(context, tables.metadata) != []
     opened.engine.dispose()
+
+
+def test_an_older_repository_is_brought_up_to_date_with_a_copy_beside_it(
+    place: str, tmp_path: Path
+) -> None:
+    with Repository.open(place) as repository:
+        run = repository.run(IDENTITY)
+        for number in range(3):
+            with run.step() as step:
+                step.keep("synchrony", b"state %d" % number, number)
+                step.keep("standing", b"{}", number)
+    alter(place, "DROP TABLE checkpoint")
+    alter(place, "UPDATE rga_repository SET version_num = '0001'")
+    with pytest.raises(InputError, match="older than this rga"):
+        Repository.open(place, read_only=True)
+    with Repository.open(place) as repository:
+        run = repository.run(IDENTITY)
+        assert run.checkpoint("synchrony") == b"state 2"
+        assert run.checkpoint("standing") is None
+        assert run.kept("standing") == b"{}"
+    if "://" not in place:
+        file = Path(place) / "twin.sqlite" if Path(place).is_dir() else Path(place)
+        copy = file.with_name("twin.sqlite.revision-0001")
+        with sqlite3.connect(copy) as held:
+            assert held.execute("SELECT count(*) FROM kept").fetchone() == (6,)
+            assert held.execute("SELECT version_num FROM rga_repository").fetchone() == ("0001",)
+        assert not list(file.parent.glob("*.draft"))
 
 
 def test_a_newer_repository_is_refused(place: str) -> None:

@@ -138,9 +138,9 @@ class ContextCapture:
             rows: how many.
             share: by which the model was off on these.
         """
-        ledger, first = self.ledger, slice(0, calibrated)
+        ledger = self.ledger
         by_row = rows_against_expected(
-            ledger.gaps[first], ledger.simulated[first], self.rows.noise, share
+            ledger.gaps(0, calibrated), ledger.simulated[:calibrated], self.rows.noise, share
         )
         return self.optimism * usual_bound(by_row, rows, self._settings.usual, self._seed)
 
@@ -293,14 +293,14 @@ class ContextCapture:
             share: by which the model was off on the rows of the first calibration [-].
             doubted: the model is in doubt under their conditions.
         """
-        rows, ledger = slice(first, end), self.ledger
+        ledger = self.ledger
         if self.learned is None or self.state is not None or not self.rows.known(first, end):
             return
         version = self._exchange.twin.state.version
         gaps = channels_against_expected(
-            ledger.gaps[rows], ledger.simulated[rows], self.rows.noise, share
+            ledger.gaps(first, end), ledger.simulated[first:end], self.rows.noise, share
         )
-        contexts = ledger.contexts[rows].copy()
+        contexts = ledger.contexts[first:end].copy()
         self.states.append(State(self.learned, version, (first, end), contexts, gaps, doubted))
 
     def doubt_states(self, since: int) -> None:

@@ -16,6 +16,7 @@ from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q5, sha256
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.row_buffer import RowBuffer
+from rga.twin.row_moments import GapMoments
 from rga.twin.simulation_model import SimulationModel
 
 
@@ -24,6 +25,7 @@ class FollowedRows:
 
     Attributes:
         ledger: they.
+        moments: of their gaps.
         noise: standard deviation of each channel's noise, float[channels]; NaN for one that is
             not to be looked at.
 
@@ -37,9 +39,8 @@ class FollowedRows:
     def __init__(
         self, exchange: QueryResponse, archive: Archive, station: Station, model: Model
     ) -> None:
-        self.ledger = RowBuffer.empty(
-            len(station.channels), len(station.measured), len(model.context)
-        )
+        self.ledger = RowBuffer(len(station.channels), len(station.measured), len(model.context))
+        self.moments = GapMoments(self.ledger)
         self._exchange, self._archive, self._station = exchange, archive, station
         self._names, self._laws = list(model.context), list(model.context.values())
         self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
@@ -56,6 +57,7 @@ class FollowedRows:
         """
         self.ledger = ledger
         ledger.leave_out(self._station.channels, stuck)
+        self.moments = GapMoments(ledger)
         if calibrated:
             self.noise = noise_of(self._stated, ledger, calibrated)
 
@@ -81,19 +83,19 @@ class FollowedRows:
 
     def gap(self, first: int, end: int, share: float = 0.0) -> float:
         """Gap of rows over the gap to expect of a model that is off by a share [-]."""
-        rows = slice(first, end)
+        ledger = self.ledger
         return against_expected(
-            self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise, share
+            ledger.gaps(first, end), ledger.simulated[first:end], self.noise, share
         )
 
     def scatter_share(self, first: int, end: int) -> float:
         """Share by which the model is off on calibrated rows [-]."""
-        rows = slice(first, end)
-        return scatter_share(self.ledger.gaps[rows], self.ledger.simulated[rows], self.noise)
+        ledger = self.ledger
+        return scatter_share(ledger.gaps(first, end), ledger.simulated[first:end], self.noise)
 
     def known(self, first: int, end: int) -> int:
         """How many of some rows have a gap."""
-        return int(np.isfinite(self.ledger.gaps[first:end]).any(axis=1).sum())
+        return int(np.isfinite(self.ledger.gaps(first, end)).any(axis=1).sum())
 
     @property
     def latent(self) -> list[int]:
@@ -119,6 +121,7 @@ class FollowedRows:
         version = self._exchange.twin.state.version
         answer = self._exchange.ask(self._question(first, end, version, contexts))
         self.ledger.simulated[rows] = np.where(self._complete(rows), answer.simulated, np.nan)
+        self.moments.changed(first)
         self._archive.keep_rows(first, end, version, self.ledger)
 
     def under(
@@ -173,7 +176,8 @@ class FollowedRows:
         contexts = np.tile(self._ranges.mean(axis=1), (count, 1))
         spread = np.tile(np.ptp(self._ranges, axis=1) / np.sqrt(12), (count, 1))
         measured = self._measured
-        contexts[:, measured] = self._told()[0][rows]
+        told = self.ledger.told[rows]
+        contexts[:, measured] = np.where(np.isnan(told), contexts[:, measured], told)
         spread[:, measured] = [self._laws[column].noise or 0.0 for column in measured]
         return contexts, spread
 
@@ -181,9 +185,6 @@ class FollowedRows:
     def _measured(self) -> list[int]:
         return [self._names.index(name) for name in self._station.measured]
 
-    def _told(self) -> tuple[FloatArray, NDArray[np.bool_]]:
-        return self.ledger.last_measured(self._ranges.mean(axis=1)[self._measured])
-
     def _complete(self, rows: slice) -> NDArray[np.bool_]:
         """Whether all measured contexts are there, bool[rows, 1]."""
-        return self._told()[1][rows, None]
+        return np.asarray(np.isfinite(self.ledger.measured[rows]).all(axis=1, keepdims=True))

@@ -24,6 +24,9 @@ class Database(Protocol):
     def writer(self, key: str) -> AbstractContextManager[Connection]:
         """A connection that only one process holds at a time."""
 
+    def back_up(self, revision: str | None) -> None:
+        """Copy what is there before its tables change, where that is this package's business."""
+
 
 def database(place: str | Path, read_only: bool) -> Database:
     """The database at a path (a file, or a directory that holds `twin.sqlite`) or a URL.

@@ -42,3 +42,6 @@ class PostgreSQL:
                 connection.execute(_LOCK, {"key": key})
                 connection.execute(text("SET synchronous_commit = on"))
             yield connection
+
+    def back_up(self, revision: str | None) -> None:
+        """Nothing: those who run a server back it up, and a migration is one transaction."""

@@ -81,6 +81,18 @@ class SQLite:
         finally:
             lock.release()
 
+    def back_up(self, revision: str | None) -> None:
+        """Copy the file beside itself, named after the revision of its tables."""
+        copy = self._path.with_name(f"{self._path.name}.revision-{revision}")
+        draft = copy.with_name(f"{copy.name}.draft")
+        draft.unlink(missing_ok=True)
+        connection = self._connect()
+        try:
+            connection.execute("VACUUM INTO ?", (str(draft),))
+        finally:
+            connection.close()
+        draft.replace(copy)
+
 
 def _begin(connection: Connection) -> None:
     # The driver by itself begins no transaction before the first change, and none for tables.

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from sqlalchemy import Connection, Table, insert, select, update
+from sqlalchemy import Connection, Table, delete, insert, select, update
 
 from rga.twin.repository import tables
 from rga.twin.repository.chunks import chunks
@@ -158,8 +158,17 @@ class Transaction:
         )
 
     def keep(self, name: str, data: bytes, row: int) -> None:
-        """A checkpoint (weights, the state of a detector or of the loop) under a name."""
+        """What is asked for as of a time (weights, the state of the loop) under a name."""
         self._store(tables.kept, row, name=name, row=row, data=data)
+
+    def checkpoint(self, name: str, data: bytes) -> None:
+        """What only a run that goes on needs (the state of a detector), in place of the last."""
+        self._check_open()
+        c = tables.checkpoint.c
+        own = (c.run_id == self._run_id) & (c.name == name)
+        self._connection.execute(delete(tables.checkpoint).where(own))
+        written = {"run_id": self._run_id, "name": name, "step": self.number, "data": data}
+        self._connection.execute(insert(tables.checkpoint), written)
 
     def end(self) -> None:
         """Note the row that the step reached; nothing more can be stored in it."""
@@ -174,12 +183,15 @@ class Transaction:
         self._store(table, last_row, first_row=first_row, **chunk, **columns)
 
     def _store(self, table: Table, about: int, **columns: Any) -> None:
-        if self._ended:
-            raise RuntimeError("the step has ended: begin another")
+        self._check_open()
         key = {"run_id": self._run_id, "step": self.number, "ordinal": self._ordinal}
         self._connection.execute(insert(table), key | columns)
         self._ordinal += 1
         self.row = max(self.row, about)
+
+    def _check_open(self) -> None:
+        if self._ended:
+            raise RuntimeError("the step has ended: begin another")
 
 
 def now() -> str:

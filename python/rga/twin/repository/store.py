@@ -43,6 +43,15 @@ class Run(RunView):
             yield step
             step.end()
 
+    def checkpoint(self, name: str) -> bytes | None:
+        """What the last step left under a name for a run that goes on; None where none did."""
+        c = tables.checkpoint.c
+        with self._reading() as connection:
+            data = connection.scalar(
+                select(c.data).where((c.run_id == self._source.run_id) & (c.name == name))
+            )
+        return None if data is None else bytes(data)
+
     def close(self) -> None:
         """Let another process write."""
         self._held.close()
@@ -161,12 +170,13 @@ class Repository:
             remedy = "open it for writing once: rga run brings it up to date"
             raise InputError("the repository is older than this rga", where, remedy)
         if state in ("empty", "older"):
-            with (
-                as_input_errors(where),
-                self._database.writer("migration") as connection,
-                connection.begin(),
-            ):
-                migrations.upgrade(connection)
+            with as_input_errors(where), self._database.writer("migration") as connection:
+                if state == "older":
+                    with connection.begin():
+                        held = migrations.revision(connection)
+                    self._database.back_up(held)
+                with connection.begin():
+                    migrations.upgrade(connection)
 
 
 def _columns(identity: Identity) -> dict[str, Any]:

@@ -1,4 +1,7 @@
-"""The tables. Nothing stored is ever changed, so that the past can be read as it stood."""
+"""The tables. Nothing stored is ever changed, so that the past can be read as it stood.
+
+Checkpoints alone are: nobody asks for those of the past.
+"""
 
 from typing import Any
 
@@ -155,4 +158,15 @@ kept = _stored(
     _number("row"),
     _blob("data"),
     Index(None, "run_id", "name", "step"),
+)
+
+# What only a run that goes on needs, as its last step left it.
+checkpoint = Table(
+    "checkpoint",
+    metadata,
+    Column("run_id", Integer, primary_key=True, autoincrement=False),
+    Column("name", String(40), primary_key=True),
+    _number("step"),
+    _blob("data"),
+    ForeignKeyConstraint(["run_id", "step"], ["step.run_id", "step.number"]),
 )

@@ -3,19 +3,21 @@
 import json
 from collections.abc import Sequence
 
-from rga.arrays import FloatArray
 from rga.detection import SyncMonitor
 from rga.detection.baseline.baseline_model import unwatched
 from rga.twin.settings import Settings
-from rga.twin.sync.protocol import OutOfSync, listed
+from rga.twin.sync.protocol import OutOfSync, Residuals, listed
+
+#: rows that say what is usual, at the most: two weeks of minutes
+MOST_ROWS = 20_000
 
 
 class Monitored:
     """Out of sync where residuals are no longer what they were when the twin was calibrated.
 
-    What they were is learned from all rows since the model came into force, so that what a
-    recalibration has dealt with is usual from then on. Until there are enough of them there is no
-    alarm. Sensors with few readings are not watched.
+    What they were is learned from the rows since the model came into force, the latest where they
+    are many, so that what a recalibration has dealt with is usual from then on. Until there are
+    enough of them there is no alarm. Sensors with few readings are not watched.
 
     Args:
         channels: names of the sensors.
@@ -28,17 +30,17 @@ class Monitored:
         #: rows that the baseline begins with, and that the monitor began with
         self._baseline = self._began = 0
 
-    def alarm(self, first: int, residuals: FloatArray) -> OutOfSync | None:
+    def alarm(self, first: int, end: int, residuals: Residuals) -> OutOfSync | None:
         """The first alarm that the latest rows raise.
 
         Args:
-            first: number of the first of them.
-            residuals: of all rows so far, float[rows, channels], NaN where missing.
+            first, end: of these rows.
+            residuals: of rows so far.
         """
         if self._monitor is None:
-            self._learn(residuals)
+            self._learn(end, residuals)
             return None
-        self._monitor.update_many(residuals[first:])
+        self._monitor.update_many(residuals(first, end))
         alarm = self._monitor.alarm
         if alarm is None:
             return None
@@ -47,17 +49,18 @@ class Monitored:
         words = f"out of sync: {alarm.looks} in {listed(sensors)} since row {since}"
         return OutOfSync(self._began + alarm.row, since, sensors, words)
 
-    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
+    def begin_again(self, first: int | None, end: int, residuals: Residuals) -> None:
         """Learn what residuals are now.
 
         Args:
             first: of the rows that say what is usual; None: still the same.
-            residuals: of all rows so far, float[rows, channels], NaN where missing.
+            end: rows so far.
+            residuals: of these.
         """
         self._monitor = None
         if first is not None:
             self._baseline = first
-        self._learn(residuals)
+        self._learn(end, residuals)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -77,8 +80,8 @@ class Monitored:
         self._baseline, self._began = known["baseline"], known["began"]
         self._monitor = SyncMonitor.from_bytes(monitor) if monitor else None
 
-    def _learn(self, residuals: FloatArray) -> None:
-        baseline = residuals[self._baseline :]
+    def _learn(self, end: int, residuals: Residuals) -> None:
+        baseline = residuals(max(self._baseline, end - MOST_ROWS), end)
         if len(unwatched(baseline)) < len(self._channels):
             self._monitor = SyncMonitor(baseline, arl0=self._settings.arl0, names=self._channels)
-            self._began = len(residuals)
+            self._began = end

@@ -1,12 +1,14 @@
 """T1: is the twin in sync with the structure?"""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 from rga.arrays import FloatArray
 
 SHOWN = 4
+#: residuals of rows from one to another, float[rows, channels], NaN where missing
+Residuals: TypeAlias = Callable[[int, int], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -29,20 +31,21 @@ class OutOfSync:
 class Synchrony(Protocol):
     """Watches the residuals of a calibrated twin: measured minus simulated."""
 
-    def alarm(self, first: int, residuals: FloatArray) -> OutOfSync | None:
+    def alarm(self, first: int, end: int, residuals: Residuals) -> OutOfSync | None:
         """The first alarm that the latest rows raise.
 
         Args:
-            first: number of the first of them.
-            residuals: of all rows so far, float[rows, channels], NaN where missing.
+            first, end: of these rows.
+            residuals: of rows so far.
         """
 
-    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
+    def begin_again(self, first: int | None, end: int, residuals: Residuals) -> None:
         """Learn what a newly calibrated twin leaves.
 
         Args:
             first: of the rows that say what is usual; None: still the same.
-            residuals: of all rows so far, float[rows, channels], NaN where missing.
+            end: rows so far.
+            residuals: of these.
         """
 
     @property

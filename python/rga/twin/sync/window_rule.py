@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rga.arrays import FloatArray
 from rga.detection import GaussianWindow
 from rga.twin.settings import Settings
-from rga.twin.sync.protocol import OutOfSync, listed
+from rga.twin.sync.protocol import OutOfSync, Residuals, listed
 
 
 class WindowRule:
@@ -25,14 +24,14 @@ class WindowRule:
         self._channels, self._settings = channels, settings
         self._window = self._fresh()
 
-    def alarm(self, first: int, residuals: FloatArray) -> OutOfSync | None:
+    def alarm(self, first: int, end: int, residuals: Residuals) -> OutOfSync | None:
         """The first alarm that the latest rows raise; the window moves on over all of them.
 
         Args:
-            first: number of the first of them.
-            residuals: of all rows so far, float[rows, channels], NaN where missing.
+            first, end: of these rows.
+            residuals: of rows so far.
         """
-        exceeded = self._window.update_many(residuals[first:] ** 2)
+        exceeded = self._window.update_many(residuals(first, end) ** 2)
         rows = np.flatnonzero(exceeded.any(axis=1))
         if not len(rows):
             return None
@@ -41,15 +40,16 @@ class WindowRule:
         words = f"out of sync: the gap of {listed(sensors)} exceeds its bound"
         return OutOfSync(row, max(0, row - self._settings.persistence[1] + 1), sensors, words)
 
-    def begin_again(self, first: int | None, residuals: FloatArray) -> None:
+    def begin_again(self, first: int | None, end: int, residuals: Residuals) -> None:
         """Fill a new window with the latest rows.
 
         Args:
             first: of the rows that say what is usual; None: still the same.
-            residuals: of all rows so far, float[rows, channels], NaN where missing.
+            end: rows so far.
+            residuals: of these.
         """
         self._window = self._fresh()
-        self._window.update_many(residuals[-2 * self._settings.window :] ** 2)
+        self._window.update_many(residuals(max(0, end - 2 * self._settings.window), end) ** 2)
 
     def to_bytes(self) -> bytes:
         """The state of the window."""

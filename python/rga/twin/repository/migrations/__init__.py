@@ -14,7 +14,7 @@ OPTIONS: dict[str, Any] = {"version_table": "rga_repository", "compare_type": Tr
 
 def state(connection: Connection) -> Literal["empty", "foreign", "older", "current", "newer"]:
     """Where the tables are: none, not a repository's, or a repository's against the code."""
-    held = MigrationContext.configure(connection, opts=OPTIONS).get_current_revision()
+    held = revision(connection)
     if held is None:
         return "foreign" if inspect(connection).get_table_names() else "empty"
     scripts = _scripts()
@@ -22,6 +22,11 @@ def state(connection: Connection) -> Literal["empty", "foreign", "older", "curre
         return "current"
     known = {script.revision for script in scripts.walk_revisions()}
     return "older" if held in known else "newer"
+
+
+def revision(connection: Connection) -> str | None:
+    """The revision of the tables; None where they are none of a repository."""
+    return MigrationContext.configure(connection, opts=OPTIONS).get_current_revision()
 
 
 def upgrade(connection: Connection) -> None:
