@@ -16,8 +16,6 @@ from rga.simulation import Results, Simulator, results
 
 #: values of each context along its range, the others at their middle; draws of all together
 ALONG, DRAWN = 25, 32
-#: places along a member where its stress is looked at
-STATIONS = 5
 
 
 @dataclass(frozen=True)
@@ -117,7 +115,7 @@ class OverRanges:
         with np.errstate(all="ignore"):
             for contexts in (self.contexts, self.middle) if whole else (self.middle,):
                 with suppress(InputError):
-                    return results(self.model, contexts, stations=STATIONS)
+                    return results(self.model, contexts, stations=2)
         return None
 
     def _simulated(self, simulator: Simulator) -> Simulated:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.drawing.scene.scene import Scene
 from rga.drawing.states.contexts import context_words
 from rga.drawing.states.deformed import Deformed, deformed
@@ -75,11 +76,29 @@ def response_of_row(
         quantities, scale, shape: as for `drawn_response`.
     """
     model = scene.model
-    positions = np.tile(found.stations, (len(scene.ends), 1))
-    forces = found.section_forces[row]
+    diagrams: tuple[Diagram, ...] = ()
+    if quantities:
+        positions, forces = _even(found.along.curves(row, found.stations))
+        diagrams = tuple(section_diagram(scene, one, positions, forces) for one in quantities)
     contexts = {name: float(column[row]) for name, column in found.contexts.items()}
     return DrawnResponse(
         deformed=deformed(scene, found.displacements[row], scale) if shape else None,
-        diagrams=tuple(section_diagram(scene, one, positions, forces) for one in quantities),
+        diagrams=diagrams,
         contexts=context_words(model, contexts, Simulator(model).needed),
+    )
+
+
+def _even(
+    curves: Sequence[tuple[FloatArray, FloatArray]],
+) -> tuple[FloatArray, FloatArray]:
+    """Curves of as many places each, the last of them repeated.
+
+    Returns:
+        float[members, places] and float[members, places, 6].
+    """
+    longest = max(len(places) for places, _ in curves)
+    chosen = [np.minimum(np.arange(longest), len(places) - 1) for places, _ in curves]
+    return (
+        np.stack([places[k] for (places, _), k in zip(curves, chosen, strict=True)]),
+        np.stack([forces[k] for (_, forces), k in zip(curves, chosen, strict=True)]),
     )
