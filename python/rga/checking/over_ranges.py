@@ -16,6 +16,8 @@ from rga.simulation import Results, Simulator, results
 
 #: values of each context along its range, the others at their middle; draws of all together
 ALONG, DRAWN = 25, 32
+#: places along a member that are solved for: its ends, and the thirds that bowed members need
+STATIONS = 4
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,7 @@ class OverRanges:
         with np.errstate(all="ignore"):
             for contexts in (self.contexts, self.middle) if whole else (self.middle,):
                 with suppress(InputError):
-                    return results(self.model, contexts, stations=2)
+                    return results(self.model, contexts, stations=STATIONS)
         return None
 
     def _simulated(self, simulator: Simulator) -> Simulated:

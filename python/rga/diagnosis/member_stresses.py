@@ -12,6 +12,9 @@ from rga.model.schema import Model
 from rga.simulation.stresses import section_stresses
 from rga.simulation.structural_results import forces_along, forces_of_members
 
+#: places along a member that are solved for: its ends, and the thirds that bowed members need
+STATIONS = 4
+
 
 @dataclass(frozen=True)
 class MemberStress:
@@ -57,7 +60,7 @@ def _worst(
     model: Model, contexts: Mapping[str, FloatArray], members: Sequence[str], row: int
 ) -> dict[str, MemberStress]:
     # Some effects remember the rows before, and a train heads where all rows say.
-    forces, parameters = forces_of_members(model, contexts, members, stations=2)
+    forces, parameters = forces_of_members(model, contexts, members, stations=STATIONS)
     along = forces_along(model, contexts, members, forces, parameters)
     stresses, here = section_stresses(forces, along), slice(row, row + 1)
     moments = np.abs(along.limits(here)[0, :, 4:]).max(axis=(1, 2))

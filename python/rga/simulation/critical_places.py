@@ -184,6 +184,8 @@ class _Span:
 def _beyond(span: _Span, thirds: FloatArray, places: FloatArray) -> FloatArray:
     """What the axial force adds where the axis bows: a cubic that is nothing at both nodes.
 
+    Beside a rigid zone the axis has a corner, which the cubic rounds.
+
     Args:
         span: the member.
         thirds: section forces at its thirds, float[rows, 2, 6].

@@ -68,10 +68,8 @@ class Results:
     @cached_property
     def along(self) -> ForcesAlong:
         """Section forces everywhere along the members, between stations too."""
-        return forces_along(
-            self.model, self.contexts, list(self.model.members), self.section_forces,
-            self.parameters,
-        )  # fmt: skip
+        members, forces = list(self.model.members), self.section_forces
+        return forces_along(self.model, self.contexts, members, forces, self.parameters)
 
     @cached_property
     def stresses(self) -> Stresses:
@@ -308,11 +306,12 @@ def forces_along(
         section_forces: of these, as `forces_of_members` gives them.
         parameters: of all effects, by name.
     """
-    thirds = None
-    if model.analysis.geometry == "nonlinear":
+    first, four = section_forces[:, :, 0], section_forces
+    if model.analysis.geometry == "linear":
+        return ForcesAlong(model, members, first, parameters)
+    if section_forces.shape[2] != 4:
         four, _ = forces_of_members(model, contexts, members, stations=4)
-        thirds = four[:, :, 1:3]
-    return ForcesAlong(model, members, section_forces[:, :, 0], parameters, thirds)
+    return ForcesAlong(model, members, first, parameters, thirds=four[:, :, 1:3])
 
 
 def held_nodes(model: Model) -> tuple[str, ...]:
