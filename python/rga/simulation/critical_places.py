@@ -20,8 +20,8 @@ from rga.simulation.simulator import Simulator
 NODES = np.array([0.0, 1.0, 2.0, 3.0]) / 3
 #: values there -> factors of 1, t, t2, t3
 FACTORS = np.linalg.inv(np.vander(NODES, increasing=True)).T
-#: numbers that are worked on at a time
-AT_ONCE = 4_000_000
+#: numbers of a piece, and those that are worked on at a time
+PIECE, AT_ONCE = 6 * len(NODES), 4_000_000
 #: digits of a share of a length beyond which two places are one
 DIGITS = 12
 #: share of the largest value of a member, or of its length, that is no difference in a diagram
@@ -33,16 +33,18 @@ ActingLoad = tuple[FloatArray, Spread]
 
 @dataclass(frozen=True)
 class Pieces:
-    """Section forces of a member, cut where point loads stand and where other loads begin or end.
+    """Section forces of members, cut where point loads stand and where other loads begin or end.
 
     Attributes:
-        member: its number among those that were asked for.
-        places: shares of its length, four of each piece (`NODES`), float[pieces, 4].
-        forces: N, Vy, Vz [N], T, My, Mz [N m] there, float[rows, pieces, 4, 6].
+        members: their numbers among those that were asked for: one with loads, or some without.
+        straight: nothing bends them but their ends, so that no force turns between these.
+        places: shares of the length, four of each piece (`NODES`), float[pieces, 4].
+        forces: N, Vy, Vz [N], T, My, Mz [N m] there, float[rows, members, pieces, 4, 6].
         rows: those of the forces, among those that were asked for.
     """
 
-    member: int
+    members: list[int]
+    straight: bool
     places: FloatArray
     forces: FloatArray
     rows: slice
@@ -68,28 +70,34 @@ class ForcesAlong:
     thirds: FloatArray | None = None
 
     def pieces(self, rows: slice = EVERY) -> Iterator[Pieces]:
-        """The pieces of every member, in parts of so many rows as are few numbers."""
+        """The pieces of every member, in parts of so many rows and members as are few numbers."""
         structure, loads = self._loads(rows)
-        first, lengths = self.first[rows], structure.lengths
+        first, numbers = self.first[rows], [structure.members[name] for name in self.members]
         thirds = None if self.thirds is None else self.thirds[rows]
-        for member, name in enumerate(self.members):
-            number = structure.members[name]
-            own = loads.get(number, [])
-            step = max(1, AT_ONCE // (len(NODES) * 6 * (1 + 2 * len(own))))
-            for begin in range(0, len(first), step):
-                part = slice(begin, begin + step)
+        lengths = structure.lengths[numbers]
+        plain = [k for k, number in enumerate(numbers) if thirds is None and number not in loads]
+        for part in _parts(len(first), 1):
+            count = max(1, AT_ONCE // (PIECE * len(first[part])))
+            for begin in range(0, len(plain), count):
+                chosen = plain[begin : begin + count]
+                x = lengths[chosen, None, None] * NODES
+                forces = _without_loads(first[part][:, chosen, None, None], x)
+                yield Pieces(chosen, True, NODES[None], forces, part)
+        for member in sorted(set(range(len(numbers))) - set(plain)):
+            own = loads.get(numbers[member], [])
+            for part in _parts(len(first), 1 + 2 * len(own)):
                 acting = [(share[part], load) for share, load in own if share[part].any()]
-                span = _Span(float(lengths[number]), first[part, member], acting)
+                span = _Span(float(lengths[member]), first[part, member], acting)
                 places, forces = span.pieces()
                 if thirds is not None:
                     forces += _beyond(span, thirds[part, member], places)
-                yield Pieces(member, places, forces, part)
+                yield Pieces([member], False, places, forces[:, None], part)
 
     def limits(self, rows: slice = EVERY) -> FloatArray:
         """Lowest and highest of each section force, float[rows, members, 6, 2] [N, N m]."""
         found = np.empty((*self.first[rows].shape, 2))
         for one in self.pieces(rows):
-            found[one.rows, one.member] = limits(np.moveaxis(one.forces, 3, 1))
+            found[one.rows, one.members] = limits(np.moveaxis(one.forces, 4, 2))
         return found
 
     def curves(self, row: int, stations: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
@@ -97,14 +105,20 @@ class ForcesAlong:
 
         Args:
             row: its number, from 0.
-            stations: shares of the length, float[stations], to which cuts and extremes are added.
+            stations: shares of the length, float[stations], both ends among them, to which cuts
+                and extremes are added.
 
         Returns:
             Places as shares, float[k], and section forces there, float[k, 6], of each member.
         """
-        return [
-            _curve(one.places, one.forces[0], stations) for one in self.pieces(slice(row, row + 1))
-        ]
+        found: dict[int, tuple[FloatArray, FloatArray]] = {}
+        for one in self.pieces(slice(row, row + 1)):
+            if one.straight:
+                values = at_shares(one.forces[0, :, 0].swapaxes(1, 2), stations).swapaxes(1, 2)
+                found |= {k: (stations, own) for k, own in zip(one.members, values, strict=True)}
+            else:
+                found[one.members[0]] = _curve(one.places, one.forces[0, 0], stations)
+        return [found[member] for member in range(len(self.members))]
 
     def _loads(self, rows: slice) -> tuple[Structure, dict[int, list[ActingLoad]]]:
         """The structure, and the loads along each member by its number."""
@@ -155,11 +169,8 @@ class _Span:
             places: shares of the length, float[...].
             behind: share up to which point loads act, float[...] that fits the places.
         """
-        x, (rows, _) = self.length * places, self.first.shape
-        forces = np.empty((rows, *x.shape, 6))
-        forces[...] = self.first.reshape(rows, *[1] * x.ndim, 6)
-        forces[..., 4] += np.multiply.outer(self.first[:, 2], x)
-        forces[..., 5] -= np.multiply.outer(self.first[:, 1], x)
+        x = self.length * places
+        forces = _without_loads(self.first.reshape(-1, *[1] * x.ndim, 6), x)
         for coefficient, (_, axis, begin, end, start, last) in self.loads:
             begin_at, end_at = self.length * self._share(begin), self.length * self._share(end)
             past = np.maximum(x - begin_at, 0.0)
@@ -179,6 +190,26 @@ class _Span:
     def _share(self, place: float) -> float:
         """Of the length; places that differ by rounding are one."""
         return round(place / self.length, DIGITS)
+
+
+def _without_loads(first: FloatArray, x: FloatArray) -> FloatArray:
+    """Section forces that those at the first node make alone, float[..., 6] [N, N m].
+
+    Args:
+        first: these, float[..., 6].
+        x: distances from the node, float[...] that fits them [m].
+    """
+    forces = np.empty((*np.broadcast_shapes(first.shape[:-1], x.shape), 6))
+    forces[...] = first
+    forces[..., 4] += first[..., 2] * x
+    forces[..., 5] -= first[..., 1] * x
+    return forces
+
+
+def _parts(rows: int, pieces: int) -> Iterator[slice]:
+    """Rows in parts of few enough numbers."""
+    step = max(1, AT_ONCE // (PIECE * pieces))
+    return (slice(begin, min(begin + step, rows)) for begin in range(0, rows, step))
 
 
 def _beyond(span: _Span, thirds: FloatArray, places: FloatArray) -> FloatArray:

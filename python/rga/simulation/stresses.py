@@ -38,16 +38,22 @@ class Stresses:
             member -> fibre -> float[rows, 2] [Pa].
         """
         model, names = self.along.model, self.along.members
-        parts: dict[str, list[dict[str, FloatArray]]] = {name: [] for name in names}
+        parts: dict[str, dict[str, list[FloatArray]]] = {name: {} for name in names}
         for one in self.along.pieces(rows):
-            name, forces = names[one.member], one.forces
-            if name in self.reduced:
-                forces = forces / self.reduced[name][rows][one.rows, None, None, None]
-            stresses = fibre_stresses(model.sections[model.members[name].section], forces)
-            parts[name].append({fibre: limits(values) for fibre, values in stresses.items()})
+            of_sections: dict[str, list[int]] = {}
+            for place, member in enumerate(one.members):
+                of_sections.setdefault(model.members[names[member]].section, []).append(place)
+            for section, places in of_sections.items():
+                forces, own = one.forces[:, places], [names[one.members[k]] for k in places]
+                for k, name in enumerate(own):
+                    if name in self.reduced:
+                        forces[:, k] /= self.reduced[name][rows][one.rows, None, None, None]
+                for fibre, values in fibre_stresses(model.sections[section], forces).items():
+                    for name, of_rows in zip(own, limits(values).swapaxes(0, 1), strict=True):
+                        parts[name].setdefault(fibre, []).append(of_rows)
         return {
-            name: {fibre: np.concatenate([one[fibre] for one in of_rows]) for fibre in of_rows[0]}
-            for name, of_rows in parts.items()
+            name: {fibre: np.concatenate(of_rows) for fibre, of_rows in fibres.items()}
+            for name, fibres in parts.items()
         }
 
     def extremes(self, rows: slice = EVERY) -> tuple[FloatArray, FloatArray]:
