@@ -8,13 +8,12 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.findings.arrays import DiagnosisArrays
-from rga.model.effect import Values
 from rga.model.schema import Model
 from rga.simulation.stresses import section_stresses
-from rga.simulation.structural_results import forces_of_members
+from rga.simulation.structural_results import forces_along, forces_of_members
 
-#: places along a member at which stresses are compared
-STATIONS = 5
+#: places along a member that are solved for: its ends, and the thirds that bowed members need
+STATIONS = 4
 
 
 @dataclass(frozen=True)
@@ -62,21 +61,19 @@ def _worst(
 ) -> dict[str, MemberStress]:
     # Some effects remember the rows before, and a train heads where all rows say.
     forces, parameters = forces_of_members(model, contexts, members, stations=STATIONS)
-    here: dict[str, Values] = {
-        name: {key: column[row : row + 1] for key, column in own.items()}
-        for name, own in parameters.items()
-    }
-    stresses = section_stresses(model, members, forces[row : row + 1], here)
+    along = forces_along(model, contexts, members, forces, parameters)
+    stresses, here = section_stresses(forces, along), slice(row, row + 1)
+    moments = np.abs(along.limits(here)[0, :, 4:]).max(axis=(1, 2))
     found = {}
-    for number, name in enumerate(members):
-        values = np.concatenate([one.ravel() for one in stresses.of_members[name].values()])
+    for number, (name, fibres) in enumerate(stresses.limits(here).items()):
+        values = np.concatenate([one[0] for one in fibres.values()])
         stress = float(values[np.argmax(np.abs(values))])
         limit = model.materials[model.members[name].material].yield_strength
         left = stresses.reduced.get(name)
         found[name] = MemberStress(
-            moment=float(np.abs(forces[row, number, :, 4:]).max()),
+            moment=float(moments[number]),
             stress=stress,
             utilisation=None if limit is None else abs(stress) / limit,
-            left=1.0 if left is None else float(left[0]),
+            left=1.0 if left is None else float(left[row]),
         )
     return found

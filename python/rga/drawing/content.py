@@ -10,7 +10,6 @@ from rga.drawing.scene.loads import LoadMark, load_marks
 from rga.drawing.scene.scene import Scene, make_scene
 from rga.drawing.scene.sensors import SensorMark, sensor_marks
 from rga.drawing.scene.supports import SpringMark, SupportMark, spring_marks, support_marks
-from rga.drawing.states.contexts import settled
 from rga.drawing.states.diagrams import QUANTITIES, Quantity
 from rga.drawing.states.response import DrawnResponse, drawn_response, response_of_row
 from rga.errors import InputError
@@ -47,7 +46,8 @@ class Selection:
         deformed: the deformed shape.
         scale: by which displacements are enlarged; None: a round one that shows them.
         forces: the diagram of a section force, of `QUANTITIES`.
-        contexts: at which all this is; those left out stand at mid-range.
+        contexts: at which all this is; those left out stand at mid-range, or where nothing happens
+            there at the upper ends of their ranges.
         dark: for a dark background.
     """
 
@@ -138,16 +138,15 @@ def gather(model: Model, shown: Selection, found: Results | None = None, row: in
     """
     scene = make_scene(model)
     quantities = [] if shown.forces is None else [shown.forces]
-    contexts, response = settled(model, shown.contexts), None
+    response = None
     if found is not None:
-        contexts |= {name: float(found.contexts[name][row]) for name in contexts}
         response = response_of_row(scene, found, row, quantities, shown.scale, shown.deformed)
     elif shown.of_response:
-        response = drawn_response(scene, contexts, quantities, shown.scale, shown.deformed)
+        response = drawn_response(scene, shown.contexts, quantities, shown.scale, shown.deformed)
     with_sensors = not shown.of_response if shown.sensors is None else shown.sensors
     chosen = () if shown.loads is None and shown.forces is not None else shown.loads
     # Beside a response stand the loads that bring it about, and no others.
-    loads = load_marks(scene, chosen, contexts if shown.of_response else shown.contexts)
+    loads = load_marks(scene, chosen, shown.contexts if response is None else response.at)
     return Content(
         scene=scene,
         shown=shown,

@@ -1,6 +1,6 @@
 """Stresses at the fibres of sections."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import chain
 
@@ -10,10 +10,10 @@ from rga.arrays import FloatArray
 from rga.model.effect import Values
 from rga.model.parameter import listed
 from rga.model.schema import Model, Section
+from rga.simulation.critical_places import EVERY, ForcesAlong, limits
 
 #: the fibre of a section that states none: the stress of its axial force alone
 AXIS = "axis"
-EVERY = slice(None)
 
 
 @dataclass(frozen=True)
@@ -24,24 +24,46 @@ class Stresses:
         of_members: member -> fibre -> stress [Pa], float[rows, stations].
         reduced: members whose section an effect has reduced -> what is left of it over what is
             drawn, float[rows].
+        along: section forces everywhere along these members.
     """
 
     of_members: dict[str, dict[str, FloatArray]]
     reduced: dict[str, FloatArray]
+    along: ForcesAlong
+
+    def limits(self, rows: slice = EVERY) -> dict[str, dict[str, FloatArray]]:
+        """Lowest and highest stress along a member, between its stations too.
+
+        Returns:
+            member -> fibre -> float[rows, 2] [Pa].
+        """
+        model, names = self.along.model, self.along.members
+        parts: dict[str, dict[str, list[FloatArray]]] = {name: {} for name in names}
+        for one in self.along.pieces(rows):
+            of_sections: dict[str, list[int]] = {}
+            for place, member in enumerate(one.members):
+                of_sections.setdefault(model.members[names[member]].section, []).append(place)
+            for section, places in of_sections.items():
+                forces, own = one.forces[:, places], [names[one.members[k]] for k in places]
+                for k, name in enumerate(own):
+                    if name in self.reduced:
+                        forces[:, k] /= self.reduced[name][rows][one.rows, None, None, None]
+                for fibre, values in fibre_stresses(model.sections[section], forces).items():
+                    for name, of_rows in zip(own, limits(values).swapaxes(0, 1), strict=True):
+                        parts[name].setdefault(fibre, []).append(of_rows)
+        return {
+            name: {fibre: np.concatenate(of_rows) for fibre, of_rows in fibres.items()}
+            for name, fibres in parts.items()
+        }
 
     def extremes(self, rows: slice = EVERY) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest stress of every member in some rows, float[members] each [Pa]."""
-        of_all = [np.stack(list(one.values()))[:, rows] for one in self.of_members.values()]
-        lowest = np.array([values.min(initial=np.inf) for values in of_all])
-        return lowest, np.array([values.max(initial=-np.inf) for values in of_all])
+        of_all = [np.stack(list(one.values())) for one in self.limits(rows).values()]
+        lowest = np.array([values.min() for values in of_all])
+        return lowest, np.array([values.max() for values in of_all])
 
 
-def section_stresses(
-    model: Model,
-    members: Sequence[str],
-    section_forces: FloatArray,
-    parameters: Mapping[str, Values],
-) -> Stresses:
+def section_stresses(section_forces: FloatArray, along: ForcesAlong) -> Stresses:
     """Stresses N / A + My z / Iy - Mz y / Iz of the sections as drawn, less what they have lost.
 
     An effect that takes a share of a section (`member_stiffness` with a factor below one) takes it
@@ -49,19 +71,18 @@ def section_stresses(
     that is stiffer than drawn is not credited with more area.
 
     Args:
-        model: the structure with its effects.
-        members: names of those whose forces are given.
         section_forces: N, Vy, Vz, T, My, Mz, float[rows, members, stations, 6] [N, N m].
-        parameters: of all effects, by name, as `Simulator.resolve` gives them.
+        along: the same everywhere along these members.
     """
-    left = remaining_sections(model, len(section_forces), parameters)
+    model = along.model
+    left = remaining_sections(model, len(section_forces), along.parameters)
     found = {}
-    for number, name in enumerate(members):
+    for number, name in enumerate(along.members):
         forces = section_forces[:, number]
         if name in left:
             forces = forces / left[name][:, None, None]
         found[name] = fibre_stresses(model.sections[model.members[name].section], forces)
-    return Stresses(found, {name: left[name] for name in members if name in left})
+    return Stresses(found, {name: left[name] for name in along.members if name in left}, along)
 
 
 def fibre_stresses(section: Section, forces: FloatArray) -> dict[str, FloatArray]:

@@ -21,6 +21,7 @@ from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.notebook import short_html
 from rga.simulation.contexts import Contexts, contexts_by_name
+from rga.simulation.critical_places import ForcesAlong
 from rga.simulation.paths.response import respond
 from rga.simulation.simulator import Response, Simulator
 from rga.simulation.stresses import Stresses, section_stresses
@@ -65,11 +66,15 @@ class Results:
     parameters: dict[str, Values]
 
     @cached_property
+    def along(self) -> ForcesAlong:
+        """Section forces everywhere along the members, between stations too."""
+        members, forces = list(self.model.members), self.section_forces
+        return forces_along(self.model, self.contexts, members, forces, self.parameters)
+
+    @cached_property
     def stresses(self) -> Stresses:
         """Stresses at the fibres of the sections, by member."""
-        return section_stresses(
-            self.model, list(self.model.members), self.section_forces, self.parameters
-        )
+        return section_stresses(self.section_forces, self.along)
 
     def plot(self, ax: "Axes | None" = None, *, row: int = 1, **shown: Any) -> "Axes":
         """The deformed shape of a row, or with `forces="M"` a diagram, in axes of matplotlib.
@@ -97,7 +102,7 @@ class Results:
         return f"Results of {self.model.name!r}: {rows} rows, {len(self.model.members)} members"
 
     def members(self, row: int | None = None) -> pl.DataFrame:
-        """The extremes of every member over all stations, one line a member.
+        """The extremes of every member, however many stations there are, one line a member.
 
         Columns: member, N min, N max, V max [N], M max [N m], stress min, stress max [Pa], and the
         utilisation: the largest stress over the yield strength where the material states one,
@@ -114,8 +119,8 @@ class Results:
         if row is not None and not 1 <= row <= rows:
             raise InputError(f"there is no row {row}", "results", f"give 1 to {rows}")
         chosen = slice(None) if row is None else slice(row - 1, row)
-        forces, (lowest, highest) = self.section_forces[chosen], self.stresses.extremes(chosen)
-        axial = forces[..., 0]
+        forces, (lowest, highest) = self.along.limits(chosen), self.stresses.extremes(chosen)
+        sizes = np.abs(forces).max(axis=(0, 3))
         strength = [
             self.model.materials[member.material].yield_strength
             for member in self.model.members.values()
@@ -124,10 +129,10 @@ class Results:
         return pl.DataFrame(
             {
                 "member": list(self.model.members),
-                "N min": axial.min(axis=(0, 2)),
-                "N max": axial.max(axis=(0, 2)),
-                "V max": np.abs(forces[..., 1:3]).max(axis=(0, 2, 3)),
-                "M max": np.abs(forces[..., 4:]).max(axis=(0, 2, 3)),
+                "N min": forces[..., 0, 0].min(axis=0),
+                "N max": forces[..., 0, 1].max(axis=0),
+                "V max": sizes[:, 1:3].max(axis=1),
+                "M max": sizes[:, 4:].max(axis=1),
                 "stress min": lowest,
                 "stress max": highest,
                 "utilisation": [
@@ -283,6 +288,30 @@ def forces_of_members(
     response = _respond(model, contexts, wanted)
     shape = (len(response.quantities), len(members), stations, 6)
     return response.quantities.reshape(shape), response.values
+
+
+def forces_along(
+    model: Model,
+    contexts: Mapping[str, ArrayLike],
+    members: Sequence[str],
+    section_forces: FloatArray,
+    parameters: dict[str, Values],
+) -> ForcesAlong:
+    """Section forces everywhere along members, from those that were solved for.
+
+    Args:
+        model: the structure with its effects.
+        contexts: as for `results`.
+        members: names.
+        section_forces: of these, as `forces_of_members` gives them.
+        parameters: of all effects, by name.
+    """
+    first, four = section_forces[:, :, 0], section_forces
+    if model.analysis.geometry == "linear":
+        return ForcesAlong(model, members, first, parameters)
+    if section_forces.shape[2] != 4:
+        four, _ = forces_of_members(model, contexts, members, stations=4)
+    return ForcesAlong(model, members, first, parameters, thirds=four[:, :, 1:3])
 
 
 def held_nodes(model: Model) -> tuple[str, ...]:

@@ -90,6 +90,23 @@ class TestScript:
         without = shown(model, tmp_path, ["switch", "bottom chord"])
         assert "#0072b2" not in colours(without)
 
+    def test_values_stay_on_the_canvas(self, beam: Callable[..., Model], tmp_path: Path) -> None:
+        """The moment of a column at the edge reaches to the edge, its value to the other side."""
+        own = {"section": "s", "material": "m", "kind": "frame"}
+        push = {"kind": "nodal_load", "forces": {"c": [-1234, 0, 0]}}
+        model = beam(
+            nodes={"a": [0, 0, 0], "b": [9, 0, 0], "c": [9, 0, 3]},
+            members={"ab": {"nodes": ["a", "b"], **own}, "bc": {"nodes": ["b", "c"], **own}},
+            supports={node: {"node": node, "fixed": ["ux", "uz", "ry"]} for node in "ab"},
+            effects={"push": push},
+        )
+        drawn = shown(model, tmp_path, forces="M")["drawn"]
+        (value,) = (one for one in drawn if one["kind"] == "text" and one["text"].endswith("3.7"))
+        ((x, _),) = value["parts"][0]
+        reached = max(at[0] for one in drawn[1:] if one["kind"] == "area" for at in one["parts"][0])
+        assert reached > 880
+        assert x + 6.4 * len(value["text"]) <= 900
+
     def test_what_is_under_the_mouse_is_named(
         self, beam: Callable[..., Model], tmp_path: Path
     ) -> None:

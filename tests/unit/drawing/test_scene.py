@@ -105,8 +105,14 @@ class TestLoads:
         assert mark.forces.tolist() == [[3.0, 0.0, -7.0]]
 
     def test_beside_a_response_stand_only_loads_that_act(self, beam: Callable[..., Model]) -> None:
-        both = {"crane": {"unit": "kN", "range": [-4, 4]}}
-        assert gather(beam(context=both), asked({"deformed": True})).loads == []
+        one = {"kind": "nodal_load", "forces": {"b": [0, 0, -1000]}}
+        loads = {name: {**one, "factor": {"context": name}} for name in ("crane", "wind")}
+        ranges = {"crane": [0, 8], "wind": [-4, 4]}
+        model = beam(
+            context={name: {"unit": "kN", "range": ends} for name, ends in ranges.items()},
+            effects=loads,
+        )
+        assert [mark.name for mark in gather(model, asked({"deformed": True})).loads] == ["crane"]
 
 
 class TestSensors:

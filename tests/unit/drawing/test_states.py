@@ -93,6 +93,34 @@ class TestDeformed:
         assert shape.largest == pytest.approx(FORCE * SPAN**3 / (3 * EI))
         assert (shape.at, shape.scale, drawn.contexts) == ("b", 5.0, "crane = 5 kN")
 
+    def test_where_nothing_moves_at_mid_range_contexts_stand_at_their_upper_ends(
+        self, beam: Callable[..., Model]
+    ) -> None:
+        model = beam(context={"crane": {"unit": "kN", "range": [-5, 5]}})
+        drawn = gather(model, asked({"deformed": True}))
+        assert drawn.response is not None
+        assert drawn.response.deformed is not None
+        assert drawn.response.deformed.largest == pytest.approx(FORCE * SPAN**3 / (3 * EI))
+        assert drawn.response.contexts == "crane = 5 kN"
+        assert [mark.at for mark in drawn.loads] == ["crane = 5 kN"]
+        still = gather(model, asked({"deformed": True, "contexts": {"crane": 0}})).response
+        assert still is not None
+        assert still.contexts == "crane = 0 kN"
+
+    def test_forces_without_displacements_of_nodes_are_something(
+        self, beam: Callable[..., Model]
+    ) -> None:
+        fixed = ["ux", "uz", "ry"]
+        crane = {"kind": "member_load", "member": "ab", "uniform": [0, 0, -1e3],
+                 "factor": {"context": "crane"}}  # fmt: skip
+        model = beam(
+            supports={node: {"node": node, "fixed": fixed} for node in ("a", "b")},
+            effects={"crane": crane},
+        )
+        drawn = gather(model, asked({"forces": "M"})).response
+        assert drawn is not None
+        assert drawn.contexts == "crane = 5 kN"
+
     def test_a_mechanism_is_refused(self, beam: Callable[..., Model]) -> None:
         loose = beam(supports={"pin": {"node": "a", "fixed": ["ux", "uz"]}})
         with pytest.raises(UnstableStructureError, match="can move"):
@@ -143,6 +171,41 @@ class TestDiagrams:
         assert -sag == pytest.approx(800 * x * (SPAN - x) / 2, abs=1e-6)
         shear = np.abs(outline(model, "V")[:, 2])
         assert shear == pytest.approx(np.abs(800 * (SPAN / 2 - x)), abs=1e-6)
+
+    def test_a_force_between_the_nodes_is_a_jump_of_shear_and_a_peak_of_moment(
+        self, beam: Callable[..., Model]
+    ) -> None:
+        ends = {"l": {"node": "a", "fixed": ["ux", "uz"]}, "r": {"node": "b", "fixed": ["uz"]}}
+        push = {"kind": "member_load", "member": "ab", "point": [0, 0, -FORCE], "x": 1.01}
+        model = beam(supports=ends, effects={"push": push})
+        shear, moment = drawn_response(make_scene(model), {}, ["V", "M"]).diagrams
+        (jump,) = np.flatnonzero(np.diff(shear.positions[0]) == 0)
+        assert shear.positions[0, jump] == pytest.approx(1.01 / SPAN)
+        sides = shear.values[0, jump : jump + 2]
+        assert np.abs(np.diff(sides)) == pytest.approx(FORCE)
+        assert {jump, jump + 1} <= set(shear.told(0))
+        assert moment.largest == pytest.approx(FORCE * 1.01 * (SPAN - 1.01) / SPAN)
+        assert moment.positions[0, moment.told(0)[0]] == pytest.approx(1.01 / SPAN)
+
+    def test_values_are_told_at_both_ends_and_where_they_are_largest_between(
+        self, beam: Callable[..., Model]
+    ) -> None:
+        fixed = ["ux", "uz", "ry"]
+        snow = {"kind": "member_load", "member": "ab", "uniform": [0, 0, -800]}
+        model = beam(
+            supports={node: {"node": node, "fixed": fixed} for node in ("a", "b")},
+            effects={"snow": snow},
+        )
+        (diagram,) = drawn_response(make_scene(model), {}, ["M"]).diagrams
+        values = diagram.values[0, diagram.told(0)]
+        assert sorted(np.abs(values)) == pytest.approx(
+            [800 * SPAN**2 / 24, 800 * SPAN**2 / 12, 800 * SPAN**2 / 12]
+        )
+
+    def test_what_is_even_is_told_once(self, two_bars: dict[str, Any]) -> None:
+        model = read_model(two_bars, "two bars")
+        (diagram,) = drawn_response(make_scene(model), {}, ["N"]).diagrams
+        assert [len(diagram.told(member)) for member in range(2)] == [1, 1]
 
     def test_in_space_components_are_drawn_by_their_names(self) -> None:
         scene = make_scene(bridge())

@@ -40,10 +40,10 @@ def _stresses(over: OverRanges, stresses: Stresses) -> Iterator[Finding]:
     model = over.model
     yields: dict[str, tuple[float, str, int]] = {}
     stretched: dict[str, tuple[float, int]] = {}
-    for name, fibres in stresses.of_members.items():
+    for name, fibres in stresses.limits().items():
         material = model.materials[model.members[name].material]
-        for fibre, along in fibres.items():
-            of_rows = np.abs(along).max(axis=1)
+        for fibre, limits in fibres.items():
+            of_rows = np.abs(limits).max(axis=1)
             row, size = int(np.argmax(of_rows)), float(of_rows.max())
             if size > ELASTIC * material.E:
                 stretched[name] = max(stretched.get(name, (0.0, 0)), (size / material.E, row))

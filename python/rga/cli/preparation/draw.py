@@ -69,7 +69,8 @@ def draw(
 ) -> None:
     """Draw a model: members, supports, loads and sensors, its deformed shape and forces.
 
-    Contexts of loads, displacements and forces that are not given stand at mid-range.
+    Contexts of loads, displacements and forces that are not given stand at mid-range, or where
+    nothing happens there at the upper ends of their ranges.
     """
     from rga.drawing import draw as write
     from rga.drawing.content import NAMED

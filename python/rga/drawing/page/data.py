@@ -169,12 +169,14 @@ def _diagram(scene: Scene, diagram: Diagram) -> dict[str, Any]:
     # Of a bar in which nothing changes along its axis two places say all.
     even = (scene.frame == 0) & (np.ptp(diagram.values, axis=1) <= 1e-9 * diagram.largest)
     stations = [slice(None) if not one else [0, -1] for one in even.tolist()]
+    told = [[1] if one else diagram.told(k) for k, one in enumerate(even.tolist())]
     return {
         "quantity": diagram.quantity,
         "unit": unit,
         "factor": factor,
         "signs": SIGNS.get(diagram.quantity, ("positive", "negative")),
         "largest": diagram.largest,
+        "told": told,
         "positions": [_numbers(row[k]) for row, k in zip(diagram.positions, stations, strict=True)],
         "values": [_numbers(row[k]) for row, k in zip(diagram.values, stations, strict=True)],
         "sides": _numbers(diagram.sides),

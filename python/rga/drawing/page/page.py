@@ -11,7 +11,6 @@ from markupsafe import Markup
 from rga.drawing.content import Selection, gather
 from rga.drawing.page.data import page_data
 from rga.drawing.scene.scene import MOST_NAMED, Scene
-from rga.drawing.states.contexts import settled
 from rga.drawing.states.diagrams import Quantity
 from rga.drawing.states.response import drawn_response
 from rga.errors import UnstableStructureError
@@ -40,7 +39,7 @@ def page(model: Model, shown: Selection) -> str:
     try:
         response = drawn_response(
             content.scene,
-            settled(model, shown.contexts),
+            shown.contexts,
             _quantities(content.scene, shown.forces),
             shown.scale,
         )

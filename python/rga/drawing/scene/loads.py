@@ -7,7 +7,7 @@ import numpy as np
 
 from rga.arrays import FloatArray, IntArray
 from rga.drawing.scene.scene import Scene
-from rga.drawing.states.contexts import context_words, settled
+from rga.drawing.states.contexts import context_words, settled, upper_ends
 from rga.errors import InputError
 from rga.model.effect import Values
 from rga.model.effects.loads.axle_load import AxleLoad
@@ -102,10 +102,9 @@ def load_marks(
             )
     wanted = [name for name in names if chosen is None or name in chosen]
     first = settled(model, contexts)
-    upper = {name: variable.range[1] for name, variable in model.context.items()}
     structure = build_structure(model)
     found: dict[str, LoadMark] = {}
-    for table in (first, {**first, **upper, **(contexts or {})}):
+    for table in (first, upper_ends(model, contexts)):
         open_names = [name for name in wanted if name not in found]
         if open_names:
             found |= _at(scene, structure, open_names, table, set(contexts or {}))

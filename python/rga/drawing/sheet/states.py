@@ -13,8 +13,8 @@ from rga.quantities import scale, short
 
 #: the largest value of a diagram, and half of an axial force's, which stands on both sides [inch]
 REACH, HALF = 0.42, 0.13
-#: values that are written, those of the members with the largest
-WRITTEN = 24
+#: values that are written, the largest of them; places that are one [inch]
+WRITTEN, SAME = 48, 0.05
 #: share of the largest value below which one counts as none
 NOTHING = 1e-9
 
@@ -63,16 +63,16 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> int:
             colour = canvas.palette.positive if part.sum() > 0 else canvas.palette.negative
             base = (2 * feet - tops)[::-1] if both else feet[[-1, 0]]
             areas[colour].append(np.vstack([tops, base]))
-        even = np.ptp(values) <= 1e-6 * diagram.largest
-        k = len(values) // 2 if even else int(np.argmax(np.abs(values)))
-        foot = first + stations[k] * (last - first)
-        top = foot if both else foot + reach * values[k] * side
-        written.append((abs(float(values[k])), top, short(float(values[k]) * factor)))
+        for k in diagram.told(member):
+            foot = first + stations[k] * (last - first)
+            top = foot if both else foot + reach * values[k] * side
+            written.append((abs(float(values[k])), top, short(float(values[k]) * factor)))
     for colour, polygons in areas.items():
         canvas.areas(polygons, colour, colour, 0.6, zorder=4, alpha=0.45)
     missed = 0
-    tops = np.array([top for _, top, _ in written])
-    for _, top, text in sorted(written, key=lambda one: -one[0])[:WRITTEN]:
+    told = _once_each(sorted(written, key=lambda one: -one[0]))
+    tops = np.array([top for top, _ in told])
+    for top, text in told[:WRITTEN]:
         placed = canvas.room.place(text, top, over=both, rivals=tops)
         if placed is None:
             missed += 1
@@ -80,6 +80,15 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> int:
             paper = {"facecolor": canvas.palette.paper, "alpha": 0.75, "lw": 0, "pad": 0.4}
             canvas.text(text, placed.box[:2], canvas.palette.ink, va="bottom", bbox=paper)
     return missed
+
+
+def _once_each(written: list[tuple[float, FloatArray, str]]) -> list[tuple[FloatArray, str]]:
+    """Places with their texts, without one that stands there already for another member."""
+    found: list[tuple[FloatArray, str]] = []
+    for _, top, text in written:
+        if not any(text == other and np.abs(top - at).max() < SAME for at, other in found):
+            found.append((top, text))
+    return found
 
 
 def _across(along: FloatArray) -> FloatArray:

@@ -18,6 +18,11 @@ def settled(model: Model, given: Mapping[str, float] | None) -> dict[str, float]
     return {**middle, **(given or {})}
 
 
+def upper_ends(model: Model, given: Mapping[str, float] | None) -> dict[str, float]:
+    """Contexts of one row: those given, the others at the upper ends of their ranges."""
+    return {**{name: one.range[1] for name, one in model.context.items()}, **(given or {})}
+
+
 def context_words(model: Model, contexts: Mapping[str, float], names: set[str]) -> str:
     """Contexts in words, those of `names` alone, in the order of the model."""
     said = []

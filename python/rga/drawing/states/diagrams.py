@@ -28,6 +28,9 @@ SIDES: dict[str, tuple[int, float]] = {
     "N": (2, 1.0), "T": (2, 1.0), "Vy": (1, 1.0), "Vz": (2, 1.0), "My": (2, 1.0), "Mz": (1, -1.0)
 }  # fmt: skip
 
+#: shares of the largest value: of a difference that is none, and of a value that is seldom told
+EVEN, SMALL = 1e-6, 0.1
+
 
 @dataclass(frozen=True)
 class Diagram:
@@ -49,6 +52,22 @@ class Diagram:
     def largest(self) -> float:
         """The largest value, regardless of its sign; 0 where all are none."""
         return float(np.abs(self.values).max(initial=0.0))
+
+    def told(self, member: int) -> list[int]:
+        """Places whose values are written, the largest first: ends, extremes, both sides of jumps.
+
+        Of what is the same all along it is the middle. What is small beside the largest value of
+        the diagram is written where it is the largest of its member alone.
+        """
+        values, places = self.values[member], self.positions[member]
+        sizes, steps = np.abs(values), np.abs(np.diff(values))
+        if np.ptp(values) <= EVEN * self.largest:
+            return [len(values) // 2]
+        jumps = np.flatnonzero((np.diff(places) == 0) & (steps > EVEN * self.largest)).tolist()
+        extremes = [int(np.argmin(values)), int(np.argmax(values))]
+        found = {0, len(values) - 1, *extremes, *jumps, *(place + 1 for place in jumps)}
+        order = sorted(found, key=lambda place: (-sizes[place], place))
+        return order[:1] + [place for place in order[1:] if sizes[place] >= SMALL * self.largest]
 
     @property
     def unit(self) -> str:

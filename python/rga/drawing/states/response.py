@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.drawing.scene.scene import Scene
-from rga.drawing.states.contexts import context_words
+from rga.drawing.states.contexts import context_words, settled, upper_ends
 from rga.drawing.states.deformed import Deformed, deformed
 from rga.drawing.states.diagrams import Diagram, Quantity, section_diagram
 from rga.simulation import Results, Simulator, results
@@ -25,36 +26,43 @@ class DrawnResponse:
         deformed: its shape; None where it was not asked for.
         diagrams: of section forces.
         contexts: at which, in words.
+        at: these contexts.
     """
 
     deformed: Deformed | None
     diagrams: tuple[Diagram, ...]
     contexts: str
+    at: dict[str, float]
 
 
 def drawn_response(
     scene: Scene,
-    contexts: Mapping[str, float],
+    given: Mapping[str, float],
     quantities: Sequence[Quantity],
     scale: float | None = None,
     shape: bool = True,
 ) -> DrawnResponse:
     """Solve a structure, and make its shape and its diagrams.
 
+    Contexts that are not given stand at mid-range. Where nothing happens there, under wind
+    from either side say, they stand at the upper ends of their ranges, as those of loads do.
+
     Args:
         scene: the structure.
-        contexts: of one row, every one that the model needs.
+        given: contexts of one row.
         quantities: section forces.
         scale: by which displacements are enlarged; None: a round one that shows them.
         shape: the deformed shape is wanted.
 
     Raises:
-        InputError: a context is missing or not finite.
+        InputError: a context that the model does not have, or that is far from its range.
         UnstableStructureError: the structure can move; names node and direction.
     """
     bent = FEW if len(scene.ends) > MANY else BENT
     stations = (bent if scene.frame.any() else STRAIGHT) if quantities else 2
-    found = results(scene.model, contexts, stations=stations)
+    found = results(scene.model, settled(scene.model, given), stations=stations)
+    if not (found.displacements.any() or found.section_forces.any()):
+        found = results(scene.model, upper_ends(scene.model, given), stations=stations)
     return response_of_row(scene, found, 0, quantities, scale, shape)
 
 
@@ -75,11 +83,30 @@ def response_of_row(
         quantities, scale, shape: as for `drawn_response`.
     """
     model = scene.model
-    positions = np.tile(found.stations, (len(scene.ends), 1))
-    forces = found.section_forces[row]
+    diagrams: tuple[Diagram, ...] = ()
+    if quantities:
+        positions, forces = _even(found.along.curves(row, found.stations))
+        diagrams = tuple(section_diagram(scene, one, positions, forces) for one in quantities)
     contexts = {name: float(column[row]) for name, column in found.contexts.items()}
     return DrawnResponse(
         deformed=deformed(scene, found.displacements[row], scale) if shape else None,
-        diagrams=tuple(section_diagram(scene, one, positions, forces) for one in quantities),
+        diagrams=diagrams,
         contexts=context_words(model, contexts, Simulator(model).needed),
+        at=contexts,
+    )
+
+
+def _even(
+    curves: Sequence[tuple[FloatArray, FloatArray]],
+) -> tuple[FloatArray, FloatArray]:
+    """Curves of as many places each, the last of them repeated.
+
+    Returns:
+        float[members, places] and float[members, places, 6].
+    """
+    longest = max(len(places) for places, _ in curves)
+    chosen = [np.minimum(np.arange(longest), len(places) - 1) for places, _ in curves]
+    return (
+        np.stack([places[k] for (places, _), k in zip(curves, chosen, strict=True)]),
+        np.stack([forces[k] for (_, forces), k in zip(curves, chosen, strict=True)]),
     )

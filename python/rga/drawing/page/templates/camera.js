@@ -4,7 +4,7 @@ const model = JSON.parse(document.getElementById("data").textContent);
 const canvas = document.getElementById("view"), stage = document.getElementById("stage");
 const tip = document.getElementById("tip"), pen = canvas.getContext("2d");
 const start = model.start, members = model.members, response = model.response;
-const MOST_LABELS = 400, REACH = 46;
+const MOST_LABELS = 400, MOST_VALUES = 80, REACH = 46;
 
 const shown = {
   nodes: start.names.includes("nodes"), members: start.names.includes("members"),

@@ -22,7 +22,7 @@ function draw() {
   pen.font = "12px system-ui, sans-serif";
   pen.lineCap = pen.lineJoin = "round";
   const places = model.points.map(seen);
-  targets = [], boxes = [];
+  targets = [], boxes = outside();
   if (shown.supports) drawSupports(places, colours);
   drawMembers(places, colours);
   drawJoined(places, colours);
@@ -35,6 +35,12 @@ function draw() {
   if (shown.sensors) drawSensors(colours);
   drawNames(places, colours);
   drawFoot(colours);
+}
+
+// What lies beyond the canvas, where no text may stand.
+function outside() {
+  const far = 1e9;
+  return [[-far, -far, 0, far], [wide, -far, far, far], [-far, -far, far, 0], [-far, tall, far, far]];
 }
 
 function drawMembers(places, colours) {
@@ -168,15 +174,21 @@ function drawForces(places, colours, diagram) {
       polyline(pen, [...edge(1), ...edge(both ? -1 : 0).reverse()]);
       pen.fill();
     }
-    const s = values.reduce((best, value, n) => (Math.abs(value) > Math.abs(values[best]) ? n : best), 0);
-    const n = both ? Math.floor(values.length / 2) : s, lift = both ? 0 : reach * values[n];
-    const [x, y] = foot(diagram.positions[k][n]);
-    written.push([Math.abs(values[n]), [x + lift * side[0], y + lift * side[1]], values[n]]);
+    for (const n of diagram.told[k]) {
+      const [x, y] = foot(diagram.positions[k][n]), lift = both ? 0 : reach * values[n];
+      written.push([Math.abs(values[n]), [x + lift * side[0], y + lift * side[1]], values[n]]);
+    }
   });
   pen.globalAlpha = 1;
   written.sort((one, other) => other[0] - one[0]);
-  for (const [size, at, value] of written.slice(0, 40)) {
-    if (size > 1e-9 * diagram.largest) label(pen, short(value * diagram.factor), at, colours.ink, boxes);
+  const texts = new Set();
+  for (const [size, at, value] of written) {
+    const text = short(value * diagram.factor);
+    // Members that meet tell of the same value once.
+    const here = `${text} ${at.map(one => Math.round(one / 8))}`;
+    if (size <= 1e-9 * diagram.largest || texts.has(here) || texts.size >= MOST_VALUES) continue;
+    texts.add(here);
+    label(pen, text, at, colours.ink, boxes);
   }
 }
 
