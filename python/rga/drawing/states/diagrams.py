@@ -62,7 +62,7 @@ class Diagram:
         values, places = self.values[member], self.positions[member]
         sizes, steps = np.abs(values), np.abs(np.diff(values))
         if np.ptp(values) <= EVEN * self.largest:
-            return [len(values) // 2]
+            return [int(np.argmin(np.abs(places - 0.5)))]
         jumps = np.flatnonzero((np.diff(places) == 0) & (steps > EVEN * self.largest)).tolist()
         extremes = [int(np.argmin(values)), int(np.argmax(values))]
         found = {0, len(values) - 1, *extremes, *jumps, *(place + 1 for place in jumps)}

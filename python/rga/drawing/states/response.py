@@ -14,6 +14,8 @@ from rga.simulation import Results, Simulator, results
 
 #: places along each member at which forces are drawn, where some member bends, and where none does
 BENT, STRAIGHT = 21, 3
+#: places along each member that are solved for: its ends, and the thirds that bowed members need
+SOLVED = 4
 #: members of a structure beyond which the places are fewer
 MANY, FEW = 1000, 9
 
@@ -58,11 +60,9 @@ def drawn_response(
         InputError: a context that the model does not have, or that is far from its range.
         UnstableStructureError: the structure can move; names node and direction.
     """
-    bent = FEW if len(scene.ends) > MANY else BENT
-    stations = (bent if scene.frame.any() else STRAIGHT) if quantities else 2
-    found = results(scene.model, settled(scene.model, given), stations=stations)
+    found = results(scene.model, settled(scene.model, given), stations=SOLVED)
     if not (found.displacements.any() or found.section_forces.any()):
-        found = results(scene.model, upper_ends(scene.model, given), stations=stations)
+        found = results(scene.model, upper_ends(scene.model, given), stations=SOLVED)
     return response_of_row(scene, found, 0, quantities, scale, shape)
 
 
@@ -85,7 +85,9 @@ def response_of_row(
     model = scene.model
     diagrams: tuple[Diagram, ...] = ()
     if quantities:
-        positions, forces = _even(found.along.curves(row, found.stations))
+        bent = FEW if len(scene.ends) > MANY else BENT
+        stations = np.linspace(0.0, 1.0, bent if scene.frame.any() else STRAIGHT)
+        positions, forces = _even(found.along.curves(row, stations))
         diagrams = tuple(section_diagram(scene, one, positions, forces) for one in quantities)
     contexts = {name: float(column[row]) for name, column in found.contexts.items()}
     return DrawnResponse(
