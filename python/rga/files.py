@@ -3,9 +3,14 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from errno import EISDIR
+from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rga.errors import InputError
+
+if TYPE_CHECKING:
+    import polars as pl
 
 
 def write_whole(files: Mapping[Path, bytes]) -> None:
@@ -40,3 +45,20 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         reason = (error.strerror or "refused").lower()
         what = f"the output cannot be written, {reason}"
         raise InputError(what, str(path), "give another place") from None
+
+
+def write_table(table: "pl.DataFrame", path: str | Path) -> None:
+    """Write a table as CSV or Parquet, by the ending of its file.
+
+    Raises:
+        InputError: another ending, or a place that cannot be written to.
+    """
+    path, content = Path(path), BytesIO()
+    if path.suffix.lower() == ".csv":
+        table.write_csv(content)
+    elif path.suffix.lower() == ".parquet":
+        table.write_parquet(content)
+    else:
+        problem = f"{path.suffix!r} is no format of tables"
+        raise InputError(problem, str(path), "name a .csv or .parquet")
+    write_whole({path: content.getvalue()})

@@ -77,6 +77,7 @@ CrossingModel = Annotated[
     Path, typer.Option("--crossing", metavar="MODEL", help="Model file of the crossing in --data.")
 ]
 Small = Annotated[bool, typer.Option("--quick", help="100 rows of 12 sensors only.")]
+Short = Annotated[bool, typer.Option("--quick", help="One run of 3 000 rows only.")]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 
@@ -208,6 +209,14 @@ def diagnosis_speed(quick: Small = False, seed: Seed = 0) -> Experiment[Any]:
     from rga_bench.speed.experiment import SpeedExperiment
 
     return SpeedExperiment.of(seed, quick=quick)
+
+
+@_experiment(WRITTEN)
+def endless(quick: Short = False, seed: Seed = 0) -> Experiment[Any]:
+    """What a row costs a twin that has run for long, and what a step leaves on the disk."""
+    from rga_bench.endless.experiment import EndlessExperiment
+
+    return EndlessExperiment.of(seed, quick=quick)
 
 
 @_experiment(WRITTEN)

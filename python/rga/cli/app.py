@@ -12,8 +12,10 @@ from rga.cli.diagnosis.diagnose import diagnose
 from rga.cli.diagnosis.diagnose_many import diagnose_many
 from rga.cli.diagnosis.plan import plan
 from rga.cli.doctor import doctor
+from rga.cli.operation.export import export
 from rga.cli.operation.replay import replay, rollback
 from rga.cli.operation.run import run
+from rga.cli.operation.status import status
 from rga.cli.preparation.check import check
 from rga.cli.preparation.draw import draw
 from rga.cli.preparation.example import example
@@ -35,8 +37,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
-    example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, replay,
-    rollback, simulate, results, whatif, dataset, verify, schema, doctor,
+    example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, status,
+    replay, rollback, export, simulate, results, whatif, dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.files import write_table
 from rga.model.effect import seconds
 from rga.notebook import short_html
 
@@ -113,6 +115,31 @@ class Record:
         columns = [pl.Series(name, self.readings[:, k]) for k, name in enumerate(self.sensors)]
         columns += [pl.Series(name, values) for name, values in self.contexts.items()]
         return pl.DataFrame([time, *columns])
+
+    def write(self, path: str | Path) -> None:
+        """Write all rows in the units of the model, as CSV or Parquet; `load_record` reads them.
+
+        What was taken off the readings as a zero is to be stated for the new file too.
+
+        Raises:
+            InputError: another format, or a place that cannot be written to.
+
+        >>> from tempfile import TemporaryDirectory
+        >>> record = Record(np.arange(2.0), 10.0, "seconds", ("D1",), np.array([[0.1], [np.nan]]))
+        >>> with TemporaryDirectory() as folder:
+        ...     record.write(f"{folder}/record.csv")
+        ...     print(Path(f"{folder}/record.csv").read_text())
+        time,D1
+        10.0,0.1
+        11.0,
+        <BLANKLINE>
+        """
+        import polars as pl
+
+        columns = {name: self.readings[:, k] for k, name in enumerate(self.sensors)}
+        frame = pl.DataFrame({**columns, **self.contexts}).fill_nan(None)
+        time = pl.Series("time", [self.time_label(one) for one in self.time.tolist()])
+        write_table(frame.insert_column(0, time), path)
 
     def _repr_html_(self) -> str:
         last = self.time_label(self.time[-1]) if len(self) else self.start

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -14,7 +13,7 @@ from numpy.typing import ArrayLike
 from rga._core import OutputKind
 from rga.arrays import FloatArray, OutputArrays, by_name
 from rga.errors import InputError
-from rga.files import write_whole
+from rga.files import write_table
 from rga.model import as_model
 from rga.model.effect import Values, when_all_act
 from rga.model.schema import DOFS, Model
@@ -170,19 +169,7 @@ class Results:
         Raises:
             InputError: another format, or a place that cannot be written to.
         """
-        path = Path(path)
-        frame = self.to_frame()
-        if path.suffix.lower() == ".csv":
-            content = frame.write_csv().encode()
-        elif path.suffix.lower() == ".parquet":
-            buffer = BytesIO()
-            frame.write_parquet(buffer)
-            content = buffer.getvalue()
-        else:
-            raise InputError(
-                f"{path.suffix!r} is no format of results", str(path), "name a .csv or .parquet"
-            )
-        write_whole({path: content})
+        write_table(self.to_frame(), path)
 
     def _long(
         self, values: FloatArray, places: list[str], names: tuple[str, ...], units: list[str]

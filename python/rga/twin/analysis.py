@@ -78,7 +78,7 @@ class RealityGapAnalysis:
         if answer.adequate:
             if answer.latent:
                 self._design()
-                stored = self._archive.run.simulated(version=answer.version).contexts
+                stored = self._archive.simulated_contexts(answer.version)
                 latent, width = self._latent()
                 near = spacing(stored[:, latent], width)
                 self.standing.distinct = self._settings.distinct or near
@@ -274,7 +274,7 @@ class RealityGapAnalysis:
             ledger.gaps(first, end),
             ledger.contexts[first:end][:, latent],
             bound=mean + self._settings.repository_z * deviation,
-            stored=self._archive.run.simulated(version=state.version).contexts[:, latent],
+            stored=self._archive.simulated_contexts(state.version)[:, latent],
             width=width,
             distinct=self.standing.distinct,
         )

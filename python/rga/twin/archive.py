@@ -38,6 +38,8 @@ class Archive:
         self._simulation = simulation
         self._step: Transaction | None = None
         self._proposal: Q1 | None = None
+        #: by version, as long as no simulation is added
+        self._contexts: dict[int, FloatArray] = {}
         self.events: list[Event] = []
 
     @contextmanager
@@ -47,6 +49,9 @@ class Archive:
             self._step = step
             try:
                 yield
+            except BaseException:
+                self._contexts.clear()
+                raise
             finally:
                 self._step = None
 
@@ -73,6 +78,7 @@ class Archive:
         if isinstance(response, R1) and response.adequate:
             self._take_version(response)
         if isinstance(response, R3):
+            self._contexts.pop(response.version, None)
             self._open.simulated(
                 response.version,
                 response.origin,
@@ -117,7 +123,14 @@ class Archive:
         """T2: keep novel contexts with what the twin simulated there."""
         whole = np.isfinite(simulated).all(axis=1)
         level = np.zeros(int(whole.sum()), dtype=bool)
+        self._contexts.pop(version, None)
         self._open.simulated(version, "novel", row, contexts[whole], simulated[whole], level)
+
+    def simulated_contexts(self, version: int) -> FloatArray:
+        """Contexts at which a version has been simulated, float[rows, contexts]."""
+        if version not in self._contexts:
+            self._contexts[version] = self.run.simulated(version=version).contexts
+        return self._contexts[version]
 
     def keep_findings(self, row: int, findings: str) -> None:
         """Keep the findings of a diagnosis."""

@@ -108,9 +108,9 @@ def given_model(view: RunView) -> Model:
     return read_model(json.loads(view.versions()[0].model), "repository")
 
 
-def record_of(view: RunView) -> Record:
-    """The rows that the repository holds, as a record."""
-    station, seen = station_of(view), view.measured()
+def record_of(view: RunView, first: int = 0) -> Record:
+    """The rows that the repository holds, from one on, as a record."""
+    station, seen = station_of(view), view.measured(first)
     columns = seen.contexts.reshape(len(seen.rows), len(station.measured)).T
     return Record(
         time=seen.time,

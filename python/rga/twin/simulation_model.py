@@ -26,6 +26,7 @@ class SimulationModel:
         corrected: the model with its structure as it was found.
         simulator: of the corrected model.
         gains: factor of every channel on what the simulator says, float[channels].
+        remembers: whether what it says of a row hangs on the rows before.
     """
 
     def __init__(
@@ -41,7 +42,7 @@ class SimulationModel:
             self.gains, self._offsets = correction.of_sensors(station.channels)
         self.simulator = Simulator(self.corrected)
         self._given = self.simulator if correction is None else Simulator(self.model)
-        self._remembers = any(effect.remembers for effect in model.effects.values())
+        self.remembers = any(effect.remembers for effect in model.effects.values())
 
     def draw(self, query: Q3) -> R3:
         """Contexts drawn from a box, and what the channels read there."""
@@ -70,12 +71,9 @@ class SimulationModel:
 
     def follow(self, query: Q5) -> R5:
         """What the channels read at the contexts of rows of the record."""
-        past_time, past = query.time_before, query.contexts_before
-        # A train's direction shows from row to row; more of the past only matters to a memory.
-        kept = len(past_time) if self._remembers else min(1, len(past_time))
-        clock = np.concatenate([past_time[len(past_time) - kept :], query.time])
-        contexts = np.concatenate([past[len(past) - kept :], query.contexts])
-        simulated = self.readings(clock, contexts)[kept:]
+        clock = np.concatenate([query.time_before, query.time])
+        contexts = np.concatenate([query.contexts_before, query.contexts])
+        simulated = self.readings(clock, contexts)[len(query.time_before) :]
         last = dict(zip(self.model.context, query.contexts[-1].tolist(), strict=True))
         return R5(
             row=query.row,

@@ -7,8 +7,10 @@ from typing import Self
 import numpy as np
 
 from rga.errors import InputError
+from rga.findings.phrases import effect_words
 from rga.model import Effect, Model
 from rga.model.effect import seconds
+from rga.records import Record
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.archive import Archive
 from rga.twin.digital_twin import DigitalTwin, TwinState
@@ -27,6 +29,7 @@ from rga.twin.restore import (
     story_of,
 )
 from rga.twin.settings import Inference
+from rga.twin.status import SHOWN, Status
 from rga.twin.versions import extended
 
 
@@ -145,6 +148,28 @@ class Twin:
             return {}
         last = self._view.inferred(self.state.row, self.state.row + 1).spread[0]
         return dict(zip(self.given.context, last.tolist(), strict=True))
+
+    @property
+    def record(self) -> Record:
+        """The rows that it has taken in."""
+        return record_of(self._view)
+
+    def status(self) -> Status:
+        """Where the run stands."""
+        standing, row = standing_of(self._view), self._view.row
+        last = record_of(self._view, max(0, row))
+        effects = self.state.versions.get(self.version, {})
+        return Status(
+            structure=self.given.name,
+            stage=standing.stage,
+            rows=row + 1,
+            time=last.time_label(float(last.time[-1])) if len(last) else None,
+            version=self.version,
+            causes=tuple(effect_words(one) for one in effects.values()),
+            out_of_sync=standing.alarm is not None,
+            acknowledged_at=self._view.acknowledged_at,
+            events=self._view.events()[-SHOWN:],
+        )
 
     def history(self) -> History:
         """What it lived through."""

@@ -98,6 +98,7 @@ class Rival(ABC):
     """
 
     kind = "rival"
+    remembers = False
 
     @property
     def found(self) -> None:

@@ -29,6 +29,7 @@ class AmortisedEstimator:
     """
 
     kind = "amortised"
+    remembers = False
 
     def __init__(self, joint: JointEstimator, networks: NetworkEstimator) -> None:
         self.joint, self.networks = joint, networks

@@ -15,9 +15,11 @@ class ContextEstimator(Protocol):
 
     Attributes:
         kind: its name in a repository.
+        remembers: whether it looks at rows before those that it infers.
     """
 
     kind: str
+    remembers: bool
 
     @property
     def found(self) -> Joint | None:
@@ -40,9 +42,12 @@ class ContextEstimator(Protocol):
     ) -> tuple[FloatArray, FloatArray]:
         """Latent contexts from a row on, and their standard deviations.
 
+        The rows begin with a block (`blocks`), or with the first of the run where the estimator
+        remembers or a context does not move independently from row to row.
+
         Args:
-            first: number of the first row to infer.
-            readings: of all rows so far, float[rows, channels], NaN where missing.
+            first: number of the first row to infer, among these.
+            readings: of the rows, float[rows, channels], NaN where missing.
             contexts: all contexts of these rows; latent ones are not looked at.
             time: of these rows [s].
             laws: how each latent context moves.

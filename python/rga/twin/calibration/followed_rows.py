@@ -9,6 +9,7 @@ from rga.errors import InputError
 from rga.findings.criteria.channels import ChannelCriteria
 from rga.model import Model
 from rga.twin.archive import Archive
+from rga.twin.calibration.blocks import BLOCK
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.estimator import ContextEstimator
 from rga.twin.calibration.expectation import against_expected, scatter_share
@@ -144,20 +145,26 @@ class FollowedRows:
         self, estimator: ContextEstimator, first: int, end: int
     ) -> tuple[FloatArray, FloatArray]:
         """All contexts of rows and their standard deviations, float[rows, contexts] each."""
-        latent, rows = self.latent, slice(0, end)
+        latent = self.latent
+        laws = [self._laws[column] for column in latent]
+        remembers = estimator.remembers or any(one.law != "independent" for one in laws)
+        begin = 0 if remembers else first - first % BLOCK
+        rows = slice(begin, end)
         contexts, spread = self._prior(slice(first, end))
         contexts[:, latent], spread[:, latent] = estimator.infer(
-            first,
+            first - begin,
             self.ledger.readings[rows],
             self._prior(rows)[0],
             self.clock(rows),
-            [self._laws[column] for column in latent],
+            laws,
         )
         return contexts, spread
 
     def _question(self, first: int, end: int, version: int, contexts: FloatArray) -> Q5:
         """What does the twin simulate at contexts of rows, float[rows, contexts]?"""
-        past = slice(0, first)
+        remembers = self._exchange.twin.simulation(version).remembers
+        # A train's direction shows from row to row; more of the past only matters to a memory.
+        past = slice(0 if remembers else max(0, first - 1), first)
         return Q5(
             row=end - 1,
             version=version,

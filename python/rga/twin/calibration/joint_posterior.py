@@ -49,6 +49,7 @@ class JointEstimator:
     """
 
     kind = "joint"
+    remembers = False
 
     def __init__(
         self,

@@ -47,6 +47,7 @@ class NetworkEstimator:
     """
 
     kind = "networks"
+    remembers = False
 
     def __init__(
         self,

@@ -194,7 +194,8 @@ class Q5(Message):
         first: first of the rows.
         time: clock of the rows [s], float[n].
         contexts: float[n, contexts], in the order of the model.
-        time_before, contexts_before: the same of all earlier rows, for effects with a memory.
+        time_before, contexts_before: the same of earlier rows: of all for effects with a memory,
+            else of the last.
     """
 
     kind: Literal["Q5"] = "Q5"

@@ -40,6 +40,7 @@ class Filtered(Rival):
     modes: PosteriorModes
     memory: FloatArray
     filter: Filter
+    remembers = True
 
     def estimate(self, readings: FloatArray) -> Estimate:
         """Contexts of consecutive rows, float[n, sensors], each from itself and those before."""

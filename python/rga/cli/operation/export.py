@@ -1,0 +1,23 @@
+"""`rga export`: the rows of a run as a record."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rga.cli.operation.replay import Place
+
+RecordFile = Annotated[
+    Path, typer.Option("-o", "--output", metavar="FILE", help="Record (CSV or Parquet).")
+]
+
+
+def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
+    """Write the rows that a run has taken in as a record, which `rga run` reads again."""
+    from rga.twin import Twin
+
+    with Twin.open(place) as twin:
+        record = twin.record
+    record.write(output)
+    contexts = f" and {len(record.contexts)} contexts" if record.contexts else ""
+    typer.echo(f"{len(record)} rows of {len(record.sensors)} sensors{contexts} are in {output}.")
