@@ -40,6 +40,9 @@ test:  ## build and install rga in a fresh environment, and run every check
 	$(MAKE) --jobs 2 fresh=$(fresh) tests lint
 
 crates: export PYO3_PYTHON = $(PYTHON)
+# Nobody steps through what is compiled here, and nothing of it is compiled again.
+crates: export CARGO_PROFILE_DEV_DEBUG = 0
+crates: export CARGO_INCREMENTAL = 0
 crates:  ## every check of the Rust code
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
