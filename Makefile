@@ -7,9 +7,7 @@ INSTALL := -m pip install --quiet --no-compile
 .DEFAULT_GOAL := help
 .PHONY: help run dev quick docs test crates lint tests clean wheel installed
 
-# Tests wait for files and for processes of their own: half as many more than cores keep these busy.
-WORKERS = $$(( (3 * $$(getconf _NPROCESSORS_ONLN) + 1) / 2 ))
-# Each has a core: products in several threads would wait for each other.
+# Every core has its process of the tests: products in several threads would wait for each other.
 quick tests: export OMP_NUM_THREADS = 1
 
 help:  ## show this list
@@ -29,7 +27,7 @@ quick:  ## lint, types and unit tests in the environment of `make dev`, within a
 	$(DEV)/ruff format --check
 	$(DEV)/mypy --strict python tests/typing
 	$(DEV)/lint-imports
-	$(DEV)/python -m pytest tests/unit --quiet --numprocesses $(WORKERS) --dist worksteal
+	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
 
 docs:  ## the pages of docs as a site that needs no network: site/index.html
 	$(DEV)/sphinx-build -W --keep-going --quiet -b html docs site
@@ -59,7 +57,7 @@ lint:  ## style, types and imports of the Python package, by the environment fre
 	$(fresh)/bin/python -m mypy.stubtest rga._core
 
 tests:  ## the tests of the Python package that is installed in the environment fresh=DIR
-	$(fresh)/bin/python -m pytest tests --pyargs rga rga_bench --numprocesses $(WORKERS) --dist worksteal
+	$(fresh)/bin/python -m pytest tests --pyargs rga rga_bench --numprocesses auto --dist worksteal
 
 # pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.
 wheel:

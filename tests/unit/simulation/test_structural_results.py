@@ -345,7 +345,7 @@ class TestTable:
         assert [one.name for one in tmp_path.iterdir()] == [path.name]
 
     def test_another_format_is_refused(self, tmp_path: Path) -> None:
-        with pytest.raises(InputError, match=r"'\.txt' is no format of results"):
+        with pytest.raises(InputError, match=r"'\.txt' is no format of tables"):
             self.found().write(tmp_path / "results.txt")
         assert list(tmp_path.iterdir()) == []
 
