@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rga.findings.load import load_findings
     from rga.importing import ImportedModel, import_model
     from rga.jobs.batch import diagnose_many
+    from rga.jobs.live import LiveTwin, live
     from rga.jobs.run import run
     from rga.model import Effect, Model, load_model
     from rga.outputs import write_findings
@@ -34,6 +35,7 @@ _HOMES = {
     "Effect": "rga.model",
     "Findings": "rga.findings",
     "InputError": "rga.errors",
+    "LiveTwin": "rga.jobs.live",
     "ImportedModel": "rga.importing",
     "Model": "rga.model",
     "ModelBuilder": "rga.building",
@@ -48,6 +50,7 @@ _HOMES = {
     "diagnose_many": "rga.jobs.batch",
     "draw": "rga.drawing",
     "import_model": "rga.importing",
+    "live": "rga.jobs.live",
     "load_criteria": "rga.findings.criteria",
     "load_findings": "rga.findings",
     "load_model": "rga.model",
@@ -68,6 +71,7 @@ __all__ = [
     "Findings",
     "ImportedModel",
     "InputError",
+    "LiveTwin",
     "Model",
     "ModelBuilder",
     "Plan",
@@ -82,6 +86,7 @@ __all__ = [
     "diagnose_many",
     "draw",
     "import_model",
+    "live",
     "load_criteria",
     "load_findings",
     "load_model",

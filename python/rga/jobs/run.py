@@ -69,15 +69,20 @@ def run(
         )
     place = repository or directory / FILE
     with taken_up(model, record, place, settings, seed, progress, learn) as running:
-        if running.stage == "done" and running.is_written(directory):
-            return Outcome(running.stored_findings(), running.history())
         while running.stage not in ("report", "done"):
             running.step()
             if watch is not None:
                 watch(running)
-        outcome = Outcome(running.findings(), running.history())
-        write_run(outcome, directory)
-        running.end()
+        return concluded(running, directory)
+
+
+def concluded(running: Running, directory: Path) -> Outcome:
+    """What a run ended with, written into a directory unless it is there."""
+    if running.stage == "done" and running.is_written(directory):
+        return Outcome(running.stored_findings(), running.history())
+    outcome = Outcome(running.findings(), running.history())
+    write_run(outcome, directory)
+    running.end()
     return outcome
 
 

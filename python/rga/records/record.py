@@ -65,11 +65,7 @@ class Record:
 
     def time_label(self, elapsed: float) -> str | float:
         """A time [s since the first row] as the record writes it: ISO 8601 text, or seconds."""
-        if isinstance(self.start, str):
-            moment = datetime.fromisoformat(self.start) + timedelta(seconds=float(elapsed))
-            whole_ms = moment.microsecond and moment.microsecond % 1000 == 0
-            return moment.isoformat(timespec="milliseconds" if whole_ms else "auto")
-        return round(self.start + float(elapsed), 9)
+        return time_label(self.start, elapsed)
 
     def rows(self, chosen: NDArray[np.bool_] | slice) -> "Record":
         """The chosen rows; time still counts from the first row of the file."""
@@ -164,3 +160,20 @@ class Record:
             sensors=tuple(self.sensors[column] for column in columns),
             readings=self.readings[:, columns],
         )
+
+
+def time_label(start: str | float, elapsed: float) -> str | float:
+    """A time as a record writes it: ISO 8601 text, or seconds.
+
+    Args:
+        start: time stamp of its first row, in the same way.
+        elapsed: seconds since the first row.
+
+    >>> time_label("2026-03-01T12:00:00", 90.5)
+    '2026-03-01T12:01:30.500'
+    """
+    if isinstance(start, str):
+        moment = datetime.fromisoformat(start) + timedelta(seconds=float(elapsed))
+        whole_ms = moment.microsecond and moment.microsecond % 1000 == 0
+        return moment.isoformat(timespec="milliseconds" if whole_ms else "auto")
+    return round(start + float(elapsed), 9)

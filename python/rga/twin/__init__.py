@@ -5,19 +5,27 @@ from rga.lazy import needing_extras
 with needing_extras():
     from rga.twin.calibration.estimator import ContextEstimator
     from rga.twin.calibration.lesson import Lesson
+    from rga.twin.commands import Accept, Exclude, Note, Recalibrate, Reject, Rollback
     from rga.twin.history import Event, History, Version
     from rga.twin.outcome import Outcome
     from rga.twin.settings import Settings
-    from rga.twin.twin import Twin, rollback
+    from rga.twin.twin import Twin, carry_out, rollback
 
 __all__ = [
+    "Accept",
     "ContextEstimator",
     "Event",
+    "Exclude",
     "History",
     "Lesson",
+    "Note",
     "Outcome",
+    "Recalibrate",
+    "Reject",
+    "Rollback",
     "Settings",
     "Twin",
     "Version",
+    "carry_out",
     "rollback",
 ]

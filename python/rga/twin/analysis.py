@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from rga.arrays import FloatArray
 from rga.findings import Findings
 from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
+from rga.twin.hardware.interface import Station
 from rga.twin.history import Event, Kind
+from rga.twin.integration import Integration
 from rga.twin.judgement import judged, unsettled
-from rga.twin.messages.hardware import Station
 from rga.twin.messages.queries import Q1, R1
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.novelty import novel, spacing
+from rga.twin.novelty import spacing
 from rga.twin.run_state import Standing
 from rga.twin.settings import Pace, Settings
 from rga.twin.sync.detector import synchrony
@@ -63,6 +63,7 @@ class RealityGapAnalysis:
         self._calibration, self._settings = calibration, settings
         self._pace, self._label = pace, label
         self._policy = Policy.of(settings, pace)
+        self._integration = Integration(exchange, archive, calibration, settings, self.event)
 
     @property
     def changed(self) -> bool:
@@ -74,18 +75,18 @@ class RealityGapAnalysis:
 
     def initialise(self) -> R1:
         """Q1: can the twin represent what a calibration needs? Then the design phase is filled."""
-        answer = self._ask_twin()
+        answer = self.ask_twin()
         if answer.adequate:
             if answer.latent:
                 self._design()
                 stored = self._archive.simulated_contexts(answer.version)
-                latent, width = self._latent()
+                latent, width = self._calibration.latent, self._calibration.width
                 near = spacing(stored[:, latent], width)
                 self.standing.distinct = self._settings.distinct or near
             if answer.blind:
                 unseen = ", ".join(answer.blind)
                 words = f"no channel sees {unseen}: held in the middle of the range"
-                self._event("calibration", 0, words)
+                self.event("calibration", 0, words)
             self.standing.stage = "gather"
         return answer
 
@@ -120,7 +121,7 @@ class RealityGapAnalysis:
             *unsettled(left),
             *self.synchrony.warnings,
         ]
-        self._event(
+        self.event(
             "calibration",
             standing.row - 1,
             "; ".join(words),
@@ -129,39 +130,36 @@ class RealityGapAnalysis:
         self._keep_state(0, standing.row)
         standing.stage = "watch"
 
-    def watch(self, last: bool) -> None:
-        """Infer the new rows' contexts, measure their gap (T1), and store what is novel (T2).
-
-        Args:
-            last: no more rows will come.
-        """
+    def watch(self) -> None:
+        """Infer the new rows' contexts, measure their gap (T1), and store what is novel (T2)."""
         standing, settings = self.standing, self._settings
         first, end = standing.row, len(self._calibration.ledger)
-        if end > first:
-            self._calibration.follow(first, end)
-            standing.row = end
-            if settings.level != "A":
-                self._detect(first, end)
-            if settings.level == "C" and (standing.alarm is None or self._recalled()):
-                self._integrate(first, end)
-        if self._policy.due(standing, last) is not None:
-            standing.stage = "recalibrate"
-        elif standing.doubted and standing.alarm is None and self._may_ask():
-            standing.stage = "diagnose"
-        elif last:
-            standing.stage = "close"
+        self._calibration.follow(first, end)
+        standing.row = end
+        if settings.level != "A":
+            self._detect(first, end)
+        if settings.level == "C" and (standing.alarm is None or self._recalled()):
+            self._integration.integrate(standing.distinct, first, end)
+        self._choose_next()
 
-    def recalibrate(self, last: bool) -> None:
+    def end(self) -> None:
+        """No more rows will come: what an alarm waits for is done with what there is."""
+        self.standing.ended = True
+        self._choose_next()
+        if self.standing.stage == "watch":
+            self.standing.stage = "close"
+
+    def recalibrate(self, first: int | None = None) -> None:
         """T1: learn from the latest rows; what contexts do not explain puts the model in doubt.
 
         Args:
-            last: no more rows will come.
+            first: of these rows; None: as the policy has it.
         """
         standing, settings, calibration = self.standing, self._settings, self._calibration
-        first = self._policy.due(standing, last)
+        first = self._policy.due(standing) if first is None else first
         assert first is not None
         recent = (first, standing.row)
-        open_alarm = self._policy.waits(standing, last)
+        open_alarm = self._policy.waits(standing)
         usual = calibration.usual_gap(standing.calibrated, recent[1] - recent[0], standing.share)
         gap = calibration.rows.gap
         before, expected = gap(*recent), gap(*recent, standing.share)
@@ -185,25 +183,25 @@ class RealityGapAnalysis:
         if interval != standing.interval:
             words += f"; the interval is now {interval} rows"
         standing.interval = interval
-        self._event("recalibration", standing.row - 1, words, before=before, after=after)
+        self.event("recalibration", standing.row - 1, words, before=before, after=after)
         standing.doubted = standing.doubted or doubted
         if not standing.doubted and not open_alarm:
             calibration.trust()
         if not doubted and settings.level == "C" and not open_alarm:
-            self._integrate(*recent)
+            self._integration.integrate(standing.distinct, *recent)
         if left <= usual and not open_alarm:
             self._keep_state(*recent)
         self._begin_again(None)
         if standing.doubted and self._may_ask():
             standing.stage = "diagnose"
         else:
-            self._go_on(last, open_alarm)
+            self._go_on(open_alarm)
 
     def postpone(self, why: str) -> None:
         """The diagnosis cannot say anything of the rows so far: it is asked again later."""
-        self._event("diagnosis", self.standing.row - 1, f"not possible yet: {why}")
+        self.event("diagnosis", self.standing.row - 1, f"not possible yet: {why}")
         self.standing.diagnosed = self.standing.row
-        self._go_on(False)
+        self._go_on()
 
     def conclude(self, findings: Findings, effects: Effects, closing: bool) -> None:
         """Take findings over: an extended model becomes a new version of the twin.
@@ -216,17 +214,35 @@ class RealityGapAnalysis:
         standing, state = self.standing, self._exchange.twin.state
         standing.about_change = self.changed
         self._archive.keep_findings(standing.row - 1, findings.to_json())
-        self._event("diagnosis", standing.row - 1, findings.sentence())
+        self.event("diagnosis", standing.row - 1, findings.sentence())
         held, in_force = findings.gap.held_out, state.versions[state.version]
+        change = self._propose if self._settings.adopt == "ask" else self.adopt
         # What is named leaves a doubt until a version stands that has it.
         standing.diagnosed, standing.doubted = standing.row, not effects or effects != in_force
         if effects and effects != in_force and held.gain > 0:
-            self._change_version(effects=effects, gain=held.gain, gain_ci90=held.gain_ci90)
+            change(effects, held.gain, held.gain_ci90)
         elif in_force and not effects:
-            self._change_version(restore=1)
-        self._go_on(closing)
+            change({}, None, None)
+        self._go_on()
         if closing:
             standing.stage = "report"
+
+    def adopt(
+        self, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
+    ) -> None:
+        """Let effects become a version of the twin; none bring back the model as it was given."""
+        if effects:
+            self._change_version(effects=effects, gain=gain, gain_ci90=gain_ci90)
+        else:
+            self._change_version(restore=1)
+
+    def _propose(
+        self, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
+    ) -> None:
+        row, causes = self.standing.row - 1, [effect_words(one) for one in effects.values()]
+        words = f"a model with {', '.join(causes)}" if causes else "the model as it was given"
+        number = self._archive.propose(row, words, effects, gain, gain_ci90)
+        self.event("proposal", row, f"proposal {number}: {words}")
 
     def _detect(self, first: int, end: int) -> None:
         alarm = self.synchrony.alarm(first, end, self._calibration.ledger.residuals)
@@ -234,7 +250,7 @@ class RealityGapAnalysis:
             return
         self.standing.alarm, self.standing.since = alarm.row, alarm.since
         self._calibration.doubt_states(alarm.since)
-        self._event("alarm", alarm.row, alarm.words, alarm.sensors)
+        self.event("alarm", alarm.row, alarm.words, alarm.sensors)
 
     def _recalled(self) -> bool:
         """Whether a state that was kept explains the rows since a change: it is in force then."""
@@ -251,7 +267,7 @@ class RealityGapAnalysis:
             calibration.restore(state.estimator, calibration.sound)
             calibration.follow(*rows)
         after, words = calibration.rows.gap(*rows), state.taken_up(*rows)
-        self._event("recall", standing.row - 1, words, before=before, after=after)
+        self.event("recall", standing.row - 1, words, before=before, after=after)
         self._begin_again(None)
         if state.doubted and self._may_ask():
             standing.diagnosed = None  # it is asked at once
@@ -263,30 +279,6 @@ class RealityGapAnalysis:
         standing = self.standing
         if self._settings.level == "C":
             self._calibration.keep_state(first, end, standing.share, standing.doubted)
-
-    def _integrate(self, first: int, end: int) -> None:
-        state, ledger = self._exchange.twin.state, self._calibration.ledger
-        if not state.latent:
-            return
-        latent, width = self._latent()
-        mean, deviation = self._calibration.rows.moments.before(first)
-        chosen = novel(
-            ledger.gaps(first, end),
-            ledger.contexts[first:end][:, latent],
-            bound=mean + self._settings.repository_z * deviation,
-            stored=self._archive.simulated_contexts(state.version)[:, latent],
-            width=width,
-            distinct=self.standing.distinct,
-        )
-        if chosen:
-            rows = first + np.array(chosen)
-            self._archive.keep_novel(
-                state.version, end - 1, ledger.contexts[rows], ledger.simulated[rows]
-            )
-            others = len(rows) - 1
-            more = f", and those of {others} row{'s' * (others > 1)} more" if others else ""
-            words = f"stored: {self._calibration.told(int(rows[0]))}{more}"
-            self._event("novel context", int(rows[0]), words)
 
     def _refine(self, recent: tuple[int, int]) -> None:
         """Learn from the latest rows; where that makes the gap larger, return to what was."""
@@ -313,10 +305,10 @@ class RealityGapAnalysis:
         recent = (self._under_the_same(change.get("effects", {})), standing.row)
         before, old = calibration.rows.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.sound
-        answer = self._ask_twin(**change)
+        answer = self.ask_twin(**change)
         if not answer.adequate:
             words = f"the update of the model was refused: {'; '.join(answer.missing)}"
-            self._event("version", standing.row - 1, words)
+            self.event("version", standing.row - 1, words)
             return
         self._design()
         calibration.learn_version(recent)
@@ -325,13 +317,13 @@ class RealityGapAnalysis:
         after = calibration.rows.gap(*recent)
         causes = ", ".join(effect_words(one) for one in answer.effects.values())
         words = f"version {answer.version} of the model is in force: {causes or 'as it was given'}"
-        self._event("version", standing.row - 1, words, before=before, after=after)
+        self.event("version", standing.row - 1, words, before=before, after=after)
         if "restore" not in change and after > WORSE * before:
-            self._ask_twin(restore=old)
+            self.ask_twin(restore=old)
             calibration.restore(*kept)
             calibration.follow(*recent)
             words = f"the gap rose: version {old} is in force again"
-            self._event("rollback", standing.row - 1, words, before=after, after=before)
+            self.event("rollback", standing.row - 1, words, before=after, after=before)
         else:
             standing.doubted = standing.doubted and "effects" not in change
             self._keep_state(*recent)
@@ -351,7 +343,8 @@ class RealityGapAnalysis:
         if self._exchange.twin.state.latent:
             self._calibration.supply(self._calibration.ranges, self._settings.design_rows)
 
-    def _ask_twin(self, **change: Any) -> R1:
+    def ask_twin(self, **change: Any) -> R1:
+        """Q1, with a change of the model or without."""
         row = max(0, self.standing.row - 1)
         channels, measured = self._station.channels, self._station.measured
         return self._exchange.ask(Q1(row=row, channels=channels, measured=measured, **change))
@@ -362,10 +355,17 @@ class RealityGapAnalysis:
             self.synchrony.begin_again(first, len(ledger), ledger.residuals)
         self.standing.synchronised = self.standing.row
 
-    def _go_on(self, last: bool, open_alarm: bool = False) -> None:
+    def _choose_next(self) -> None:
+        standing = self.standing
+        if self._policy.due(standing) is not None:
+            standing.stage = "recalibrate"
+        elif standing.doubted and standing.alarm is None and self._may_ask():
+            standing.stage = "diagnose"
+
+    def _go_on(self, open_alarm: bool = False) -> None:
         if not open_alarm:
             self.standing.alarm = self.standing.since = None
-        self.standing.stage = "close" if last else "watch"
+        self.standing.stage = "close" if self.standing.ended else "watch"
 
     def _may_ask(self) -> bool:
         """The diagnosis is slow: it is asked of a new alarm, or when the record has grown."""
@@ -374,11 +374,7 @@ class RealityGapAnalysis:
             return True
         return standing.row >= self._settings.growth * asked
 
-    def _latent(self) -> tuple[list[int], FloatArray]:
-        columns = self._calibration.latent
-        return columns, np.ptp(self._calibration.ranges, axis=1)[columns]
-
-    def _event(
+    def event(
         self,
         kind: Kind,
         row: int,
@@ -387,4 +383,5 @@ class RealityGapAnalysis:
         before: float | None = None,
         after: float | None = None,
     ) -> None:
+        """Keep that something happened to the twin."""
         self._archive.event(Event(kind, row, self._label(row), words, sensors, before, after))

@@ -1,21 +1,28 @@
 """The historical repository as the exchange and the analysis see it."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from rga.arrays import FloatArray
 from rga.model import Model
+from rga.records import Record
+from rga.twin.commands import AnyCommand
+from rga.twin.exclusion import Excluded, without_excluded
+from rga.twin.hardware.interface import Packet, Station
 from rga.twin.history import Event
-from rga.twin.messages.hardware import Packet
 from rga.twin.messages.queries import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256
+from rga.twin.recent_rows import Stretch
 from rga.twin.repository import Run, Transaction
-from rga.twin.row_buffer import RowBuffer
+from rga.twin.restore import stored_rows
 from rga.twin.simulation_model import SimulationModel
-from rga.twin.versions import extended, written
+from rga.twin.versions import Effects, extended, written
+
+Rows = TypeVar("Rows", Packet, Record, Stretch)
 
 
 class Archive:
@@ -24,23 +31,30 @@ class Archive:
     Args:
         run: where the history is kept.
         given: the model as it was given.
+        station: what is mounted on the structure.
         simulation: the simulation model of a version, by its number.
 
     Attributes:
         events: that were kept since this archive was opened.
+        excluded: readings that are not used.
     """
 
     def __init__(
-        self, run: Run, given: Model, simulation: Callable[[int], SimulationModel]
+        self,
+        run: Run,
+        given: Model,
+        station: Station,
+        simulation: Callable[[int], SimulationModel],
     ) -> None:
         self.run = run
-        self._given = given
+        self._given, self._station = given, station
         self._simulation = simulation
         self._step: Transaction | None = None
         self._proposal: Q1 | None = None
         #: by version, as long as no simulation is added
         self._contexts: dict[int, FloatArray] = {}
         self.events: list[Event] = []
+        self.excluded: Sequence[Excluded] = ()
 
     @contextmanager
     def step(self) -> Iterator[None]:
@@ -96,7 +110,7 @@ class Archive:
             return R2(row=query.row, held=held, missing=max(0, query.wanted - held))
         simulated = self.run.simulated(version=query.version)
         parts = [self.run.measured(first, end) for first, end in query.measured]
-        real = np.concatenate([part.readings for part in parts])
+        real = np.concatenate([self._used(part.time, part.readings) for part in parts])
         contexts = np.concatenate([part.contexts for part in parts])
         return R4(
             row=query.row,
@@ -111,11 +125,47 @@ class Archive:
             sha256=sha256(simulated.contexts, simulated.readings, real, contexts),
         )
 
-    def keep_rows(self, first: int, end: int, version: int, ledger: RowBuffer) -> None:
-        """Keep what was inferred and simulated for rows."""
-        rows = slice(first, end)
-        self._open.inferred(first, ledger.contexts[rows], ledger.spread[rows], version)
-        self._open.gaps(first, ledger.simulated[rows], ledger.gaps(first, end), version)
+    def keep_rows(
+        self,
+        first: int,
+        version: int,
+        contexts: FloatArray,
+        spread: FloatArray,
+        simulated: FloatArray,
+        gaps: FloatArray,
+    ) -> None:
+        """Keep what was inferred and simulated for rows from one on, and their gaps."""
+        self._open.inferred(first, contexts, spread, version)
+        self._open.gaps(first, simulated, gaps, version)
+
+    def rows(self, first: int, end: int) -> Stretch:
+        """Rows as they are stored, with what was inferred and simulated last."""
+        return self.used(stored_rows(self.run, self._station, self._given, first, end))
+
+    def used(self, rows: Rows) -> Rows:
+        """Rows without readings that are not used."""
+        return replace(rows, readings=self._used(rows.time, rows.readings))
+
+    def propose(
+        self,
+        row: int,
+        words: str,
+        effects: Effects,
+        gain: float | None,
+        gain_ci90: tuple[float, float] | None,
+    ) -> int:
+        """Keep a change of the model that somebody has to decide about, and give its number."""
+        number = len(self.run.proposals()) + 1
+        self._open.proposal(number, row, words, effects, gain, gain_ci90)
+        return number
+
+    def keep_command(
+        self, command: AnyCommand, body: dict[str, Any], row: int, outcome: str
+    ) -> None:
+        """Keep what somebody asked for, and what came of it."""
+        self._open.command(
+            row, command.kind, body, command.who, command.why, command.given_at, outcome
+        )
 
     def keep_novel(
         self, version: int, row: int, contexts: FloatArray, simulated: FloatArray
@@ -129,7 +179,7 @@ class Archive:
     def simulated_contexts(self, version: int) -> FloatArray:
         """Contexts at which a version has been simulated, float[rows, contexts]."""
         if version not in self._contexts:
-            self._contexts[version] = self.run.simulated(version=version).contexts
+            self._contexts[version] = self.run.simulated_contexts(version)
         return self._contexts[version]
 
     def keep_findings(self, row: int, findings: str) -> None:
@@ -140,14 +190,19 @@ class Archive:
         """Keep what is asked for as of a row."""
         self._open.keep(name, data, row)
 
-    def checkpoint(self, name: str, data: bytes) -> None:
+    def keep_state(self, name: str, data: bytes) -> None:
         """Keep what a run goes on from, in place of what the last step kept."""
-        self._open.checkpoint(name, data)
+        self._open.state(name, data)
 
     def event(self, event: Event) -> None:
         """Keep what happened to the twin."""
         self._open.event(**asdict(event))
         self.events.append(event)
+
+    def _used(self, time: FloatArray, readings: FloatArray) -> FloatArray:
+        station = self._station
+        clock = station.origin + time
+        return without_excluded(readings, clock, station.channels, self.excluded)
 
     def _take_version(self, response: R1) -> None:
         """Keep a model version where it is new, and that it is in force."""

@@ -9,7 +9,7 @@ from rga.records import Record
 
 Kind = Literal[
     "calibration", "alarm", "recall", "recalibration", "novel context", "diagnosis", "version",
-    "rollback",
+    "rollback", "proposal", "command",
 ]  # fmt: skip
 
 

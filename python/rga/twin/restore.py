@@ -11,11 +11,11 @@ from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.digital_twin import TwinState, follow
+from rga.twin.hardware.interface import Station
 from rga.twin.history import Event, History, Version
-from rga.twin.messages.hardware import Packet, Station
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
+from rga.twin.recent_rows import Stretch, carried_on
 from rga.twin.repository import RunView
-from rga.twin.row_buffer import RowBuffer
 from rga.twin.run_state import Standing
 
 
@@ -30,14 +30,14 @@ def replay(view: RunView, channels: tuple[str, ...]) -> TwinState:
         InputError: what the repository keeps is not what the log records.
     """
     state = TwinState()
-    last: R5 | None = None
-    for message in log_of(view):
-        if isinstance(message, R5):
-            last = message
-        elif isinstance(message, Response):
-            state = follow(state, message, channels)
-    if last is None:
+    for message in log_of(view, "R1"):
+        assert isinstance(message, Response)
+        state = follow(state, message, channels)
+    stood = view.last_message("R5")
+    if stood is None:
         return state
+    last = read_message(stood.kind, stood.row, stood.body)
+    assert isinstance(last, R5)
     kept = view.gaps(last.first, last.first + last.rows, last.version).simulated
     if sha256(kept) != last.sha256:
         where = f"rows {last.first} to {last.first + last.rows - 1}"
@@ -47,14 +47,14 @@ def replay(view: RunView, channels: tuple[str, ...]) -> TwinState:
     return follow(state, last.model_copy(update={"simulated": kept}), channels)
 
 
-def log_of(view: RunView) -> list[Query | Response]:
-    """The log of messages, without their arrays.
+def log_of(view: RunView, kind: str | None = None) -> list[Query | Response]:
+    """The log of messages, or of one kind, without their arrays.
 
     Raises:
         InputError: an entry of the log is no message.
     """
     try:
-        return [read_message(one.kind, one.row, one.body) for one in view.messages()]
+        return [read_message(one.kind, one.row, one.body) for one in view.messages(kind)]
     except ValidationError as error:
         raise InputError(
             "an entry of the log is no message", "repository", "begin a new run"
@@ -73,22 +73,40 @@ def standing_of(view: RunView) -> Standing:
     return Standing() if kept is None else Standing.model_validate_json(kept)
 
 
-def ledger_of(
-    view: RunView, channels: int, measured: int, contexts: int, at_the_time: bool = False
-) -> RowBuffer:
-    """The rows of a run, with what was inferred and simulated last, or at the time."""
-    ledger = RowBuffer(channels, measured, contexts)
-    seen = view.measured()
-    rows = len(seen.rows)
-    if not rows:
-        return ledger
-    ledger.append(Packet(0, seen.time, seen.readings, seen.contexts.reshape(rows, measured)))
-    inferred, gaps = view.inferred(at_the_time=at_the_time), view.gaps(at_the_time=at_the_time)
+def stored_rows(
+    view: RunView,
+    station: Station,
+    model: Model,
+    first: int = 0,
+    end: int | None = None,
+    at_the_time: bool = False,
+) -> Stretch:
+    """Rows of a run, with what was inferred and simulated last, or at the time.
+
+    Args:
+        view: the run.
+        station: what is mounted on the structure.
+        model: as it was given.
+        first, end: rows from one to before another; None: all from there on.
+        at_the_time: what was inferred and simulated first.
+    """
+    seen, names = view.measured(first, end), list(model.context)
+    widths = len(station.channels), len(station.measured), len(names)
+    stretch = Stretch.empty(len(seen.rows), *widths)
+    if not len(stretch):
+        return stretch
+    stretch.time[:], stretch.readings[:] = seen.time, seen.readings
+    stretch.measured[:] = seen.contexts.reshape(stretch.measured.shape)
+    inferred = view.inferred(first, end, at_the_time=at_the_time)
+    gaps = view.gaps(first, end, at_the_time=at_the_time)
     if len(inferred.rows):
-        ledger.contexts[inferred.rows] = inferred.contexts
-        ledger.spread[inferred.rows] = inferred.spread
-        ledger.simulated[gaps.rows] = gaps.simulated
-    return ledger
+        stretch.contexts[inferred.rows - first] = inferred.contexts
+        stretch.spread[inferred.rows - first] = inferred.spread
+        stretch.simulated[gaps.rows - first] = gaps.simulated
+    known = stretch.contexts[:, [names.index(name) for name in station.measured]]
+    missing = np.isnan(stretch.measured)
+    stretch.told[:] = carried_on(stretch.told[:0], np.where(missing, known, stretch.measured))
+    return stretch
 
 
 def station_of(view: RunView) -> Station:
@@ -108,9 +126,9 @@ def given_model(view: RunView) -> Model:
     return read_model(json.loads(view.versions()[0].model), "repository")
 
 
-def record_of(view: RunView, first: int = 0) -> Record:
-    """The rows that the repository holds, from one on, as a record."""
-    station, seen = station_of(view), view.measured(first)
+def record_of(view: RunView, first: int = 0, end: int | None = None) -> Record:
+    """The rows that the repository holds, from one to before another, as a record."""
+    station, seen = station_of(view), view.measured(first, end)
     columns = seen.contexts.reshape(len(seen.rows), len(station.measured)).T
     return Record(
         time=seen.time,
@@ -119,7 +137,7 @@ def record_of(view: RunView, first: int = 0) -> Record:
         sensors=station.channels,
         readings=seen.readings.reshape(len(seen.rows), len(station.channels)),
         contexts=dict(zip(station.measured, columns, strict=True)),
-        sha256=view.identity.record_sha256,
+        sha256=view.identity.source,
     )
 
 
@@ -127,14 +145,11 @@ def history_of(view: RunView) -> History:
     """What a run left behind so far, or had left behind as of a time."""
     standing, station, model = standing_of(view), station_of(view), given_model(view)
     record = record_of(view)
-    ledger = ledger_of(
-        view,
-        len(station.channels),
-        len(station.measured),
-        len(model.context),
-        at_the_time=True,
-    )
-    ledger.leave_out(station.channels, standing.stuck)
+    rows = stored_rows(view, station, model, at_the_time=True)
+    stuck = np.array([name in standing.stuck for name in station.channels], dtype=np.bool_)
+    gaps = (rows.readings - rows.simulated) ** 2
+    gaps[:, stuck] = np.nan
+    told = rows.readings[: standing.calibrated or len(rows)]
     state = replay(view, station.channels)
     latent = [list(model.context).index(name) for name in state.latent]
     stated = [model.sensors[name].noise for name in station.channels]
@@ -144,11 +159,11 @@ def history_of(view: RunView) -> History:
         level=json.loads(view.identity.settings)["level"],
         calibration_rows=standing.calibrated,
         contexts=state.latent,
-        inferred=ledger.contexts[:, latent],
-        spread=ledger.spread[:, latent],
-        simulated=ledger.simulated,
-        gaps=ledger.gaps(0, len(ledger)),
-        noise=noise_of(stated, ledger, standing.calibrated or len(ledger)),
+        inferred=rows.contexts[:, latent],
+        spread=rows.spread[:, latent],
+        simulated=rows.simulated,
+        gaps=gaps,
+        noise=noise_of(stated, told, stuck),
         events=view.events(),
         versions=_versions(view, record, state),
         growth=_growth(view),

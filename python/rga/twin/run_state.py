@@ -4,6 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from rga.twin.exclusion import Excluded
 from rga.twin.settings import Inference
 
 Stage = Literal[
@@ -35,6 +36,10 @@ class Standing(BaseModel):
         diagnosed: rows of the last diagnosis.
         changed: rows when the version last changed.
         about_change: whether the last diagnosis asked what has changed.
+        ended: whether no more rows will come.
+        excluded: readings that are not used: a sensor, and the clock from and to which [s]; None:
+            it goes on.
+        commanded: number of the last command that was taken from the inbox.
         doubted: whether a recalibration did not bring the gap down and nothing has explained it.
     """
 
@@ -58,4 +63,7 @@ class Standing(BaseModel):
     diagnosed: int | None = None
     changed: int = 0
     about_change: bool = False
+    ended: bool = False
+    excluded: tuple[Excluded, ...] = ()
+    commanded: int = 0
     doubted: bool = False

@@ -14,33 +14,30 @@ from rga.records import Record
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
-from rga.twin.calibration.estimator import ContextEstimator, Learn
-from rga.twin.calibration.learning import read
-from rga.twin.calibration.learning import written as stored
-from rga.twin.calibration.states import State
+from rga.twin.calibration.estimator import Learn
 from rga.twin.changes import diagnose_change, in_doubt
+from rga.twin.checkpoint import Checkpoint
+from rga.twin.command_desk import CommandDesk
+from rga.twin.commands import AnyCommand, Rollback
 from rga.twin.digital_twin import DigitalTwin
+from rga.twin.hardware.interface import HardwareInterface
+from rga.twin.hardware.recorded import Recorded
+from rga.twin.hardware.stored import Stored
 from rga.twin.history import Event, History
-from rga.twin.messages.hardware import HardwareInterface
-from rga.twin.messages.middleware import InProcess
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.repository import Identity, Repository, Run, RunView
-from rga.twin.restore import history_of, ledger_of, replay, standing_of
+from rga.twin.repository import Identity, Repository, Run
+from rga.twin.restore import given_model, history_of, record_of
 from rga.twin.settings import Settings
 from rga.twin.versions import beyond, written
 
 Progress = Callable[[str, float], None]
-#: estimators that the calibration holds, by the names under which they are kept
-ESTIMATORS = ("learned", "sound", "given")
-#: name under which a state is kept, by its number
-STATE = "state {}"
 WRITTEN = ("findings.json", "model.json", "report.html")
 
 
 @contextmanager
 def taken_up(
     model: Model,
-    record: Record,
+    record: Record | HardwareInterface,
     place: str | Path,
     settings: Settings,
     seed: int,
@@ -51,7 +48,7 @@ def taken_up(
 
     Args:
         model: as it was given.
-        record: what was measured.
+        record: what was measured, or where rows come from.
         place: of the repository: a file, a directory that holds `twin.sqlite`, or a URL.
         settings: level of integration and the rest.
         seed: of everything random.
@@ -62,9 +59,28 @@ def taken_up(
         InputError: the repository cannot be used.
     """
     digest = model.sha256 or written(model)[1]
-    identity = Identity(digest, record.sha256, seed, settings.model_dump_json())
+    hardware = Recorded(record, model) if isinstance(record, Record) else record
+    identity = Identity(digest, hardware.source, seed, settings.model_dump_json())
     with threadpool_limits(1), Repository.open(place) as kept:
-        yield Running(model, record, kept.run(identity), settings, seed, progress, learn)
+        yield Running(model, hardware, kept.run(identity), settings, seed, progress, learn)
+
+
+@contextmanager
+def reopened(place: str | Path) -> Iterator["Running"]:
+    """The run last acted on in a repository, from what it holds alone, to be asked for something.
+
+    Args:
+        place: of the repository: a file, a directory that holds `twin.sqlite`, or a URL.
+
+    Raises:
+        InputError: nothing has run there, or the repository cannot be used.
+    """
+    with Repository.open(place, read_only=True) as repository:
+        identity = repository.latest().identity
+    with threadpool_limits(1), Repository.open(place) as repository:
+        kept = repository.run(identity)
+        hardware, settings = Stored(kept), Settings.model_validate_json(identity.settings)
+        yield Running(given_model(kept), hardware, kept, settings, identity.seed, None)
 
 
 class Running:
@@ -72,7 +88,7 @@ class Running:
 
     Args:
         model: as it was given.
-        record: what was measured.
+        hardware: where rows come from.
         kept: the run in the repository.
         settings: level of integration and the rest.
         seed: of everything random.
@@ -86,20 +102,19 @@ class Running:
     def __init__(
         self,
         model: Model,
-        record: Record,
+        hardware: HardwareInterface,
         kept: Run,
         settings: Settings,
         seed: int,
         progress: Progress | None,
         learn: Learn | None = None,
     ) -> None:
-        self._model, self._record, self._settings, self._seed = model, record, settings, seed
+        self._model, self._settings, self._seed = model, settings, seed
         self._progress = progress or (lambda stage, done: None)
-        self._hardware = HardwareInterface(record, model)
-        self._pace = settings.pace(self._hardware.rows)
-        station = self._hardware.station
+        self._hardware, station = hardware, hardware.station
+        self._pace = settings.pace(hardware.rows if hardware.ended else None)
         self._twin = DigitalTwin(model, station)
-        self._archive = Archive(kept, model, self._twin.simulation)
+        self._archive = Archive(kept, model, station, self._twin.simulation)
         exchange = QueryResponse(self._twin, self._archive)
         self.calibration = ContextCapture(
             exchange, self._archive, station, model, settings, seed, self._progress, learn
@@ -107,16 +122,16 @@ class Running:
         self.analysis = RealityGapAnalysis(
             exchange, self._archive, station, self.calibration, settings, self._pace, self._label
         )
-        self._middleware = InProcess()
-        self._middleware.subscribe(self._archive.receive)
-        self._middleware.subscribe(self.calibration.receive)
         self._closing: Findings | None = None
         self.resumed_at: int | None = None
-        self._kept: dict[str, ContextEstimator | None] = {}
-        self._states: list[State] = []
-        self._stale = False
-        self._own = learn is not None
-        self._recall()
+        self._checkpoint = Checkpoint(
+            self._archive, self._twin, self.analysis, self.calibration, model, learn is not None
+        )
+        self._desk = CommandDesk(
+            self.analysis, self._archive, self.calibration, station.channels, self._pace
+        )
+        if self._checkpoint.take_up():
+            self.resumed_at = self.row
 
     @property
     def stage(self) -> str:
@@ -130,8 +145,18 @@ class Running:
 
     @property
     def rows(self) -> int:
-        """Rows of the record."""
+        """Rows that have arrived."""
         return self._hardware.rows
+
+    @property
+    def due(self) -> bool:
+        """Whether there is something to do: a packet that is full, or work on rows that are there.
+
+        When rows arrive therefore never changes what comes of them.
+        """
+        if self._checkpoint.stale or self.stage not in ("gather", "watch"):
+            return self.stage not in ("report", "done")
+        return self._hardware.ended or self._waiting >= self._wanted
 
     @property
     def version(self) -> int:
@@ -157,24 +182,61 @@ class Running:
         """Do what is next, and have it acknowledged by the repository."""
         if self.stage == "initialise":
             self._initialise()
-        elif self._stale and self.stage not in ("gather", "calibrate", "report", "done"):
+        elif self._checkpoint.stale and self.stage not in ("gather", "calibrate", "report", "done"):
             with self._archive.step():
                 self.analysis.take_up_version()
-                self._stale = False
-                self._checkpoint()
+                self._checkpoint.stale = False
+                self._checkpoint.keep()
         elif self.stage in ("diagnose", "close"):
             self._diagnose(self.stage == "close")
         else:
             with self._archive.step():
                 self._advance()
-                self._checkpoint()
-            self._progress("stream", self.row / self.rows)
+                self._checkpoint.keep()
+            self._hardware.taken(len(self.calibration.ledger))
+            self._progress("stream", self.row / max(1, self.rows))
 
     def postpone(self, why: str) -> None:
         """Go on without the diagnosis that is next; it is asked for again later."""
         with self._archive.step():
             self.analysis.postpone(why)
-            self._checkpoint()
+            self._checkpoint.keep()
+
+    def carry_out(self, command: AnyCommand, number: int | None = None) -> str:
+        """Do what somebody asks for, as a step of its own.
+
+        Args:
+            command: what is asked.
+            number: of it in an inbox, if it comes from there.
+
+        Returns:
+            What came of it, in words.
+
+        Raises:
+            InputError: it cannot be done; the run is to be taken up anew.
+        """
+        with self._archive.step():
+            outcome = self._desk.carry_out(command)
+            if isinstance(command, Rollback):
+                self._checkpoint.stale = True
+            self._note(number)
+        return outcome
+
+    def refuse(self, command: AnyCommand, number: int, why: str) -> None:
+        """Write down that a command of an inbox could not be carried out."""
+        with self._archive.step():
+            self._desk.refuse(command, why)
+            self._note(number)
+
+    @property
+    def commanded(self) -> int:
+        """Number of the last command that was taken from an inbox."""
+        return self.analysis.standing.commanded
+
+    def _note(self, number: int | None) -> None:
+        if number is not None:
+            self.analysis.standing.commanded = number
+        self._checkpoint.keep()
 
     def findings(self) -> Findings:
         """Findings of the closing diagnosis, with their account."""
@@ -201,13 +263,13 @@ class Running:
         """Note that the files are written."""
         self.analysis.standing.stage = "done"
         with self._archive.step():
-            self._checkpoint()
+            self._checkpoint.keep()
 
     def _initialise(self) -> None:
         with self._archive.step():
             answer = self.analysis.initialise()
             self._archive.keep("station", self._hardware.station.to_json().encode(), 0)
-            self._checkpoint()
+            self._checkpoint.keep()
         if not answer.adequate:
             raise InputError(
                 f"the model cannot represent what a calibration needs: it lacks "
@@ -220,20 +282,44 @@ class Running:
         analysis, stage = self.analysis, self.stage
         if stage == "calibrate":
             analysis.calibrate()
+            self._checkpoint.stale = False
             return
         if stage == "recalibrate":
-            analysis.recalibrate(self._all_arrived)
+            analysis.recalibrate()
             return
-        first, rows = len(self.calibration.ledger), self._pace.packet
-        if stage == "gather":
-            rows = min(rows, self._pace.calibration_rows - first)
-        packet = self._hardware.packet(first, rows)
-        if len(packet.time):
-            self._middleware.publish(packet)
+        rows = min(self._wanted, self._waiting)
+        if rows:
+            packet = self._hardware.packet(len(self.calibration.ledger), rows)
+            self._archive.receive(packet)
+            self.calibration.receive(self._archive.used(packet))
         if stage == "gather":
             analysis.gather()
+            self._check_calibration(rows)
+        elif rows:
+            analysis.watch()
         else:
-            analysis.watch(self._all_arrived)
+            analysis.end()
+
+    @property
+    def _wanted(self) -> int:
+        """Rows of the next packet, where it is full."""
+        if self.stage != "gather":
+            return self._pace.packet
+        return min(self._pace.packet, self._pace.calibration_rows - len(self.calibration.ledger))
+
+    @property
+    def _waiting(self) -> int:
+        """Rows that have arrived and were not taken in."""
+        return self._hardware.rows - len(self.calibration.ledger)
+
+    def _check_calibration(self, added: int) -> None:
+        if self.stage == "gather" and not added:
+            raise InputError(
+                f"the calibration wants {self._pace.calibration_rows} rows, and no more than "
+                f"{len(self.calibration.ledger)} have come",
+                "setting calibration_rows",
+                "give fewer, or more rows",
+            )
 
     def _diagnose(self, closing: bool) -> None:
         try:
@@ -248,11 +334,11 @@ class Running:
         effects = beyond(self._model, findings.account.extended)
         with self._archive.step():
             self.analysis.conclude(findings, effects, closing)
-            self._checkpoint()
+            self._checkpoint.keep()
 
     def _ask_diagnosis(self) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along."""
-        record, given = self._record.rows(slice(0, self.row)), self.calibration.given
+        record, given = self._record(self.row), self.calibration.given
         model, criteria = self._model, self._settings.criteria
         changed = self.analysis.changed
         if changed and given is not None and given.found is not None:
@@ -262,7 +348,7 @@ class Running:
                 record,
                 given.found,
                 given.correction,
-                since=record.origin + float(record.time[self.analysis.standing.calibrated - 1]),
+                since=self._calibrated_until,
                 criteria=criteria,
                 seed=self._seed,
                 progress=self._progress,
@@ -274,74 +360,22 @@ class Running:
         )
         return in_doubt(findings) if changed and not findings.causes else findings
 
+    def _record(self, rows: int) -> Record:
+        """The first so many rows."""
+        if isinstance(self._hardware, Recorded):
+            record = self._hardware.record.rows(slice(0, rows))
+        else:
+            record = record_of(self._archive.run, end=rows)
+        return self._archive.used(record)
+
     @property
-    def _all_arrived(self) -> bool:
-        return len(self.calibration.ledger) >= self._hardware.rows
+    def _calibrated_until(self) -> float:
+        """Clock of the last row of the first calibration [s]."""
+        calibrated = self.analysis.standing.calibrated
+        return float(self.calibration.rows.clock(calibrated - 1, calibrated)[0])
 
     def _label(self, row: int) -> str | float:
-        return self._record.time_label(float(self._record.time[row]))
-
-    def _checkpoint(self) -> None:
-        standing, row = self.analysis.standing, max(0, self.row - 1)
-        calibration = self.calibration
-        standing.draws, standing.inference = calibration.draws, calibration.inference
-        standing.optimism, standing.state = calibration.optimism, calibration.state
-        standing.learned_under, standing.own = self._twin.state.version, self._own
-        self._archive.keep("standing", standing.model_dump_json().encode(), row)
-        self._archive.checkpoint("synchrony", self.analysis.synchrony.to_bytes())
-        for name in ESTIMATORS:
-            estimator: ContextEstimator | None = getattr(calibration, name)
-            if estimator is not None and estimator is not self._kept.get(name):
-                self._archive.keep(name, stored(estimator), row)
-                self._kept[name] = estimator
-        for number, state in enumerate(calibration.states):
-            if state not in self._states[number : number + 1]:
-                self._archive.keep(STATE.format(number), state.to_bytes(), row)
-        self._states = calibration.states.copy()
-
-    def _recall(self) -> None:
-        """Go on where the repository says that the run stands."""
-        view, station = self._archive.run, self._hardware.station
-        if view.steps == 0:
-            return
-        self.analysis.standing = standing_of(view)
-        self._check_learner()
-        self.resumed_at = self.row
-        self._twin.state = replay(view, station.channels)
-        synchrony = view.checkpoint("synchrony")
-        assert synchrony is not None  # every step keeps it
-        self.analysis.synchrony.restore(synchrony)
-        ledger = ledger_of(
-            view, len(station.channels), len(station.measured), len(self._model.context)
-        )
-        self._kept = dict.fromkeys(ESTIMATORS)
-        # Another version may have been put in force by hand.
-        self._stale = self.analysis.standing.learned_under != self._twin.state.version
-        if not self._own:
-            self._read_estimators(view)
-        learned, sound, given = (self._kept[name] for name in ESTIMATORS)
-        self.calibration.take_up(
-            ledger, self.analysis.standing, learned, sound, given, self._states.copy()
-        )
-
-    def _read_estimators(self, view: RunView) -> None:
-        """Those that infer, and those of the states that were kept."""
-        for name in ("given",) if self._stale else ESTIMATORS:
-            content, version = view.kept(name), 1 if name == "given" else self.version
-            if content is not None:
-                self._kept[name] = read(content, self._twin.simulation(version))
-        while (content := view.kept(STATE.format(len(self._states)))) is not None:
-            self._states.append(State.from_bytes(content, self._twin.simulation))
-        number = self.analysis.standing.state
-        if number is not None and not self._stale:
-            self._kept["learned"] = self._states[number].estimator
-
-    def _check_learner(self) -> None:
-        """A run is resumed by what learned in it, which the repository keeps of rga's own alone."""
-        own, place = self.analysis.standing.own, f"model {self._model.name!r}"
-        if own != self._own:
-            whose = "the caller's own estimator" if own else "an estimator of rga"
-            raise InputError(f"{whose} learned in this run", place, "begin a new run")
-        if own and self.stage != "done":
-            problem = "a run by the caller's own estimator cannot be resumed"
-            raise InputError(problem, place, "begin a new run")
+        if not len(self.calibration.ledger):
+            return self._hardware.station.time_label(0.0)
+        time = self.calibration.ledger.rows(row, row + 1).time
+        return self._hardware.station.time_label(float(time[0]))

@@ -46,6 +46,8 @@ class Settings(BaseModel):
             stretches of as many rows, drawn from that calibration [-].
         growth: the diagnosis is asked again of a change that is in doubt when the record has grown
             by this factor; of a new alarm it is asked at once.
+        adopt: what a diagnosis names becomes a version of the twin at once (`auto`), or a proposal
+            that somebody accepts or rejects (`ask`).
         design_rows: simulations of the design phase.
         repository_z: width of the bound of T2 on the gap, in standard deviations.
         distinct: least distance of a novel context from all stored ones, in shares of the ranges
@@ -69,6 +71,7 @@ class Settings(BaseModel):
     settle: Count | None = None
     usual: Annotated[float, Field(gt=0.5, lt=1), NO_BOOLEAN] = 0.99
     growth: Annotated[float, Field(gt=1, allow_inf_nan=False), NO_BOOLEAN] = 2.0
+    adopt: Literal["ask", "auto"] = "auto"
     design_rows: Annotated[int, Field(ge=128, le=10_000_000), NO_BOOLEAN] = 4096
     repository_z: Annotated[float, Field(gt=0, le=1e6), NO_BOOLEAN] = 4.0
     distinct: Annotated[float, Field(gt=0), NO_BOOLEAN] | None = None
@@ -85,15 +88,20 @@ class Settings(BaseModel):
             raise ValueError("policy 'event' has no interval: choose time, hybrid or adaptive")
         return self
 
-    def pace(self, rows: int) -> "Pace":
+    def pace(self, rows: int | None) -> "Pace":
         """What depends on the length of a record, in rows.
 
+        Args:
+            rows: of the record; None: it does not end, and these settings have to state them.
+
         Raises:
-            InputError: the calibration wants more rows than there are.
+            InputError: the calibration wants more rows than there are, or they are not stated.
 
         >>> Settings().pace(480)
         Pace(calibration_rows=160, packet=20, settle=40, interval=80)
         """
+        if rows is None:
+            return self._stated_pace()
         wanted = self.calibration_rows or max(1, min(200, rows // 3))
         if wanted > rows:
             raise InputError(
@@ -107,6 +115,20 @@ class Settings(BaseModel):
             self.settle or max(1, rows // 12),
             self.interval or max(1, rows // 6),
         )
+
+    def _stated_pace(self) -> "Pace":
+        names = ["calibration_rows", "packet", "settle"]
+        if self.policy != "event":
+            names.append("interval")
+        absent = [name for name in names if getattr(self, name) is None]
+        if absent:
+            raise InputError(
+                "rows that go on arriving have no share to take",
+                f"settings {', '.join(absent)}",
+                "state each of them, in rows",
+            )
+        calibration, packet, settle = self.calibration_rows, self.packet, self.settle
+        return Pace(calibration or 1, packet or 1, settle or 1, self.interval or 1)
 
 
 def as_settings(given: Settings | str | Path | None) -> Settings:

@@ -8,7 +8,7 @@ from rga.inference.networks.design_samples import design
 from rga.model import Model
 from rga.simulation import Simulator
 from rga.twin.correction import Correction
-from rga.twin.messages.hardware import Station
+from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q3, Q5, R3, R5, sha256
 
 

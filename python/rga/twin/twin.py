@@ -1,6 +1,7 @@
 """A twin as its repository holds it."""
 
 from collections.abc import Mapping
+from getpass import getuser
 from pathlib import Path
 from typing import Self
 
@@ -12,12 +13,10 @@ from rga.model import Effect, Model
 from rga.model.effect import seconds
 from rga.records import Record
 from rga.simulation.whatif import WhatIf, whatif
-from rga.twin.archive import Archive
-from rga.twin.digital_twin import DigitalTwin, TwinState
-from rga.twin.history import Event, History
+from rga.twin.commands import AnyCommand, Rollback
+from rga.twin.digital_twin import TwinState
+from rga.twin.history import History
 from rga.twin.messages.log_text import retold
-from rga.twin.messages.queries import Q1
-from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.repository import Repository, RunView
 from rga.twin.restore import (
     given_model,
@@ -28,6 +27,7 @@ from rga.twin.restore import (
     station_of,
     story_of,
 )
+from rga.twin.runner import reopened
 from rga.twin.settings import Inference
 from rga.twin.status import SHOWN, Status
 from rga.twin.versions import extended
@@ -61,7 +61,7 @@ class Twin:
         """
         repository = Repository.open(place, read_only=True)
         try:
-            return cls(_latest(repository, place), place, repository)
+            return cls(repository.latest(), place, repository)
         except BaseException:
             repository.close()
             raise
@@ -191,7 +191,7 @@ class Twin:
         Raises:
             InputError: a setting is no context variable, or an effect does not fit.
         """
-        record = record_of(self._view)
+        record = record_of(self._view, max(0, self._view.rows - 1))
         now = {"time": float(record.origin + record.time[-1])} if len(record) else {}
         answer = whatif(
             self.corrected, settings, add, base={**self.context, **now}, spread=self.spread
@@ -217,41 +217,34 @@ class Twin:
         return float(np.linalg.norm(steps, axis=1).min())
 
 
-def _latest(repository: Repository, place: str | Path) -> RunView:
-    runs = repository.runs()
-    if not runs:
-        raise InputError("nothing has run here", str(place), "begin with rga run")
-    return max(runs, key=lambda view: view.acknowledged_at)
+def carry_out(place: str | Path, command: AnyCommand) -> str:
+    """Do what somebody asks a twin for that nothing else is playing.
+
+    Args:
+        place: directory of a run, its file, or a database by URL.
+        command: of `rga.twin`: Accept, Reject, Rollback, Exclude, Recalibrate or Note.
+
+    Returns:
+        What came of it, in words.
+
+    Raises:
+        InputError: it cannot be done, or the repository is in use.
+    """
+    with reopened(place) as running:
+        return running.carry_out(command)
 
 
-def rollback(place: str | Path, version: int) -> Twin:
+def rollback(place: str | Path, version: int, who: str | None = None, why: str = "") -> Twin:
     """Put an earlier model version in force again: a query Q1, and the twin's response.
+
+    Args:
+        place: as of `carry_out`.
+        version: its number.
+        who: asks for it; None: the user of this machine.
+        why: in words.
 
     Raises:
         InputError: there is no such version, or the repository is in use.
     """
-    with Repository.open(place, read_only=True) as repository:
-        identity = _latest(repository, place).identity
-    with Repository.open(place) as repository:
-        kept = repository.run(identity)
-        station, given = station_of(kept), given_model(kept)
-        digital = DigitalTwin(given, station)
-        digital.state = replay(kept, station.channels)
-        archive = Archive(kept, given, digital.simulation)
-        row = max(0, len(kept.measured().rows) - 1)
-        record = record_of(kept)
-        with archive.step():
-            answer = QueryResponse(digital, archive).ask(
-                Q1(
-                    row=row,
-                    channels=station.channels,
-                    measured=station.measured,
-                    restore=version,
-                )
-            )
-            if not answer.adequate:
-                raise InputError("; ".join(answer.missing), str(place), "rga replay lists them")
-            words = f"version {version} is in force again, as asked"
-            label = record.time_label(float(record.time[row]) if len(record) else 0.0)
-            archive.event(Event("rollback", row, label, words))
+    carry_out(place, Rollback(who=who or getuser(), why=why, version=version))
     return Twin.open(place)

@@ -10,7 +10,7 @@ from rga.inference import Rows, TrainingSettings
 from rga.inference.networks.design_samples import design
 from rga.model import Model, read_model
 from rga.twin.calibration.lesson import Lesson
-from rga.twin.messages.hardware import Station
+from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import R4, sha256
 from rga.twin.simulation_model import SimulationModel
 from rga_bench.contexts.context_regime import Contexts

@@ -21,7 +21,7 @@ from rga.twin.calibration.joint_posterior import JointEstimator, changes, why_no
 from rga.twin.calibration.learning import learn, read, written
 from rga.twin.calibration.lesson import Lesson
 from rga.twin.calibration.networks import NetworkEstimator
-from rga.twin.messages.hardware import HardwareInterface
+from rga.twin.hardware.recorded import Recorded
 from rga.twin.messages.queries import Q3, R4, Box, sha256
 from rga.twin.simulation_model import SimulationModel
 
@@ -41,7 +41,7 @@ class Drawn(NamedTuple):
     def lesson(self, rows: slice = slice(0, 40), model: Model | None = None) -> Lesson:
         """What an estimator learns from."""
         given = model or self.model
-        station = HardwareInterface(self.record, given).station
+        station = Recorded(self.record, given).station
         simulation = SimulationModel(given, station)
         low, high = np.array([one.range for one in given.context.values()]).T.tolist()
         query = Q3(
@@ -116,7 +116,7 @@ def test_packets_of_any_size_give_the_same_bits(
 @pytest.mark.parametrize("inference", ["joint", "networks", "amortised"])
 def test_what_is_stored_infers_the_same(drawn: Drawn, inference: Any) -> None:
     estimator = learn(inference, drawn.lesson())
-    station = HardwareInterface(drawn.record, drawn.model).station
+    station = Recorded(drawn.record, drawn.model).station
     simulation = SimulationModel(drawn.model, station, estimator.correction)
     again = read(written(estimator), simulation)
     assert again.correction == estimator.correction
@@ -127,7 +127,7 @@ def test_what_is_stored_infers_the_same(drawn: Drawn, inference: Any) -> None:
 
 @pytest.mark.parametrize("content", [b"", b"joint\nPK", b"joint\n\x80\x04N.", b"tree\n{}"])
 def test_bytes_that_hold_no_estimator_are_refused(drawn: Drawn, content: bytes) -> None:
-    station = HardwareInterface(drawn.record, drawn.model).station
+    station = Recorded(drawn.record, drawn.model).station
     with pytest.raises(InputError, match="these bytes hold no"):
         read(content, SimulationModel(drawn.model, station))
 
@@ -135,7 +135,7 @@ def test_bytes_that_hold_no_estimator_are_refused(drawn: Drawn, content: bytes) 
 def test_the_twin_is_corrected_as_the_joint_posterior_has_it(
     drawn: Drawn, learned: JointEstimator
 ) -> None:
-    station = HardwareInterface(drawn.record, drawn.model).station
+    station = Recorded(drawn.record, drawn.model).station
     simulation = SimulationModel(drawn.model, station, learned.correction)
     contexts, found = drawn.contexts[:5], learned.found
     expected = found.twin.simulate(contexts)
@@ -327,7 +327,7 @@ def test_a_zero_of_the_logger_is_that_of_the_model_as_given(
 ) -> None:
     """Whatever a calibration corrects, the zero that it has put back stays."""
     station = replace(
-        HardwareInterface(drawn.record, drawn.model).station,
+        Recorded(drawn.record, drawn.model).station,
         zero={"time": np.zeros(3), "temperature": np.full(3, 12.0)},
     )
     given = SimulationModel(drawn.model, station)

@@ -15,8 +15,8 @@ from rga.records import Record
 from rga.twin import Settings
 from rga.twin.calibration.states import State
 from rga.twin.changes import diagnose_change
+from rga.twin.hardware.recorded import Recorded
 from rga.twin.history import Event
-from rga.twin.messages.hardware import HardwareInterface
 from rga.twin.runner import Running, taken_up
 from rga.twin.simulation_model import SimulationModel
 
@@ -184,7 +184,7 @@ def test_a_state_of_networks_is_what_it_was(
 ) -> None:
     model, record, settings = sound
     chosen = settings | PLAYED | {"level": "C", "inference": "amortised"}
-    given_model = SimulationModel(model, HardwareInterface(record, model).station)
+    given_model = SimulationModel(model, Recorded(record, model).station)
     with taken_up(
         model, off(model, record), tmp_path / "twin.sqlite", Settings.model_validate(chosen), 0
     ) as running:

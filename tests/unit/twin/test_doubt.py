@@ -11,7 +11,7 @@ from rga.errors import InputError
 from rga.findings import Findings
 from rga.records import Record
 from rga.twin.changes import in_doubt
-from rga.twin.messages.hardware import HardwareInterface
+from rga.twin.hardware.recorded import Recorded
 
 DAMAGE = {"kind": "section_loss", "group": "bottom", "loss": 0.2}
 
@@ -46,4 +46,4 @@ def record(*sensors: str) -> Record:
 @pytest.mark.parametrize("sensors", [(), ("of another bridge",)])
 def test_a_record_of_another_structure_is_refused(sensors: tuple[str, ...]) -> None:
     with pytest.raises(InputError, match=r"no sensor"):
-        HardwareInterface(record(*sensors), crossed_truss(both_ways=False))
+        Recorded(record(*sensors), crossed_truss(both_ways=False))

@@ -14,10 +14,11 @@ from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.expectation import against_expected, scatter_share
 from rga.twin.digital_twin import DigitalTwin, TwinState, follow
-from rga.twin.messages.hardware import HardwareInterface, Packet, Station
+from rga.twin.hardware.interface import Packet, Station
+from rga.twin.hardware.recorded import Recorded
 from rga.twin.messages.queries import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
 from rga.twin.novelty import novel, spacing
-from rga.twin.row_buffer import RowBuffer
+from rga.twin.recent_rows import KEPT, RecentRows, Stretch
 from rga.twin.settings import Settings
 from rga.twin.sync.window_rule import WindowRule
 from rga.twin.versions import first_row_under
@@ -30,7 +31,7 @@ def record(model: dict[str, Any], rows: int = 5, **more: Any) -> Record:
 
 
 def station(model: dict[str, Any], **more: Any) -> Station:
-    return HardwareInterface(record(model, **more), read_model(model, "test")).station
+    return Recorded(record(model, **more), read_model(model, "test")).station
 
 
 def first_question(place: Station, **more: Any) -> Q1:
@@ -243,11 +244,10 @@ def test_noise_is_estimated_where_it_is_not_stated() -> None:
     slow = np.sin(np.arange(4000) / 300)[:, None] * [10.0, 10.0]
     readings = slow + draw.normal(0, [0.2, 0.2], (4000, 2))
     readings[7, 1] = np.nan
-    ledger = RowBuffer(2, 0, 0)
-    ledger.append(Packet(0, np.arange(4000.0), readings, np.zeros((4000, 0))))
-    np.testing.assert_allclose(noise_of([0.5, None], ledger, 4000), [0.5, 0.2], rtol=0.05)
-    ledger.leave_out(("sound", "stuck"), ("stuck",))
-    np.testing.assert_array_equal(noise_of([0.5, 0.1], ledger, 4000), [0.5, np.nan])
+    both = np.array([False, False])
+    np.testing.assert_allclose(noise_of([0.5, None], readings, both), [0.5, 0.2], rtol=0.05)
+    stuck = np.array([False, True])
+    np.testing.assert_array_equal(noise_of([0.5, 0.1], readings, stuck), [0.5, np.nan])
 
 
 def test_missing_contexts_are_carried_on_from_packet_to_packet() -> None:
@@ -255,27 +255,52 @@ def test_missing_contexts_are_carried_on_from_packet_to_packet() -> None:
     measured = np.array([[nan, 1.0], [5.0, nan], [nan, 3.0], [nan, nan], [6.0, nan]])
     told = [[nan, 1], [5, 1], [5, 3], [5, 3], [6, 3]]
     for cuts in ([], [1], [2, 3], [1, 2, 3, 4]):
-        ledger = RowBuffer(1, 2, 2)
+        ledger = RecentRows(1, 2, 2, nothing_stored)
         for first, end in pairwise([0, *cuts, 5]):
             time = np.arange(float(first), end)
             ledger.append(Packet(first, time, np.zeros((end - first, 1)), measured[first:end]))
-        np.testing.assert_array_equal(ledger.told, told)
-        np.testing.assert_array_equal(ledger.measured, measured)
+        np.testing.assert_array_equal(ledger.rows(0, 5).told, told)
+        np.testing.assert_array_equal(ledger.rows(0, 5).measured, measured)
 
 
-def test_rows_stay_as_the_buffer_grows() -> None:
-    readings = np.random.default_rng(1).random((1000, 3))
-    ledger = RowBuffer(3, 0, 1)
-    for first in range(0, 1000, 7):
-        part = readings[first : first + 7]
-        time = first + np.arange(float(len(part)))
-        ledger.append(Packet(first, time, part, np.zeros((len(part), 0))))
-        ledger.simulated[first:] = 0.5
-        ledger.contexts[first:] = first
-    np.testing.assert_array_equal(ledger.time, np.arange(1000.0))
-    np.testing.assert_array_equal(ledger.gaps(100, 1000), (readings[100:] - 0.5) ** 2)
-    np.testing.assert_array_equal(ledger.contexts[:, 0], np.arange(1000) // 7 * 7)
-    assert np.isnan(ledger.spread).all()
+def nothing_stored(first: int, end: int) -> Stretch:
+    raise AssertionError(f"rows {first} to {end} are in memory")
+
+
+@pytest.mark.parametrize("packet", [7, 600, 5000])
+def test_rows_are_the_same_in_memory_and_where_they_are_stored(packet: int) -> None:
+    count = 5000
+    draw = np.random.default_rng(1)
+    whole = Stretch.empty(count, 3, 1, 2)
+    whole.time[:], whole.readings[:] = np.arange(count), draw.random((count, 3))
+    whole.measured[:] = whole.told[:] = draw.random((count, 1))
+    asked: list[tuple[int, int]] = []
+
+    def stored(first: int, end: int) -> Stretch:
+        asked.append((first, end))
+        return whole[first:end]
+
+    ledger = RecentRows(3, 1, 2, stored)
+    for first in range(0, count, packet):
+        part = whole[first : first + packet]
+        ledger.append(Packet(first, part.time, part.readings, part.measured))
+        part.contexts[:], part.spread[:], part.simulated[:] = first, 0.1, 0.5
+        ledger.followed(first, part.contexts, part.spread, part.simulated)
+    assert not asked
+    for first, end in ((0, count), (10, 20), (count - KEPT, count), (100, count - 5), (3, 3)):
+        rows, expected = ledger.rows(first, end), whole[first:end]
+        for name in vars(expected):
+            np.testing.assert_array_equal(getattr(rows, name), getattr(expected, name), name)
+    np.testing.assert_array_equal(ledger.gaps(100, 1000), (whole.readings[100:1000] - 0.5) ** 2)
+    whole.simulated[4000:] = 0.25
+    ledger.followed(
+        4000, *(getattr(whole, one)[4000:] for one in ("contexts", "spread", "simulated"))
+    )
+    np.testing.assert_array_equal(ledger.rows(3990, count).simulated, whole.simulated[3990:])
+    again = RecentRows(3, 1, 2, stored)
+    again.take_up(count, count)
+    np.testing.assert_array_equal(again.residuals(0, count), ledger.residuals(0, count))
+    assert (0, count) not in asked
 
 
 def test_the_window_survives_a_restart() -> None:

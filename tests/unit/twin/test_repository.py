@@ -125,11 +125,11 @@ def test_words_come_back(run: Run) -> None:
     with run.step() as step:
         step.message(kind="Q2", row=9, time="2024-05-01T00:01:00", body={})
     query, response, later = run.messages()
-    assert (query.sequence, query.kind, query.row, query.time) == (1, "Q2", 8, 120.0)
+    assert (query.kind, query.row, query.time) == ("Q2", 8, 120.0)
     assert (response.body, response.time) == (body, None)
     assert later.time == "2024-05-01T00:01:00"
     assert later.written_at >= query.written_at >= run.begun_at
-    assert [message.sequence for message in run.messages(kind="Q2")] == [1, 3]
+    assert run.messages(kind="Q2") == (query, later)
     assert run.findings() == (StoredFindings(8, '{"verdict": "named"}'),)
     assert run.events() == (event, Event("calibration", 9, 0.1, "done"))
 
@@ -145,23 +145,23 @@ def test_the_last_checkpoint_of_a_name_is_read(run: Run) -> None:
 
 
 def test_a_checkpoint_is_written_over_and_falls_with_its_step(run: Run) -> None:
-    assert run.checkpoint("detector") is None
+    assert run.state("detector") is None
     for number in range(3):
         with run.step() as step:
-            step.checkpoint("detector", b"state %d" % number)
-            step.checkpoint("other", b"")
+            step.state("detector", b"state %d" % number)
+            step.state("other", b"")
     with pytest.raises(RuntimeError, match="ended"):
-        step.checkpoint("detector", b"late")
+        step.state("detector", b"late")
 
     def failing() -> None:
         with run.step() as step:
-            step.checkpoint("detector", b"never")
+            step.state("detector", b"never")
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
         failing()
-    assert run.checkpoint("detector") == b"state 2"
-    assert run.checkpoint("other") == b""
+    assert run.state("detector") == b"state 2"
+    assert run.state("other") == b""
 
 
 def test_a_run_as_it_stood(run: Run) -> None:
@@ -189,7 +189,7 @@ def test_a_run_as_it_stood(run: Run) -> None:
     assert set(then.gaps().version) == {1}
     assert then.version_in_force() == run.versions()[0]
     assert (then.versions(), then.events(), then.findings()) == (run.versions()[:1], (), ())
-    assert [message.sequence for message in then.messages()] == [1, 2]
+    assert len(then.messages()) == 2
 
     for view in (run.as_of(row=29), run.as_of(row=38), run.as_of(time=60.0 * 29 + 1)):
         assert_array_equal(view.measured().rows, np.arange(30))

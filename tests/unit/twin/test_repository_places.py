@@ -45,8 +45,8 @@ def test_an_older_repository_is_brought_up_to_date_with_a_copy_beside_it(
         Repository.open(place, read_only=True)
     with Repository.open(place) as repository:
         run = repository.run(IDENTITY)
-        assert run.checkpoint("synchrony") == b"state 2"
-        assert run.checkpoint("standing") is None
+        assert run.state("synchrony") == b"state 2"
+        assert run.state("standing") is None
         assert run.kept("standing") == b"{}"
     if "://" not in place:
         file = Path(place) / "twin.sqlite" if Path(place).is_dir() else Path(place)

@@ -23,11 +23,11 @@ from rga.twin.calibration.joint_posterior import changes, why_not
 from rga.twin.calibration.learning import learn
 from rga.twin.calibration.lesson import Lesson
 from rga.twin.calibration.states import State
-from rga.twin.messages.hardware import Packet, Station
+from rga.twin.hardware.interface import Packet, Station
 from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Box
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.novelty import beside
-from rga.twin.row_buffer import RowBuffer
+from rga.twin.recent_rows import RecentRows
 from rga.twin.run_state import Standing
 from rga.twin.settings import Inference, Settings
 
@@ -91,12 +91,13 @@ class ContextCapture:
         self.ranges = np.array([v.range for v in self._laws]).reshape(-1, 2)
 
     def receive(self, packet: Packet) -> None:
-        """Take measured rows from the middleware."""
+        """Take measured rows."""
         self.rows.ledger.append(packet)
 
     def take_up(
         self,
-        ledger: RowBuffer,
+        rows: int,
+        state: bytes | None,
         standing: Standing,
         learned: ContextEstimator | None,
         sound: ContextEstimator | None,
@@ -104,11 +105,16 @@ class ContextCapture:
         states: list[State],
     ) -> None:
         """Go on where a run stood."""
-        self.rows.take_up(ledger, standing.calibrated, standing.stuck)
+        followed = standing.row if standing.calibrated else 0
+        self.rows.take_up(rows, followed, standing.stuck, state)
         self.draws = standing.draws
         self.inference, self.optimism = standing.inference, standing.optimism
         self.learned, self.sound, self.given = learned, sound, given
         self.states = states
+
+    def read_again(self, standing: Standing) -> None:
+        """Other readings are in use now: those in memory are read anew."""
+        self.rows.ledger.take_up(len(self.ledger), standing.row if standing.calibrated else 0)
 
     @property
     def state(self) -> int | None:
@@ -117,7 +123,7 @@ class ContextCapture:
         return own[0] if own else None
 
     @property
-    def ledger(self) -> RowBuffer:
+    def ledger(self) -> RecentRows:
         """The rows so far."""
         return self.rows.ledger
 
@@ -125,6 +131,11 @@ class ContextCapture:
     def latent(self) -> list[int]:
         """Columns of the contexts that are inferred."""
         return self.rows.latent
+
+    @property
+    def width(self) -> FloatArray:
+        """Of the range of each context that is inferred, float[latent]."""
+        return np.asarray(np.ptp(self.ranges, axis=1)[self.latent])
 
     def follow(self, first: int, end: int) -> None:
         """Infer the contexts of rows, and let the twin simulate them (Q5)."""
@@ -138,10 +149,8 @@ class ContextCapture:
             rows: how many.
             share: by which the model was off on these.
         """
-        ledger = self.ledger
-        by_row = rows_against_expected(
-            ledger.gaps(0, calibrated), ledger.simulated[:calibrated], self.rows.noise, share
-        )
+        gaps, simulated = self.ledger.gaps(0, calibrated), self.ledger.rows(0, calibrated).simulated
+        by_row = rows_against_expected(gaps, simulated, self.rows.noise, share)
         return self.optimism * usual_bound(by_row, rows, self._settings.usual, self._seed)
 
     def known(self, rows: int) -> list[str]:
@@ -149,7 +158,8 @@ class ContextCapture:
         columns = self.latent
         if not columns or self.learned is None:
             return []
-        half = NORMAL_90 * np.sqrt(np.mean(self.ledger.spread[:rows, columns] ** 2, axis=0))
+        spread = self.ledger.rows(0, rows).spread[:, columns]
+        half = NORMAL_90 * np.sqrt(np.mean(spread**2, axis=0))
         share = half / (NORMAL_90 * np.ptp(self.ranges[columns], axis=1) / np.sqrt(12))
         units = [self._laws[column].unit for column in columns]
         words = [
@@ -161,9 +171,11 @@ class ContextCapture:
 
     def told(self, row: int) -> str:
         """The latent contexts of a row, in words."""
+        contexts = self.ledger.rows(row, row + 1).contexts[0]
         return ", ".join(
-            f"{self._names[column]} {self.ledger.contexts[row, column]:.3g} "
-            f"{self._laws[column].unit}".removesuffix(" -")
+            f"{self._names[column]} {contexts[column]:.3g} {self._laws[column].unit}".removesuffix(
+                " -"
+            )
             for column in self.latent
         )
 
@@ -174,12 +186,10 @@ class ContextCapture:
 
     def novel(self, first: int, end: int) -> bool:
         """Whether most of some rows have contexts that no row before them had."""
-        before, rows = (
-            self.ledger.contexts[part][:, self.latent]
-            for part in (slice(0, first), slice(first, end))
-        )
-        if not len(before) or not self.latent:
+        if not first or not self.latent:
             return False
+        rows = self.ledger.rows(first, end).contexts[:, self.latent]
+        before = self.rows.summaries.contexts_before(first)[:, self.latent]
         return bool(np.mean(beside(rows, before)) > 0.5)
 
     def changes(self, before: ContextEstimator | None) -> tuple[str, ...]:
@@ -205,9 +215,7 @@ class ContextCapture:
                     row=row,
                     version=state.version,
                     box=box,
-                    clock=float(self.rows.clock(slice(-1, None))[0])
-                    if row
-                    else self._station.origin,
+                    clock=self.rows.last_clock if row else self._station.origin,
                     rows=max(2, held.missing),
                     origin="requested" if requested else "design",
                     seed=self._draw(),
@@ -271,7 +279,7 @@ class ContextCapture:
         """
         if self._exchange.twin.state.latent:
             earlier = None if self.sound is None else self.sound.found
-            read = np.isfinite(self.ledger.readings[slice(*recent)]).any()
+            read = np.isfinite(self.ledger.rows(*recent).readings).any()
             rows = recent if read else (0, recent[1])
             lesson = self._lesson([rows])
             if self._own is not None:
@@ -297,10 +305,11 @@ class ContextCapture:
         if self.learned is None or self.state is not None or not self.rows.known(first, end):
             return
         version = self._exchange.twin.state.version
+        rows = ledger.rows(first, end)
         gaps = channels_against_expected(
-            ledger.gaps(first, end), ledger.simulated[first:end], self.rows.noise, share
+            ledger.gaps(first, end), rows.simulated, self.rows.noise, share
         )
-        contexts = ledger.contexts[first:end].copy()
+        contexts = rows.contexts.copy()
         self.states.append(State(self.learned, version, (first, end), contexts, gaps, doubted))
 
     def doubt_states(self, since: int) -> None:
@@ -334,7 +343,7 @@ class ContextCapture:
             if state.version != version:
                 continue
             contexts, simulated = self.rows.under(state.estimator, first, end)
-            squared = (self.ledger.readings[first:end] - simulated) ** 2
+            squared = (self.ledger.rows(first, end).readings - simulated) ** 2
             gaps = channels_against_expected(squared, simulated, self.rows.noise, share)
             explained = state.explains(contexts, gaps, self.optimism, allowed, self._seed)
             if explained and state.estimator is self.learned:
@@ -355,7 +364,7 @@ class ContextCapture:
             data=data,
             latent=state.latent,
             noise=self.rows.noise,
-            clock=float(self.rows.clock(slice(-1, None))[0]),
+            clock=self.rows.last_clock,
             seed=self._draw(),
             training=self._settings.training,
             progress=lambda done: self._progress("learning contexts", done),

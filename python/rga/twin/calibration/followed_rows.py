@@ -13,11 +13,11 @@ from rga.twin.calibration.blocks import BLOCK
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.estimator import ContextEstimator
 from rga.twin.calibration.expectation import against_expected, scatter_share
-from rga.twin.messages.hardware import Station
+from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q5, sha256
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.row_buffer import RowBuffer
-from rga.twin.row_moments import GapMoments
+from rga.twin.recent_rows import RecentRows
+from rga.twin.row_summaries import RowSummaries
 from rga.twin.simulation_model import SimulationModel
 
 
@@ -26,7 +26,7 @@ class FollowedRows:
 
     Attributes:
         ledger: they.
-        moments: of their gaps.
+        summaries: of those that have gone by.
         noise: standard deviation of each channel's noise, float[channels]; NaN for one that is
             not to be looked at.
 
@@ -40,27 +40,36 @@ class FollowedRows:
     def __init__(
         self, exchange: QueryResponse, archive: Archive, station: Station, model: Model
     ) -> None:
-        self.ledger = RowBuffer(len(station.channels), len(station.measured), len(model.context))
-        self.moments = GapMoments(self.ledger)
+        channels, contexts = len(station.channels), len(model.context)
+        self.ledger = RecentRows(channels, len(station.measured), contexts, archive.rows)
+        self.summaries = RowSummaries(self.ledger, channels, contexts)
         self._exchange, self._archive, self._station = exchange, archive, station
         self._names, self._laws = list(model.context), list(model.context.values())
         self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
         self._stated = [model.sensors[name].noise for name in station.channels]
         self.noise = np.ones(len(station.channels))
 
-    def take_up(self, ledger: RowBuffer, calibrated: int, stuck: tuple[str, ...]) -> None:
+    def take_up(
+        self, rows: int, followed: int, stuck: tuple[str, ...], state: bytes | None
+    ) -> None:
         """Go on with the rows of a run.
 
         Args:
-            ledger: they.
-            calibrated: rows of the first calibration; 0: there was none yet.
-            stuck: channels that stood still on these.
+            rows: how many there are.
+            followed: how many of them have contexts.
+            stuck: channels that stood still in the first calibration.
+            state: as `to_bytes` gave it; None: there was no calibration yet.
         """
-        self.ledger = ledger
-        ledger.leave_out(self._station.channels, stuck)
-        self.moments = GapMoments(ledger)
-        if calibrated:
-            self.noise = noise_of(self._stated, ledger, calibrated)
+        self.ledger.take_up(rows, followed)
+        self.ledger.leave_out(self._station.channels, stuck)
+        if state is not None:
+            of_noise = self.noise.nbytes
+            self.noise = np.frombuffer(state[:of_noise], dtype="<f8").astype(float)
+            self.summaries.restore(state[of_noise:])
+
+    def to_bytes(self) -> bytes:
+        """What a run goes on from, beside its rows."""
+        return self.noise.astype("<f8").tobytes() + self.summaries.to_bytes()
 
     def judge_channels(self, criteria: ChannelCriteria) -> list[BrokenChannel]:
         """Channels that stand still in the rows so far, left out from now on; noise of the others.
@@ -71,7 +80,7 @@ class FollowedRows:
         Raises:
             InputError: all of them stand still.
         """
-        channels, readings = self._station.channels, self.ledger.readings
+        channels, readings = self._station.channels, self.ledger.rows(0, len(self.ledger)).readings
         stuck = stuck_channels(channels, readings, np.isfinite(readings), criteria)
         if len(stuck) == len(channels):
             raise InputError(
@@ -79,20 +88,19 @@ class FollowedRows:
                 f"record; of {stuck[0].sensor!r}, {stuck[0].why}",
                 "check the record and the mapping",
             )
-        self.take_up(self.ledger, len(self.ledger), tuple(one.sensor for one in stuck))
+        self.ledger.leave_out(channels, {one.sensor for one in stuck})
+        self.noise = noise_of(self._stated, readings, self.ledger.stuck)
         return stuck
 
     def gap(self, first: int, end: int, share: float = 0.0) -> float:
         """Gap of rows over the gap to expect of a model that is off by a share [-]."""
-        ledger = self.ledger
-        return against_expected(
-            ledger.gaps(first, end), ledger.simulated[first:end], self.noise, share
-        )
+        gaps, simulated = self.ledger.gaps(first, end), self.ledger.rows(first, end).simulated
+        return against_expected(gaps, simulated, self.noise, share)
 
     def scatter_share(self, first: int, end: int) -> float:
         """Share by which the model is off on calibrated rows [-]."""
-        ledger = self.ledger
-        return scatter_share(ledger.gaps(first, end), ledger.simulated[first:end], self.noise)
+        gaps, simulated = self.ledger.gaps(first, end), self.ledger.rows(first, end).simulated
+        return scatter_share(gaps, simulated, self.noise)
 
     def known(self, first: int, end: int) -> int:
         """How many of some rows have a gap."""
@@ -103,9 +111,15 @@ class FollowedRows:
         """Columns of the contexts that are inferred."""
         return [self._names.index(name) for name in self._exchange.twin.state.latent]
 
-    def clock(self, rows: slice) -> FloatArray:
+    def clock(self, first: int, end: int) -> FloatArray:
         """Clock of rows [s], on the scale of onsets."""
-        return self._station.origin + self.ledger.time[rows]
+        return self._station.origin + self.ledger.rows(first, end).time
+
+    @property
+    def last_clock(self) -> float:
+        """Clock of the last row, of the first before there is any [s]."""
+        rows = len(self.ledger)
+        return float(self.clock(rows - 1, rows)[0]) if rows else self._station.origin
 
     def follow(self, estimator: ContextEstimator | None, first: int, end: int) -> None:
         """Infer the contexts of rows, and let the twin simulate them (Q5).
@@ -114,16 +128,17 @@ class FollowedRows:
             estimator: that infers; None: nothing is inferred.
             first, end: of the rows.
         """
-        rows = slice(first, end)
-        contexts, spread = self._prior(rows)
+        contexts, spread = self._prior(first, end)
         if estimator is not None:
             contexts, spread = self._inferred(estimator, first, end)
-        self.ledger.contexts[rows], self.ledger.spread[rows] = contexts, spread
         version = self._exchange.twin.state.version
         answer = self._exchange.ask(self._question(first, end, version, contexts))
-        self.ledger.simulated[rows] = np.where(self._complete(rows), answer.simulated, np.nan)
-        self.moments.changed(first)
-        self._archive.keep_rows(first, end, version, self.ledger)
+        simulated = np.where(self._complete(first, end), answer.simulated, np.nan)
+        self.ledger.followed(first, contexts, spread, simulated)
+        gaps = (self.ledger.rows(first, end).readings - simulated) ** 2
+        gaps[:, self.ledger.stuck] = np.nan
+        self._archive.keep_rows(first, version, contexts, spread, simulated, gaps)
+        self.summaries.followed(first, end)
 
     def under(
         self, estimator: ContextEstimator, first: int, end: int
@@ -139,7 +154,7 @@ class FollowedRows:
         corrected = SimulationModel(given.model, self._station, estimator.correction)
         version = self._exchange.twin.state.version
         answer = corrected.follow(self._question(first, end, version, contexts))
-        return contexts, np.where(self._complete(slice(first, end)), answer.simulated, np.nan)
+        return contexts, np.where(self._complete(first, end), answer.simulated, np.nan)
 
     def _inferred(
         self, estimator: ContextEstimator, first: int, end: int
@@ -149,13 +164,12 @@ class FollowedRows:
         laws = [self._laws[column] for column in latent]
         remembers = estimator.remembers or any(one.law != "independent" for one in laws)
         begin = 0 if remembers else first - first % BLOCK
-        rows = slice(begin, end)
-        contexts, spread = self._prior(slice(first, end))
+        contexts, spread = self._prior(first, end)
         contexts[:, latent], spread[:, latent] = estimator.infer(
             first - begin,
-            self.ledger.readings[rows],
-            self._prior(rows)[0],
-            self.clock(rows),
+            self.ledger.rows(begin, end).readings,
+            self._prior(begin, end)[0],
+            self.clock(begin, end),
             laws,
         )
         return contexts, spread
@@ -164,26 +178,26 @@ class FollowedRows:
         """What does the twin simulate at contexts of rows, float[rows, contexts]?"""
         remembers = self._exchange.twin.simulation(version).remembers
         # A train's direction shows from row to row; more of the past only matters to a memory.
-        past = slice(0 if remembers else max(0, first - 1), first)
+        begin = 0 if remembers else max(0, first - 1)
         return Q5(
             row=end - 1,
             version=version,
             first=first,
             rows=end - first,
             sha256=sha256(contexts),
-            time=self.clock(slice(first, end)),
+            time=self.clock(first, end),
             contexts=contexts,
-            time_before=self.clock(past),
-            contexts_before=self.ledger.contexts[past],
+            time_before=self.clock(begin, first),
+            contexts_before=self.ledger.rows(begin, first).contexts,
         )
 
-    def _prior(self, rows: slice) -> tuple[FloatArray, FloatArray]:
+    def _prior(self, first: int, end: int) -> tuple[FloatArray, FloatArray]:
         """Contexts as measured, and in the middle of their range where nothing measured them."""
-        count = len(self.ledger.time[rows])
+        count = end - first
         contexts = np.tile(self._ranges.mean(axis=1), (count, 1))
         spread = np.tile(np.ptp(self._ranges, axis=1) / np.sqrt(12), (count, 1))
         measured = self._measured
-        told = self.ledger.told[rows]
+        told = self.ledger.rows(first, end).told
         contexts[:, measured] = np.where(np.isnan(told), contexts[:, measured], told)
         spread[:, measured] = [self._laws[column].noise or 0.0 for column in measured]
         return contexts, spread
@@ -192,6 +206,7 @@ class FollowedRows:
     def _measured(self) -> list[int]:
         return [self._names.index(name) for name in self._station.measured]
 
-    def _complete(self, rows: slice) -> NDArray[np.bool_]:
+    def _complete(self, first: int, end: int) -> NDArray[np.bool_]:
         """Whether all measured contexts are there, bool[rows, 1]."""
-        return np.asarray(np.isfinite(self.ledger.measured[rows]).all(axis=1, keepdims=True))
+        measured = self.ledger.rows(first, end).measured
+        return np.asarray(np.isfinite(measured).all(axis=1, keepdims=True))

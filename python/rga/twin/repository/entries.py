@@ -21,7 +21,8 @@ class Identity:
     """What distinguishes one run from another: the same identity resumes, another begins anew.
 
     Attributes:
-        model_sha256, record_sha256: hashes of the model as given and of the record.
+        model_sha256: hash of the model as given.
+        source: where rows come from: the hash of a record, or "live:" and the name of a twin.
         seed: of the run, below 2^63.
         settings: JSON text of all else that the run's results depend on.
 
@@ -30,14 +31,14 @@ class Identity:
     """
 
     model_sha256: str
-    record_sha256: str
+    source: str
     seed: int
     settings: str
 
     @property
     def key(self) -> str:
         """SHA-256 of the identity, in hexadecimal digits."""
-        parts = [self.model_sha256, self.record_sha256, self.seed, self.settings]
+        parts = [self.model_sha256, self.source, self.seed, self.settings]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
@@ -121,7 +122,6 @@ class StoredMessage:
     """A query or a response.
 
     Attributes:
-        sequence: its place in the log of the run, from 1.
         kind: "Q1" to "Q5", "R1" to "R5".
         row: row of the record at which it was sent.
         time: the same as the record writes time; None where it writes none.
@@ -129,7 +129,6 @@ class StoredMessage:
         written_at: wall clock, UTC.
     """
 
-    sequence: int
     kind: str
     row: int
     time: Time | None
@@ -167,3 +166,45 @@ class StoredFindings:
 
     row: int
     findings: str
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A change of the model that a diagnosis proposes.
+
+    Attributes:
+        number: from 1.
+        row: row of the record at which it was made.
+        words: what the model would have then.
+        effects: that the model would have beyond the one as given, as they stand in a model file.
+        gain: on held-out rows, with its 90 % interval [-]; None where nothing was measured.
+    """
+
+    number: int
+    row: int
+    words: str
+    effects: dict[str, dict[str, Any]]
+    gain: float | None
+    gain_ci90: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class StoredCommand:
+    """What somebody asked for, and what came of it.
+
+    Attributes:
+        row: row of the record at which it was carried out.
+        kind: "accept", "reject", "rollback", "exclude", "recalibrate" or "note".
+        body: what it was about.
+        who, why: as they were given.
+        given_at: wall clock, UTC, as ISO 8601 text.
+        outcome: what came of it, in words.
+    """
+
+    row: int
+    kind: str
+    body: dict[str, Any]
+    who: str
+    why: str
+    given_at: str
+    outcome: str

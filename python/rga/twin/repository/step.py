@@ -12,6 +12,9 @@ from rga.twin.repository import tables
 from rga.twin.repository.chunks import chunks
 from rga.twin.repository.entries import Origin, Time
 
+#: bytes of a page of a state
+PAGE = 16_384
+
 
 class Transaction:
     """What one transaction stores; `Run.step` begins and ends it.
@@ -20,12 +23,19 @@ class Transaction:
     it takes `first_row`, the row that the arrays begin with. A ValueError reports arrays that do
     not fit one another and of bodies that JSON cannot hold.
 
+    Args:
+        connection: with a transaction that is open.
+        run_id: key of the run.
+        pages: of the states that were kept last, by name; what this step keeps joins them.
+
     Attributes:
         number: of the step in its run, from 1.
         row: last row that this step or one before it was about, -1 where there was none.
     """
 
-    def __init__(self, connection: Connection, run_id: int) -> None:
+    def __init__(
+        self, connection: Connection, run_id: int, pages: dict[str, list[bytes]] | None = None
+    ) -> None:
         before = (
             select(tables.step.c.number, tables.step.c.row)
             .where(tables.step.c.run_id == run_id)
@@ -37,6 +47,7 @@ class Transaction:
         self.row: int = last.row if last else -1
         self._connection = connection
         self._run_id = run_id
+        self._pages = {} if pages is None else pages
         self._ordinal = 0
         self._ended = False
         connection.execute(
@@ -161,14 +172,75 @@ class Transaction:
         """What is asked for as of a time (weights, the state of the loop) under a name."""
         self._store(tables.kept, row, name=name, row=row, data=data)
 
-    def checkpoint(self, name: str, data: bytes) -> None:
-        """What only a run that goes on needs (the state of a detector), in place of the last."""
+    def proposal(
+        self,
+        number: int,
+        row: int,
+        words: str,
+        effects: dict[str, dict[str, Any]],
+        gain: float | None,
+        gain_ci90: tuple[float, float] | None,
+    ) -> None:
+        """A change of the model that a diagnosis proposes."""
+        low, high = gain_ci90 or (None, None)
+        self._store(
+            tables.proposal,
+            row,
+            number=number,
+            row=row,
+            words=words,
+            effects=_json(effects),
+            gain=gain,
+            gain_low=low,
+            gain_high=high,
+        )
+
+    def command(
+        self,
+        row: int,
+        kind: str,
+        body: dict[str, Any],
+        who: str,
+        why: str,
+        given_at: str,
+        outcome: str,
+    ) -> None:
+        """What somebody asked for, and what came of it."""
+        self._store(
+            tables.command,
+            row,
+            row=row,
+            kind=kind,
+            body=_json(body),
+            who=who,
+            why=why,
+            given_at=given_at,
+            outcome=outcome,
+        )
+
+    def state(self, name: str, data: bytes) -> None:
+        """What only a run that goes on needs (a detector), in place of what was kept last.
+
+        Pages that are as they were are not written again.
+        """
         self._check_open()
-        c = tables.checkpoint.c
+        c = tables.state_page.c
         own = (c.run_id == self._run_id) & (c.name == name)
-        self._connection.execute(delete(tables.checkpoint).where(own))
-        written = {"run_id": self._run_id, "name": name, "step": self.number, "data": data}
-        self._connection.execute(insert(tables.checkpoint), written)
+        pages = [data[begun : begun + PAGE] for begun in range(0, len(data) or 1, PAGE)]
+        known = self._pages.get(name, [])
+        changed = [k for k, page in enumerate(pages) if known[k : k + 1] != [page]]
+        gone = own if not known else own & (c.page.in_(changed) | (c.page >= len(pages)))
+        if changed or len(known) != len(pages):
+            self._connection.execute(delete(tables.state_page).where(gone))
+        if changed:
+            self._connection.execute(
+                insert(tables.state_page),
+                [
+                    {"run_id": self._run_id, "name": name, "page": k, "data": pages[k]}
+                    for k in changed
+                ],
+            )
+        self._pages[name] = pages
 
     def end(self) -> None:
         """Note the row that the step reached; nothing more can be stored in it."""

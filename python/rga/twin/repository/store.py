@@ -30,6 +30,7 @@ class Run(RunView):
         self._connection = connection
         self._where = where
         self._held = held
+        self._pages: dict[str, list[bytes]] = {}
 
     @contextmanager
     def step(self) -> Iterator[Transaction]:
@@ -38,19 +39,20 @@ class Run(RunView):
         Raises:
             InputError: the disk is full, the server is lost, or the like.
         """
+        pages = self._pages.copy()
         with as_input_errors(self._where), self._transaction():
-            step = Transaction(self._connection, self._source.run_id)
+            step = Transaction(self._connection, self._source.run_id, pages)
             yield step
             step.end()
+        self._pages = pages
 
-    def checkpoint(self, name: str) -> bytes | None:
+    def state(self, name: str) -> bytes | None:
         """What the last step left under a name for a run that goes on; None where none did."""
-        c = tables.checkpoint.c
+        c = tables.state_page.c
         with self._reading() as connection:
-            data = connection.scalar(
-                select(c.data).where((c.run_id == self._source.run_id) & (c.name == name))
-            )
-        return None if data is None else bytes(data)
+            of_name = (c.run_id == self._source.run_id) & (c.name == name)
+            pages = connection.scalars(select(c.data).where(of_name).order_by(c.page)).all()
+        return b"".join(bytes(page) for page in pages) if pages else None
 
     def close(self) -> None:
         """Let another process write."""
@@ -141,6 +143,17 @@ class Repository:
             entries = connection.execute(select(tables.run).order_by(tables.run.c.id)).all()
         return tuple(RunView(Source(self._reading, entry.id), *_of(entry)) for entry in entries)
 
+    def latest(self) -> RunView:
+        """The run last acted on.
+
+        Raises:
+            InputError: nothing has run here.
+        """
+        runs = self.runs()
+        if not runs:
+            raise InputError("nothing has run here", self._database.where, "begin with rga run")
+        return max(runs, key=lambda view: view.acknowledged_at)
+
     def close(self) -> None:
         """Close all connections; the lock of a run goes with them."""
         self._held.close()
@@ -183,7 +196,7 @@ def _columns(identity: Identity) -> dict[str, Any]:
     return {
         "key": identity.key,
         "model_sha256": identity.model_sha256,
-        "record_sha256": identity.record_sha256,
+        "source": identity.source,
         "seed": identity.seed,
         "settings": identity.settings,
         "begun_at": now(),
@@ -191,5 +204,5 @@ def _columns(identity: Identity) -> dict[str, Any]:
 
 
 def _of(entry: Row[Any]) -> tuple[Identity, datetime]:
-    identity = Identity(entry.model_sha256, entry.record_sha256, entry.seed, entry.settings)
+    identity = Identity(entry.model_sha256, entry.source, entry.seed, entry.settings)
     return identity, datetime.fromisoformat(entry.begun_at)

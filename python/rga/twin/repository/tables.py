@@ -1,6 +1,6 @@
 """The tables. Nothing stored is ever changed, so that the past can be read as it stood.
 
-Checkpoints alone are: nobody asks for those of the past.
+Only the state that a run goes on from is: nobody asks for that of the past.
 """
 
 from typing import Any
@@ -35,7 +35,7 @@ run = Table(
     Column("id", Integer, primary_key=True),
     Column("key", String(64), nullable=False, unique=True),
     Column("model_sha256", String(64), nullable=False),
-    Column("record_sha256", String(64), nullable=False),
+    Column("source", String(64), nullable=False),
     Column("seed", BigInteger, nullable=False),
     Column("settings", Text, nullable=False),
     Column("begun_at", String(40), nullable=False),
@@ -84,6 +84,7 @@ message = _stored(
     Column("time", Text),
     _text("body"),
     Column("written_at", String(40), nullable=False),
+    Index(None, "run_id", "kind", "step"),
 )
 
 # Packets of rows: arrays are little-endian float64, row after row.
@@ -160,13 +161,36 @@ kept = _stored(
     Index(None, "run_id", "name", "step"),
 )
 
-# What only a run that goes on needs, as its last step left it.
-checkpoint = Table(
-    "checkpoint",
+# A change of the model that a diagnosis proposes.
+proposal = _stored(
+    "proposal",
+    _number("number"),
+    _number("row"),
+    _text("words"),
+    _text("effects"),
+    Column("gain", Float(53)),
+    Column("gain_low", Float(53)),
+    Column("gain_high", Float(53)),
+)
+
+# What people asked for, and what came of it.
+command = _stored(
+    "command",
+    _number("row"),
+    _text("kind"),
+    _text("body"),
+    _text("who"),
+    _text("why"),
+    Column("given_at", String(40), nullable=False),
+    _text("outcome"),
+)
+
+# What only a run that goes on needs, as its last step left it: pages of one size.
+state_page = Table(
+    "state_page",
     metadata,
-    Column("run_id", Integer, primary_key=True, autoincrement=False),
+    Column("run_id", Integer, ForeignKey("run.id"), primary_key=True, autoincrement=False),
     Column("name", String(40), primary_key=True),
-    _number("step"),
+    Column("page", Integer, primary_key=True, autoincrement=False),
     _blob("data"),
-    ForeignKeyConstraint(["run_id", "step"], ["step.run_id", "step.number"]),
 )

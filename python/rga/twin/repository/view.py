@@ -18,6 +18,8 @@ from rga.twin.repository.entries import (
     Inferred,
     ModelVersion,
     Origin,
+    Proposal,
+    StoredCommand,
     StoredFindings,
     StoredGaps,
     StoredMessage,
@@ -82,6 +84,12 @@ class RunView:
         """Last row of the record that a step was about; -1 where there is none."""
         row = self._source.scalar(tables.step, func.max(tables.step.c.row))
         return -1 if row is None else int(row)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of the record that were taken in."""
+        c = tables.measured.c
+        return self._source.scalar(tables.measured, func.max(c.first_row + c.length)) or 0
 
     def measured(self, first: int = 0, end: int | None = None) -> StoredReadings:
         """Rows of the record."""
@@ -149,6 +157,14 @@ class RunView:
         chunks = self._source.entries(tables.simulated, *columns, where=where)
         return int(_inside(joined(chunks, "contexts"), within).sum())
 
+    def simulated_contexts(self, version: int) -> FloatArray:
+        """Contexts of the simulations of a version, float[n, k]; float[0, 0] without any."""
+        c = tables.simulated.c
+        where = _conditions(version, None)
+        return joined(
+            self._source.entries(tables.simulated, c.length, c.contexts, where=where), "contexts"
+        )
+
     def versions(self) -> tuple[ModelVersion, ...]:
         """Model versions in the order in which they were stored."""
         return tuple(_version(entry) for entry in self._source.entries(tables.version))
@@ -188,21 +204,44 @@ class RunView:
             for entry in self._source.entries(tables.event)
         )
 
+    def proposals(self) -> tuple[Proposal, ...]:
+        """Changes of the model that diagnoses proposed."""
+        return tuple(
+            Proposal(
+                entry.number,
+                entry.row,
+                entry.words,
+                json.loads(entry.effects),
+                entry.gain,
+                None if entry.gain_low is None else (entry.gain_low, entry.gain_high),
+            )
+            for entry in self._source.entries(tables.proposal)
+        )
+
+    def commands(self) -> tuple[StoredCommand, ...]:
+        """What people asked for, and what came of it."""
+        return tuple(
+            StoredCommand(
+                entry.row,
+                entry.kind,
+                json.loads(entry.body),
+                entry.who,
+                entry.why,
+                entry.given_at,
+                entry.outcome,
+            )
+            for entry in self._source.entries(tables.command)
+        )
+
     def messages(self, kind: str | None = None) -> tuple[StoredMessage, ...]:
         """The log of queries and responses, or of one kind."""
-        entries = self._source.entries(tables.message)
-        return tuple(
-            StoredMessage(
-                sequence,
-                entry.kind,
-                entry.row,
-                None if entry.time is None else json.loads(entry.time),
-                json.loads(entry.body),
-                datetime.fromisoformat(entry.written_at),
-            )
-            for sequence, entry in enumerate(entries, 1)
-            if kind in (None, entry.kind)
-        )
+        where = [] if kind is None else [tables.message.c.kind == kind]
+        return tuple(_message(one) for one in self._source.entries(tables.message, where=where))
+
+    def last_message(self, kind: str) -> StoredMessage | None:
+        """The last message of a kind; None where there is none."""
+        entry = self._source.last(tables.message, tables.message.c.kind == kind)
+        return None if entry is None else _message(entry)
 
     def story(self) -> tuple[StoredMessage | Event, ...]:
         """Messages and events together, in the order in which they were stored."""
@@ -219,6 +258,16 @@ class RunView:
 
 def _place(entry: Row[Any]) -> tuple[int, int]:
     return entry.step, entry.ordinal
+
+
+def _message(entry: Row[Any]) -> StoredMessage:
+    return StoredMessage(
+        entry.kind,
+        entry.row,
+        None if entry.time is None else json.loads(entry.time),
+        json.loads(entry.body),
+        datetime.fromisoformat(entry.written_at),
+    )
 
 
 def _conditions(version: int | None, origin: Origin | None) -> list[ColumnElement[bool]]:

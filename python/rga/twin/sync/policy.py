@@ -47,25 +47,20 @@ class Policy:
             interval=pace.interval,
         )
 
-    def due(self, standing: Standing, last: bool) -> int | None:
-        """First of the rows that a recalibration is to be about now; None: none is due.
-
-        Args:
-            standing: where the run stands.
-            last: no more rows will come.
-        """
+    def due(self, standing: Standing) -> int | None:
+        """First of the rows that a recalibration is to be about now; None: none is due."""
         row = standing.row
-        if self.alarms and standing.alarm is not None and not self.waits(standing, last):
+        if self.alarms and standing.alarm is not None and not self.waits(standing):
             return standing.since
         if self.clock and row - standing.synchronised >= standing.interval:
             return max(0, min(standing.synchronised, row - self.settle))
         return None
 
-    def waits(self, standing: Standing, last: bool) -> bool:
+    def waits(self, standing: Standing) -> bool:
         """Whether an alarm is gathering rows for a recalibration of its own."""
         if not self.alarms or standing.alarm is None:
             return False
-        return not last and standing.row - standing.alarm < self.settle
+        return not standing.ended and standing.row - standing.alarm < self.settle
 
     def next_interval(self, interval: int, gain: float, allowed: float) -> int:
         """The interval after a recalibration.

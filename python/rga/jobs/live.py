@@ -1,0 +1,259 @@
+"""A twin of a structure whose readings go on arriving."""
+
+import json
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from threading import RLock
+from typing import Self
+
+from rga.errors import InputError
+from rga.given import as_record
+from rga.jobs.run import FILE, concluded, made
+from rga.model import Model, as_model, read_model
+from rga.records import Record, RecordMapping, RecordSource
+from rga.twin.commands import AnyCommand, read_command
+from rga.twin.hardware.inbox import Addressee, Inbox
+from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
+from rga.twin.history import Event
+from rga.twin.outcome import Outcome
+from rga.twin.runner import Progress, Running, taken_up
+from rga.twin.settings import Settings, as_settings
+from rga.twin.twin import Twin
+from rga.twin.versions import written
+
+#: stages between which a command does not break anything off
+CALM = ("gather", "watch", "report", "done")
+
+
+@dataclass(frozen=True)
+class Fed:
+    """What became of rows that were fed.
+
+    Attributes:
+        new: rows that are kept.
+        known: rows that are no later than what was there: they were fed before, or come too late.
+    """
+
+    new: int
+    known: int
+
+
+class LiveTwin:
+    """A twin in a directory, which takes rows as they come; `rga.live` makes one.
+
+    Rows are fed by any thread or process and are on the disk when `feed` returns; `play` lets the
+    twin take them in, in packets that are full, so that what comes of them does not hang on when
+    or how they arrived: `rga.run` on the same rows says the same. One process plays at a time.
+
+    Args:
+        directory: of the twin.
+        repository: URL of a PostgreSQL database, in place of the file in the directory.
+        progress: called with a stage and the share of it that is done.
+
+    Attributes:
+        name: of the twin.
+        model: as it was given.
+
+    Raises:
+        InputError: there is no live twin in the directory.
+    """
+
+    def __init__(
+        self,
+        directory: str | Path,
+        repository: str | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        self._directory = Path(directory)
+        if not self._directory.is_dir():
+            raise InputError("there is no such directory", str(directory), "begin with rga.live")
+        self._inbox = Inbox(self._directory)
+        known = self._inbox.addressee
+        if known is None:
+            self._inbox.close()
+            raise InputError("no live twin is here", str(directory), "begin with rga.live")
+        self.name, self._seed = known.name, known.seed
+        self.model = read_model(json.loads(known.model), str(directory))
+        self._settings = Settings.model_validate_json(known.settings)
+        self._place = repository or self._directory / FILE
+        self._progress = progress
+        self._playing, self._held = RLock(), ExitStack()
+        self._running: Running | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let another process play; whatever was fed stays."""
+        with self._playing:
+            self._let_go()
+            self._inbox.close()
+
+    def feed(
+        self,
+        rows: Record | RecordSource,
+        mapping: str | Path | RecordMapping | None = None,
+    ) -> Fed:
+        """Keep rows for the twin; they are on the disk when this returns.
+
+        Rows that are no later than those before are left out, so that rows of which nobody knows
+        whether they were kept may be fed again. The first rows say which channels and contexts
+        there are; a channel that later rows lack is missing.
+
+        Args:
+            rows: a record, a data frame, or files, as `rga.load_record` takes them.
+            mapping: how to read them.
+
+        Raises:
+            InputError: the rows cannot be read or are not of this twin, or the disk is full.
+        """
+        record = as_record(rows, self.model, mapping)
+        if not len(record):
+            return Fed(0, 0)
+        if self._inbox.ended:
+            raise InputError("it has ended", f"twin {self.name!r}", "begin another")
+        station = self._inbox.station or station_for(self.model, record)
+        time, readings, contexts = as_rows(station, record)
+        new = self._inbox.put(station, time, readings, contexts)
+        return Fed(new, len(record) - new)
+
+    def ask(self, command: AnyCommand) -> int:
+        """Keep a command (`rga.twin.Accept` and others); `play` carries it out.
+
+        Returns:
+            Its number.
+        """
+        return self._inbox.ask(command.model_dump_json())
+
+    def play(self, allowed: Callable[[Running], bool] = lambda running: True) -> list[Event]:
+        """Do all that is due: full packets, and what commands ask for.
+
+        Args:
+            allowed: whether the next step may be taken here; another may take it elsewhere.
+
+        Returns:
+            What happened.
+
+        Raises:
+            InputError: another process plays, or the repository cannot be used.
+        """
+        happened: list[Event] = []
+        with self._playing:
+            if self._inbox.station is None:
+                return happened
+            try:
+                while allowed(self._taken_up()):
+                    self._carry_out_commands(happened)
+                    if not self._taken_up().due:
+                        break
+                    self._act(self._taken_up().step, happened)
+            except BaseException:
+                self._let_go()
+                raise
+        return happened
+
+    def end(self) -> Outcome:
+        """No more rows will come: play what is left, diagnose, and write the report.
+
+        Raises:
+            InputError: too few rows have come.
+        """
+        if self._inbox.station is None:
+            raise InputError("no row has arrived", f"twin {self.name!r}", "feed rows to it")
+        self._inbox.end()
+        with self._playing:
+            self.play()
+            return concluded(self._taken_up(), self._directory)
+
+    @property
+    def twin(self) -> Twin:
+        """The twin as its repository holds it.
+
+        Raises:
+            InputError: it has not begun.
+        """
+        return Twin.open(self._place)
+
+    def _taken_up(self) -> Running:
+        if self._running is None:
+            hardware = Live(self._inbox, self.name)
+            self._running = self._held.enter_context(
+                taken_up(
+                    self.model, hardware, self._place, self._settings, self._seed, self._progress
+                )
+            )
+        return self._running
+
+    def _let_go(self) -> None:
+        self._running = None
+        self._held.close()
+
+    def _act(self, step: Callable[[], object], happened: list[Event]) -> None:
+        running = self._taken_up()
+        before = len(running.events)
+        step()
+        happened += running.events[before:]
+
+    def _carry_out_commands(self, happened: list[Event]) -> None:
+        """Do what people asked for, where that breaks nothing off."""
+        if self._taken_up().stage not in CALM:
+            return
+        for number, text in self._inbox.commands(self._taken_up().commanded):
+            command = read_command(text)
+            try:
+                self._act(partial(self._taken_up().carry_out, command, number), happened)
+            except InputError as error:
+                # What was begun is not to be gone on with.
+                self._let_go()
+                self._act(partial(self._taken_up().refuse, command, number, str(error)), happened)
+
+
+def live(
+    model: Model | str | Path,
+    directory: str | Path,
+    *,
+    settings: Settings | str | Path | None = None,
+    name: str | None = None,
+    seed: int = 0,
+    repository: str | None = None,
+    progress: Progress | None = None,
+) -> LiveTwin:
+    """A twin that takes rows as they come, begun in a directory or gone on with.
+
+    Args:
+        model: the structure with its effects and sensors, or its file.
+        directory: for the inbox, the repository and the report.
+        settings: with calibration_rows, packet and settle, which take no share of rows that go on
+            arriving.
+        name: of the twin; None: that of the structure.
+        seed: of everything random.
+        repository: URL of a PostgreSQL database, instead of the file in the directory.
+        progress: called with a stage and the share of it that is done.
+
+    Raises:
+        InputError: such a model cannot go on for ever, a setting is missing, or another twin is
+            there.
+    """
+    given, chosen = as_model(model), as_settings(settings)
+    check_lives(given)
+    chosen.pace(None)
+    wanted = Addressee(name or given.name, written(given)[0], chosen.model_dump_json(), seed)
+    place = made(Path(directory))
+    inbox = Inbox(place)
+    try:
+        known = inbox.name(wanted)
+    finally:
+        inbox.close()
+    if others := [one for one in vars(wanted) if getattr(known, one) != getattr(wanted, one)]:
+        raise InputError(
+            f"a live twin with another {' and '.join(others)} is here",
+            str(directory),
+            "take another directory, or go on with LiveTwin(directory)",
+        )
+    return LiveTwin(place, repository, progress)

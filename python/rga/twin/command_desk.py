@@ -1,0 +1,149 @@
+"""Carries out what people ask a twin for, and writes it down."""
+
+from typing import Any
+
+from rga.errors import InputError
+from rga.model.effect import seconds
+from rga.twin.analysis import RealityGapAnalysis
+from rga.twin.archive import Archive
+from rga.twin.calibration.capture import ContextCapture
+from rga.twin.commands import Accept, AnyCommand, Command, Exclude, Note, Reject, Rollback
+from rga.twin.repository import Proposal
+from rga.twin.settings import Pace
+
+PLACE = "command"
+DECISIONS = ("accept", "reject")
+
+
+class CommandDesk:
+    """Carries out commands, each within the step that is open.
+
+    Args:
+        analysis: changes the twin.
+        archive: keeps proposals and commands.
+        calibration: reads the rows.
+        channels: names of the sensors.
+        pace: how many rows a recalibration learns from.
+    """
+
+    def __init__(
+        self,
+        analysis: RealityGapAnalysis,
+        archive: Archive,
+        calibration: ContextCapture,
+        channels: tuple[str, ...],
+        pace: Pace,
+    ) -> None:
+        self._analysis, self._archive = analysis, archive
+        self._calibration, self._channels, self._pace = calibration, channels, pace
+
+    def carry_out(self, command: AnyCommand) -> str:
+        """Do what is asked, and keep it with what came of it.
+
+        Returns:
+            What came of it, in words.
+
+        Raises:
+            InputError: it cannot be done.
+        """
+        body = command.model_dump(mode="json", exclude=set(Command.model_fields) | {"kind"})
+        if isinstance(command, Accept | Reject):
+            body["proposal"] = self._open_proposal(command.proposal).number
+        outcome = self._done(command)
+        self._keep(command, body, outcome)
+        return outcome
+
+    def refuse(self, command: AnyCommand, why: str) -> None:
+        """Keep that a command could not be carried out."""
+        body = command.model_dump(mode="json", exclude=set(Command.model_fields) | {"kind"})
+        self._keep(command, body | {"refused": True}, f"refused: {why}")
+
+    def _done(self, command: AnyCommand) -> str:
+        if isinstance(command, Accept):
+            return self._accept(self._open_proposal(command.proposal))
+        if isinstance(command, Reject):
+            return f"proposal {self._open_proposal(command.proposal).number} is rejected"
+        if isinstance(command, Rollback):
+            return self._roll_back(command.version)
+        if isinstance(command, Exclude):
+            return self._exclude(command)
+        if isinstance(command, Note):
+            return "noted"
+        return self._recalibrate()
+
+    def _accept(self, proposal: Proposal) -> str:
+        self._check_calibrated()
+        self._analysis.adopt(proposal.effects, proposal.gain, proposal.gain_ci90)
+        return f"proposal {proposal.number} is accepted: {proposal.words}"
+
+    def _roll_back(self, version: int) -> str:
+        """Put an earlier version in force again; what it needs is learned in a step of its own."""
+        answer = self._analysis.ask_twin(restore=version)
+        if not answer.adequate:
+            raise InputError("; ".join(answer.missing), PLACE, "rga replay lists the versions")
+        words = f"version {version} is in force again, as asked"
+        self._analysis.event("rollback", self._row, words)
+        return words
+
+    def _recalibrate(self) -> str:
+        standing = self._analysis.standing
+        self._check_calibrated()
+        if standing.stage != "watch":
+            raise InputError("no rows are watched now", PLACE, "ask again later")
+        self._analysis.recalibrate(max(0, standing.row - self._pace.settle))
+        return "recalibrated"
+
+    def _exclude(self, command: Exclude) -> str:
+        standing, clock = self._analysis.standing, self._calibration.rows.last_clock
+        if command.sensor not in self._channels:
+            known = ", ".join(self._channels)
+            raise InputError(
+                f"there is no sensor {command.sensor!r}", PLACE, f"name one of {known}"
+            )
+        since = clock if command.since is None else seconds(command.since)
+        until = None if command.until is None else seconds(command.until)
+        if until is not None and not until > since:
+            raise InputError("it ends before it begins", PLACE, "give a later time to end it")
+        standing.excluded = (*standing.excluded, (command.sensor, since, until))
+        self._archive.excluded = standing.excluded
+        self._calibration.read_again(standing)
+        begin = "now" if command.since is None else str(command.since)
+        end = "" if command.until is None else f" to {command.until}"
+        return f"{command.sensor} is not used from {begin} on{end}".replace(" on to", " to")
+
+    def _open_proposal(self, number: int | None) -> Proposal:
+        """The last proposal, if nobody has decided about it.
+
+        Raises:
+            InputError: there is none, another is asked for, or it was decided.
+        """
+        proposals = self._archive.run.proposals()
+        if not proposals:
+            raise InputError("nothing is proposed", PLACE, "wait for a diagnosis")
+        last = proposals[-1]
+        if number is not None and number != last.number:
+            words = f"proposal {number} is not the last, which is {last.number}"
+            raise InputError(words, PLACE, "decide about the last")
+        decided = [
+            one
+            for one in self._archive.run.commands()
+            if one.kind in DECISIONS and one.body == {"proposal": last.number}
+        ]
+        if decided:
+            words = f"proposal {last.number} was decided by {decided[-1].who}: {decided[-1].kind}"
+            raise InputError(words, PLACE, "wait for another")
+        return last
+
+    @property
+    def _row(self) -> int:
+        return max(0, self._analysis.standing.row - 1)
+
+    def _keep(self, command: AnyCommand, body: dict[str, Any], outcome: str) -> None:
+        self._archive.keep_command(command, body, self._row, outcome)
+        why = f" ({command.why})" if command.why else ""
+        words = f"{command.who} asked to {command.kind}{why}: {outcome}"
+        self._analysis.event("command", self._row, words)
+
+    def _check_calibrated(self) -> None:
+        if not self._analysis.standing.calibrated:
+            raise InputError("the twin is not calibrated yet", PLACE, "wait for its calibration")
