@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rga.jobs.batch import diagnose_many
     from rga.jobs.live import LiveTwin, live
     from rga.jobs.run import run
+    from rga.jobs.worker import Worker
     from rga.model import Effect, Model, load_model
     from rga.outputs import write_findings
     from rga.planning.planner import plan
@@ -45,6 +46,7 @@ _HOMES = {
     "Results": "rga.simulation",
     "Simulator": "rga.simulation",
     "Twin": "rga.twin",
+    "Worker": "rga.jobs.worker",
     "check": "rga.checking",
     "diagnose": "rga.diagnosis",
     "diagnose_many": "rga.jobs.batch",
@@ -80,6 +82,7 @@ __all__ = [
     "Results",
     "Simulator",
     "Twin",
+    "Worker",
     "__version__",
     "check",
     "diagnose",

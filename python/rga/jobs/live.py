@@ -19,6 +19,7 @@ from rga.twin.hardware.inbox import Addressee, Inbox
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
+from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings, as_settings
 from rga.twin.twin import Twin
@@ -52,6 +53,7 @@ class LiveTwin:
         directory: of the twin.
         repository: URL of a PostgreSQL database, in place of the file in the directory.
         progress: called with a stage and the share of it that is done.
+        patience: how long to wait for another process that plays [s].
 
     Attributes:
         name: of the twin.
@@ -66,6 +68,7 @@ class LiveTwin:
         directory: str | Path,
         repository: str | None = None,
         progress: Progress | None = None,
+        patience: float = PATIENCE,
     ) -> None:
         self._directory = Path(directory)
         if not self._directory.is_dir():
@@ -79,7 +82,7 @@ class LiveTwin:
         self.model = read_model(json.loads(known.model), str(directory))
         self._settings = Settings.model_validate_json(known.settings)
         self._place = repository or self._directory / FILE
-        self._progress = progress
+        self._progress, self._patience = progress, patience
         self._playing, self._held = RLock(), ExitStack()
         self._running: Running | None = None
 
@@ -185,7 +188,13 @@ class LiveTwin:
             hardware = Live(self._inbox, self.name)
             self._running = self._held.enter_context(
                 taken_up(
-                    self.model, hardware, self._place, self._settings, self._seed, self._progress
+                    self.model,
+                    hardware,
+                    self._place,
+                    self._settings,
+                    self._seed,
+                    self._progress,
+                    patience=self._patience,
                 )
             )
         return self._running

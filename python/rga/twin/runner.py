@@ -26,6 +26,7 @@ from rga.twin.hardware.stored import Stored
 from rga.twin.history import Event, History
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.repository import Identity, Repository, Run
+from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.restore import given_model, history_of, record_of
 from rga.twin.settings import Settings
 from rga.twin.versions import beyond, written
@@ -43,6 +44,7 @@ def taken_up(
     seed: int,
     progress: Progress | None = None,
     learn: Learn | None = None,
+    patience: float = PATIENCE,
 ) -> Iterator["Running"]:
     """A run where its repository says that it stands, or a new one, to be played step by step.
 
@@ -54,6 +56,7 @@ def taken_up(
         seed: of everything random.
         progress: called with a stage and the share of it that is done.
         learn: what learns to infer contexts, in place of what the settings name.
+        patience: how long to wait for another process that plays the run [s].
 
     Raises:
         InputError: the repository cannot be used.
@@ -61,7 +64,7 @@ def taken_up(
     digest = model.sha256 or written(model)[1]
     hardware = Recorded(record, model) if isinstance(record, Record) else record
     identity = Identity(digest, hardware.source, seed, settings.model_dump_json())
-    with threadpool_limits(1), Repository.open(place) as kept:
+    with threadpool_limits(1), Repository.open(place, patience=patience) as kept:
         yield Running(model, hardware, kept.run(identity), settings, seed, progress, learn)
 
 
@@ -147,6 +150,11 @@ class Running:
     def rows(self) -> int:
         """Rows that have arrived."""
         return self._hardware.rows
+
+    @property
+    def is_short(self) -> bool:
+        """Whether the next step takes little time: it learns nothing, and asks no diagnosis."""
+        return not self._checkpoint.stale and self.stage in ("gather", "watch", "report", "done")
 
     @property
     def due(self) -> bool:

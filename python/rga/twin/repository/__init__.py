@@ -12,12 +12,14 @@ from rga.twin.repository.entries import (
     StoredReadings,
     StoredSimulations,
 )
+from rga.twin.repository.faults import InUse
 from rga.twin.repository.step import Transaction
 from rga.twin.repository.store import Repository, Run
 from rga.twin.repository.view import RunView
 
 __all__ = [
     "Identity",
+    "InUse",
     "Inferred",
     "ModelVersion",
     "Proposal",

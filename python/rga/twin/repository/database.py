@@ -9,7 +9,7 @@ from sqlalchemy.exc import ArgumentError
 
 from rga.errors import InputError
 from rga.twin.repository.postgresql import PostgreSQL
-from rga.twin.repository.sqlite import SQLite
+from rga.twin.repository.sqlite import PATIENCE, SQLite
 
 FILE_NAME = "twin.sqlite"
 
@@ -28,8 +28,13 @@ class Database(Protocol):
         """Copy what is there before its tables change, where that is this package's business."""
 
 
-def database(place: str | Path, read_only: bool) -> Database:
+def database(place: str | Path, read_only: bool, patience: float = PATIENCE) -> Database:
     """The database at a path (a file, or a directory that holds `twin.sqlite`) or a URL.
+
+    Args:
+        place: it.
+        read_only: nothing is written.
+        patience: how long to wait for another writer [s].
 
     Raises:
         InputError: the URL cannot be read or is not PostgreSQL's, the driver is missing, or the
@@ -44,6 +49,6 @@ def database(place: str | Path, read_only: bool) -> Database:
         if url.drivername not in ("postgresql", "postgresql+psycopg"):
             where = f"repository {url.render_as_string(hide_password=True)}"
             raise InputError(f"no repository is kept in {url.drivername!r}", where, remedy)
-        return PostgreSQL(url.set(drivername="postgresql+psycopg"), read_only)
+        return PostgreSQL(url.set(drivername="postgresql+psycopg"), read_only, patience)
     path = Path(place)
-    return SQLite(path / FILE_NAME if path.is_dir() else path, read_only)
+    return SQLite(path / FILE_NAME if path.is_dir() else path, read_only, patience)

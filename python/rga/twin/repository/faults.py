@@ -7,6 +7,11 @@ from sqlalchemy.exc import DBAPIError, OperationalError
 
 from rga.errors import InputError
 
+
+class InUse(InputError):
+    """Another process writes there."""
+
+
 # By the beginning of SQLite's name of the error, and by PostgreSQL's state.
 _MENDED = {
     "SQLITE_NOTADB": ("the file is no repository", "name a file that rga wrote, or a new one"),
@@ -28,6 +33,10 @@ _MENDED = {
 }
 
 
+#: what says that another process writes there
+_LOCKED = ("SQLITE_BUSY", "55P03")
+
+
 @contextmanager
 def as_input_errors(where: str) -> Iterator[None]:
     """Turns what a user can mend into an InputError; other faults pass."""
@@ -38,7 +47,8 @@ def as_input_errors(where: str) -> Iterator[None]:
         name = name or getattr(error.orig, "sqlstate", None) or ""
         for beginning, (what, remedy) in _MENDED.items():
             if name.startswith(beginning):
-                raise InputError(what, where, remedy) from error
+                kind = InUse if name in _LOCKED else InputError
+                raise kind(what, where, remedy) from error
         if isinstance(error, OperationalError) and not name.startswith("SQLITE_"):
             words = str(error.orig).strip().partition("\n")[0]
             remedy = "check the URL, and that the server runs and lets you in"

@@ -10,16 +10,25 @@ from rga.errors import InputError
 _LOCK = text("SELECT pg_advisory_lock(hashtextextended(current_schema() || ' ' || :key, 0))")
 
 
+#: how long to wait for a lock [s]
+PATIENCE = 2.0
+
+
 class PostgreSQL:
     """Connections to a database, for all or for reading only.
+
+    Args:
+        url: of it.
+        read_only: nothing is written.
+        patience: how long to wait for another writer [s].
 
     Raises:
         InputError: the driver is not installed.
     """
 
-    def __init__(self, url: URL, read_only: bool) -> None:
+    def __init__(self, url: URL, read_only: bool, patience: float = PATIENCE) -> None:
         self.where = f"repository {url.render_as_string(hide_password=True)}"
-        self.read_only = read_only
+        self.read_only, self._patience = read_only, patience
         try:
             engine = create_engine(url)
         except ImportError as error:
@@ -38,7 +47,9 @@ class PostgreSQL:
             # Not handed back to the pool: closing it ends the session, and with it the lock.
             connection.detach()
             with connection.begin():
-                connection.execute(text("SET LOCAL lock_timeout = '2s'"))
+                # None at all would be to wait for ever.
+                wait = max(1, round(1000 * self._patience))
+                connection.execute(text(f"SET LOCAL lock_timeout = '{wait}ms'"))
                 connection.execute(_LOCK, {"key": key})
                 connection.execute(text("SET synchronous_commit = on"))
             yield connection

@@ -10,6 +10,7 @@ from filelock import FileLock, Timeout
 from sqlalchemy import Connection, QueuePool, create_engine, event
 
 from rga.errors import InputError
+from rga.twin.repository.faults import InUse
 
 # How long to wait for a lock [s]: a killed writer's may need a moment to vanish.
 PATIENCE = 2.0
@@ -18,14 +19,19 @@ PATIENCE = 2.0
 class SQLite:
     """Connections to a file, for all or for reading only.
 
+    Args:
+        path: of the file.
+        read_only: nothing is written.
+        patience: how long to wait for another writer [s].
+
     Raises:
         InputError: the file is missing where it is only to be read, or cannot be written.
     """
 
-    def __init__(self, path: Path, read_only: bool) -> None:
+    def __init__(self, path: Path, read_only: bool, patience: float = PATIENCE) -> None:
         self.where = f"repository {path}"
         self.read_only = read_only
-        self._path = path
+        self._path, self._patience = path, patience
         if read_only and not path.is_file():
             raise InputError("there is no such file", self.where, "name a repository of a run")
         if not read_only and not os.access(path if path.exists() else path.parent, os.W_OK):
@@ -63,14 +69,14 @@ class SQLite:
         """The connection of the one writer; the system drops its lock if the process is killed.
 
         Raises:
-            InputError: another writer holds the lock.
+            InUse: another writer holds the lock.
         """
-        lock = FileLock(f"{self._path}.lock", timeout=PATIENCE, thread_local=False)
+        lock = FileLock(f"{self._path}.lock", timeout=self._patience, thread_local=False)
         try:
             lock.acquire()
         except Timeout:
             remedy = "wait for it, or end it"
-            raise InputError("another process writes this repository", self.where, remedy) from None
+            raise InUse("another process writes this repository", self.where, remedy) from None
         except OSError as error:
             remedy = "allow writing to its directory"
             what = f"the repository cannot be locked: {error.strerror}"

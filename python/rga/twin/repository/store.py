@@ -15,6 +15,7 @@ from rga.twin.repository.database import Database, database
 from rga.twin.repository.entries import Identity
 from rga.twin.repository.faults import as_input_errors
 from rga.twin.repository.source import Source
+from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.repository.step import Transaction, now
 from rga.twin.repository.view import RunView
 
@@ -94,19 +95,22 @@ class Repository:
             finalize(self, kept_in.engine.dispose)
 
     @classmethod
-    def open(cls, place: str | Path, *, read_only: bool = False) -> Self:
+    def open(
+        cls, place: str | Path, *, read_only: bool = False, patience: float = PATIENCE
+    ) -> Self:
         """Open or begin a repository, and bring its tables to where the code is.
 
         Args:
             place: a file, a directory that holds `twin.sqlite`, or the URL of a PostgreSQL
                 database, `postgresql://user@host/database`.
             read_only: take no lock and change nothing; the repository must be there.
+            patience: how long to wait for another writer [s].
 
         Raises:
             InputError: what is there is no repository, is newer than the code, is locked, cannot
                 be read or written, or is out of reach; the driver of PostgreSQL is missing.
         """
-        repository = cls(database(place, read_only))
+        repository = cls(database(place, read_only, patience))
         try:
             repository._prepare()
         except BaseException:
