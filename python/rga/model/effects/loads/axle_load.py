@@ -89,10 +89,13 @@ class AxleLoad(Effect):
         """
         resolved = super().values(contexts, rows)
         position = resolved["position"]
-        moves = np.diff(np.append(self.past.get("position", position[:0]), position))
-        self.past["position"] = position[-1:].copy()
-        backwards = bool((moves <= 0).all() and (moves < 0).any())
-        return {**resolved, "heading": np.full(rows, -1.0 if backwards else 1.0)}
+        before, heading = self.past.get("train", np.array([position[0], 1.0]))
+        moves = np.diff(np.append(before, position))
+        # A train that stands still heads as before.
+        if moves.any():
+            heading = -1.0 if (moves <= 0).all() else 1.0
+        self.past["train"] = np.array([position[-1], heading])
+        return {**resolved, "heading": np.full(rows, heading)}
 
     def exact_for(self, values: Values) -> Self:
         places = np.unique(self._stands(values))
