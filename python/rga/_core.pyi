@@ -95,8 +95,9 @@ def slide(
     normal_free: NDArray[np.float64],
     normal_influence: NDArray[np.float64],
     mu: NDArray[np.float64],
+    before: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Coulomb friction forces [rows, bearings] of bearings through time."""
+    """Coulomb friction forces [rows, bearings] of bearings through time, on from a row before."""
 
 @final
 class Condensation:

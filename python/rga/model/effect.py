@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, PrivateAttr, field_validator, model_validator
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from rga.model.structure import Load, Structure
 
 Values = dict[str, FloatArray]
+#: what an effect keeps of the rows so far, under names of its own
+Past = dict[str, FloatArray]
 #: units on a dof that turns, by those on one that moves along
 TURNING = {"N/m": "N m/rad", "m": "rad"}
 
@@ -83,8 +85,12 @@ class Effect(BaseModel):
     loads_by_geometry: ClassVar[bool] = False
     #: True where a row depends on the rows before it.
     remembers: ClassVar[bool] = False
+    #: True where it goes on from its `past`, so that rows can be followed without those before.
+    keeps_past: ClassVar[bool] = False
     #: Values that follow from all rows at once, and no context of one row changes.
     of_all_rows: ClassVar[frozenset[str]] = frozenset()
+
+    _past: Past | None = PrivateAttr(default=None)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -215,6 +221,30 @@ class Effect(BaseModel):
         So a validator of a kind may refuse a parameter, and must not change it.
         """
         return self.model_copy(update=dict(values))
+
+    def going_on(self, past: Past) -> Self:
+        """The same effect for the next rows: it goes on from a past, and writes into it.
+
+        Args:
+            past: what it has kept so far; empty before the first row.
+        """
+        found = self.model_copy()
+        found._past = past
+        return found
+
+    @property
+    def past(self) -> Past:
+        """What it keeps of the rows so far: nothing where rows are simulated all at once."""
+        return {} if self._past is None else self._past
+
+    @property
+    def hindrance(self) -> str:
+        """Why its rows cannot be followed without those before; empty where they can."""
+        if self.onset is not None and self.end is None and self.profile == "ramp":
+            return "a ramp without an end is full in the last row, and there is always another"
+        if self.remembers and not self.keeps_past:
+            return f"the kind {self.kind} does not say what it keeps of the rows before"
+        return ""
 
     def weight(self, time: FloatArray) -> FloatArray:
         """Share of the effect that is present at each time [s], float[rows] in 0..1."""

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from rga.arrays import FloatArray
 from rga.model.parameter import listed
 
@@ -27,10 +25,3 @@ class Readings:
     def at(self, sensors: str | list[str]) -> list[int]:
         """Columns of the sensors of a place."""
         return [self.columns[name] for name in listed(sensors)]
-
-    @property
-    def days(self) -> FloatArray:
-        """Days since the first row, float[rows]."""
-        if not len(self.time):
-            return self.time
-        return np.asarray((self.time - self.time[0]) / 86400.0)

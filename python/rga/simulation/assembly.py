@@ -12,6 +12,7 @@ from rga.model.effect import Values
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure
 from rga.simulation.dispatch import CondensedPaths, Request, variation_between
+from rga.simulation.paths.friction_past import FrictionPast
 from rga.simulation.paths.variation import Variation, VariationWithin
 
 #: half widths of their ranges within which contexts are looked for, and a little more
@@ -54,12 +55,15 @@ class Assembly:
             return np.zeros((rows, 0))
         return np.column_stack(columns)
 
-    def request(self, values: dict[str, Values], rows: int) -> Request:
+    def request(
+        self, values: dict[str, Values], rows: int, friction: FrictionPast | None = None
+    ) -> Request:
         """What parameters of all effects ask of the structure.
 
         Args:
             values: of the parameters, as `resolve` gives them.
             rows: how many there are.
+            friction: where bearings stand after the rows before; None: there were none.
         """
         effects = self._model.effects
         structural = [name for name, effect in effects.items() if effect.structural]
@@ -124,6 +128,7 @@ class Assembly:
             fixed,
             self.prepared,
             lambda: self._over_ranges,
+            friction or FrictionPast(),
         )
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -14,6 +14,7 @@ from rga.errors import InputError
 from rga.model.structure import Load, Structure
 from rga.simulation.paths.factorisation import Factorisation
 from rga.simulation.paths.friction import respond_with_friction
+from rga.simulation.paths.friction_past import FrictionPast
 from rga.simulation.paths.large_displacements import respond_deformed
 from rga.simulation.paths.response import patterns, refused, respond
 from rga.simulation.paths.unilateral import LawTable, laws_alone, respond_with_laws, terms_of
@@ -79,6 +80,7 @@ class Request:
         fixed_patterns: no stiffness changes a load pattern.
         prepared: what earlier requests of the same model have condensed, by content.
         over_ranges: what varies over the ranges of the contexts, where that is known.
+        friction: where bearings stand after the rows before; in place, after these.
     """
 
     states: FloatArray
@@ -88,6 +90,7 @@ class Request:
     fixed_patterns: bool
     prepared: list[CondensedPaths]
     over_ranges: Callable[[], VariationWithin | None]
+    friction: FrictionPast = field(default_factory=FrictionPast)
 
     @property
     def of_rows(self) -> FloatArray:
@@ -140,6 +143,7 @@ def answer(request: Request) -> tuple[ResponsePlan, FloatArray]:
         InputError: a property that the core refuses.
     """
     rows = np.arange(len(request.state_of_row))
+    request.friction.pass_through(request.states, request.state_of_row)
     varied = _varied(request)
     structure = request.change(request.states[0]) if varied is None else varied.start
     loads = request.loads(structure, rows)
@@ -238,7 +242,7 @@ def _each_state(request: Request) -> FloatArray:
     parts = []
     order = np.argsort(request.state_of_row, kind="stable")
     starts = np.searchsorted(request.state_of_row[order], np.arange(len(request.states) + 1))
-    changes = np.count_nonzero(np.diff(request.state_of_row))
+    friction = request.friction
     for number, state in enumerate(request.states):
         chosen = order[starts[number] : starts[number + 1]]
         structure = request.change(state)
@@ -247,16 +251,19 @@ def _each_state(request: Request) -> FloatArray:
             parts.append(respond_deformed(structure, loads, chosen))
         elif structure.laws:
             parts.append(with_laws(request.prepared, structure, loads))
-        elif structure.bearings and changes >= APART:
+        elif structure.bearings and friction.changes >= APART:
             # Friction starts anew with each structure, and would never come to hold.
             raise InputError(
                 "friction is simulated through rows that share a structure, and this one changes "
-                f"{changes} times",
+                f"{friction.changes} times",
                 "bearing_friction",
                 "let nothing that changes from row to row drive mu or a stiffness beside it",
             )
         elif structure.bearings:
-            parts.append(respond_with_friction(structure, loads))
+            key = tuple(state.tolist())
+            part, rested = respond_with_friction(structure, loads, friction.rested.get(key))
+            friction.rested[key] = rested
+            parts.append(part)
         else:
             of_structure = _condense(structure, patterns(structure, loads))
             parts.append(of_structure.respond(coefficients(loads), np.zeros((len(chosen), 0))))

@@ -21,6 +21,7 @@ from rga.simulation.assembly import Assembly
 from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.derivatives.forward import jacobian, pull_back
 from rga.simulation.dispatch import ResponsePlan, answer
+from rga.simulation.memory import Followed, Memory, Trail, hindrance
 
 if TYPE_CHECKING:
     from rga.simulation.derivatives.torch_layer import DifferentiableSimulator
@@ -120,10 +121,42 @@ class Simulator:
             InputError: a context is missing, not finite, or of another length.
             UnstableStructureError: the structure can move; names node and direction.
         """
+        return self._predict(contexts, Trail(self.model.effects))
+
+    def follow(self, contexts: Contexts, memory: Memory | None = None) -> Followed:
+        """Simulated sensor values of the next rows of a record, which follow those before.
+
+        Rows that are followed, in packets of any size, read what `predict` has for all of them
+        together, but for rounding; the cost of a packet does not grow with the rows before it. Only
+        the way that an `axle_load` heads shows from the row before a packet on, not from all rows.
+
+        Args:
+            contexts: of these rows, as for `predict`; they do not begin before the last row.
+            memory: of the rows before; None: these are the first.
+
+        Returns:
+            The readings, and the memory with which the next rows are followed.
+
+        Raises:
+            InputError: as `predict`; rows of this model cannot be followed (`hindrance`), or the
+                memory is that of other effects.
+            UnstableStructureError: as `predict`.
+        """
+        if self.hindrance:
+            raise InputError(self.hindrance, "rows that are followed", "mend it, or use `predict`")
+        trail = Trail.behind(self.model, memory)
+        return Followed(self._predict(contexts, trail), trail.memory)
+
+    @cached_property
+    def hindrance(self) -> str:
+        """Why rows of the model cannot be followed without those before; empty where they can."""
+        return hindrance(self.model)
+
+    def _predict(self, contexts: Contexts, trail: Trail) -> FloatArray:
         # What overflows is told below, with its row.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            response = self.respond(contexts)
-            shown = self.read(response)
+            response = self._respond(contexts, trail)
+            shown = self.read(response, trail.effects)
         # A faulty sensor shows NaN of a sound structure.
         lost = np.argwhere(~np.isfinite(response.quantities) | np.isinf(shown))
         if len(lost):
@@ -141,9 +174,13 @@ class Simulator:
         Args:
             contexts: as for `predict`, with the same errors.
         """
+        return self._respond(contexts, Trail(self.model.effects))
+
+    def _respond(self, contexts: Contexts, trail: Trail) -> Response:
         table = self._table(contexts)
-        values = self.resolve(table)
-        plan, quantities = answer(self.assembly.request(values, len(table["time"])))
+        values = self.resolve(table, trail.effects)
+        request = self.assembly.request(values, len(table["time"]), trail.friction)
+        plan, quantities = answer(request)
         return Response(table, values, quantities * self._structure.per_si, plan)
 
     def parameters(self, contexts: Mapping[str, ArrayLike]) -> dict[str, Values]:
@@ -163,7 +200,7 @@ class Simulator:
 
         Args:
             response: of this model, or of the same model with other effects on its sensors.
-            more: effects that the model does not have.
+            more: effects that the model does not have, or in place of those of the same names.
         """
         return self.zeroed(self.shown(response, more))
 
@@ -288,13 +325,16 @@ class Simulator:
             table[name] = np.broadcast_to(column, rows)
         return table
 
-    def resolve(self, measured: Values) -> dict[str, Values]:
+    def resolve(
+        self, measured: Values, going_on: Mapping[str, Effect] | None = None
+    ) -> dict[str, Values]:
         """Parameters of all effects, row by row, as the true contexts and the effects make them.
 
         Args:
             measured: contexts and time, float[rows] each.
+            going_on: the effects, where they go on from rows before.
         """
-        effects, rows = self.model.effects, len(measured["time"])
+        effects, rows = going_on or self.model.effects, len(measured["time"])
         true = dict(measured)
         for effect in effects.values():
             if effect.overrides("change_contexts"):

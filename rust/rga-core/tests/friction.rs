@@ -12,6 +12,16 @@ fn friction(
     flexibility: &[f64],
     influence: &[f64],
 ) -> Result<Vec<f64>> {
+    friction_after(&vec![0.0; 2 * count], free, flexibility, influence)
+}
+
+fn friction_after(
+    before: &[f64],
+    free: &[f64],
+    flexibility: &[f64],
+    influence: &[f64],
+) -> Result<Vec<f64>> {
+    let count = before.len() / 2;
     let rows = free.len() / count;
     let normal = vec![NORMAL; free.len()];
     let mu = vec![MU; count];
@@ -21,6 +31,7 @@ fn friction(
         normal_free: Array::new(&normal, &[rows, count]),
         normal_influence: Array::new(influence, &[count, count]),
         mu: Array::new(&mu, &[count]),
+        before: Array::new(before, &[2, count]),
     })
 }
 
@@ -81,6 +92,26 @@ fn coupled_bearings_stay_within_their_cones() -> Result<()> {
     Ok(())
 }
 
+/// Bit for bit: nothing else is kept of the rows before.
+#[test]
+fn rows_go_on_where_the_row_before_came_to_rest() -> Result<()> {
+    let free: Vec<f64> = wave(300).into_iter().flat_map(|u| [u, 0.7 * u]).collect();
+    let flexibility = [
+        FLEXIBILITY,
+        0.8 * FLEXIBILITY,
+        0.8 * FLEXIBILITY,
+        FLEXIBILITY,
+    ];
+    let influence = [0.0, 0.1, -0.1, 0.0];
+    let whole = friction(&free, 2, &flexibility, &influence)?;
+    for cut in [2, 100, 598] {
+        let before = [&free[cut - 2..cut], &whole[cut - 2..cut]].concat();
+        let rest = friction_after(&before, &free[cut..], &flexibility, &influence)?;
+        assert_eq!(rest, whole[cut..]);
+    }
+    Ok(())
+}
+
 #[test]
 fn a_lifted_bearing_carries_no_friction() -> Result<()> {
     let free = wave(20);
@@ -91,6 +122,7 @@ fn a_lifted_bearing_carries_no_friction() -> Result<()> {
         normal_free: Array::new(&normal, &[20, 1]),
         normal_influence: Array::new(&[0.0], &[1, 1]),
         mu: Array::new(&[MU], &[1]),
+        before: Array::new(&[0.0, 0.0], &[2, 1]),
     })?;
     assert!(found.iter().all(|&force| force == 0.0));
     Ok(())

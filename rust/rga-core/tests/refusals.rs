@@ -179,6 +179,7 @@ fn friction_input_is_checked() {
         normal_free: Array::new(&one, &[1, 1]),
         normal_influence: Array::new(&[0.0], &[1, 1]),
         mu: Array::new(&one, &[1]),
+        before: Array::new(&[1.0, 1.0], &[2, 1]),
     };
     let refused = slide(&bearings).map_err(|error| error.to_string());
     assert!(refused.is_err_and(|text| text.contains("flexibility[0, 0]")));
@@ -187,4 +188,10 @@ fn friction_input_is_checked() {
         ..bearings
     };
     assert!(slide(&shaped).is_err_and(|error| error.to_string().contains("mu has shape")));
+    let shaped = Bearings {
+        flexibility: Array::new(&one, &[1, 1]),
+        before: Array::new(&one, &[1, 1]),
+        ..bearings
+    };
+    assert!(slide(&shaped).is_err_and(|error| error.to_string().contains("before has shape")));
 }

@@ -122,13 +122,14 @@ pub(crate) fn respond_nonlinear<'py>(
 /// Displacements are u = free_displacement + flexibility r and normal forces
 /// N = max(0, normal_free + normal_influence r), with r the friction forces on
 /// the structure. Each row sticks to the place of the row before or slips with
-/// abs(r) = mu N against the motion; the start is u = 0, r = 0.
+/// abs(r) = mu N against the motion; the first goes on from where a row before it came to rest.
 ///
 /// Parameters
 /// ----------
 /// free_displacement, normal_free : f64[n_t, b]
 /// flexibility, normal_influence : f64[b, b]
 /// mu : f64[b]
+/// before : f64[2, b], free displacements, then friction forces, in the row before
 ///
 /// Returns
 /// -------
@@ -145,18 +146,21 @@ pub(crate) fn slide<'py>(
     normal_free: &Bound<'py, PyAny>,
     normal_influence: &Bound<'py, PyAny>,
     mu: &Bound<'py, PyAny>,
+    before: &Bound<'py, PyAny>,
 ) -> PyResult<Matrix<'py>> {
     let free_displacement = Held::new(free_displacement, "free_displacement")?;
     let flexibility = Held::new(flexibility, "flexibility")?;
     let normal_free = Held::new(normal_free, "normal_free")?;
     let normal_influence = Held::new(normal_influence, "normal_influence")?;
     let mu = Held::new(mu, "mu")?;
+    let before = Held::new(before, "before")?;
     let bearings = Bearings {
         free_displacement: free_displacement.view(),
         flexibility: flexibility.view(),
         normal_free: normal_free.view(),
         normal_influence: normal_influence.view(),
         mu: mu.view(),
+        before: before.view(),
     };
     let friction = py
         .detach(|| rga_core::slide(&bearings))

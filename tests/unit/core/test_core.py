@@ -115,5 +115,8 @@ def test_mechanism_is_named() -> None:
 def test_friction_holds_then_slides() -> None:
     free = np.array([[1e-3], [5e-3]])
     normal, flexibility = np.full((2, 1), 1e5), np.array([[1e-6]])
-    forces = _core.slide(free, flexibility, normal, np.zeros((1, 1)), np.array([0.03]))
+    settled = flexibility, normal, np.zeros((1, 1)), np.array([0.03])
+    forces = _core.slide(free, *settled, np.zeros((2, 1)))
     assert forces[:, 0] == pytest.approx([-1e3, -3e3])
+    before = np.array([free[0], forces[0]])
+    assert _core.slide(free[1:], flexibility, normal[1:], *settled[2:], before) == forces[1]

@@ -12,13 +12,21 @@ from rga.simulation.paths.response import respond
 UP = (0.0, 0.0, 1.0)
 
 
-def respond_with_friction(structure: Structure, loads: list[Load]) -> FloatArray:
-    """Sensors under loads that follow each other in time, float[rows, sensors] in SI units.
+def respond_with_friction(
+    structure: Structure, loads: list[Load], rested: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Sensors under loads that follow each other in time, and where bearings then rest.
 
-    The first row is without friction: what is locked in before it is not known.
+    Args:
+        structure: with its bearings.
+        loads: on it, with the coefficients of the rows.
+        rested: where they rested in the row before, as `slid` has it.
+
+    Returns:
+        float[rows, sensors] in SI units, and float[2, bearings] as `slid` has it.
     """
     coefficients = np.column_stack([load.coefficient for load in loads])
-    return slid(structure, coefficients, frictionless(structure, loads))
+    return slid(structure, coefficients, frictionless(structure, loads), rested)
 
 
 def frictionless(structure: Structure, loads: list[Load]) -> FloatArray:
@@ -35,8 +43,13 @@ def frictionless(structure: Structure, loads: list[Load]) -> FloatArray:
     return respond(structure, [*loads, *unit], _with_bearings(structure))
 
 
-def slid(structure: Structure, coefficients: FloatArray, response: FloatArray) -> FloatArray:
-    """Sensors as friction makes them, row after row, float[rows, sensors] in SI units.
+def slid(
+    structure: Structure,
+    coefficients: FloatArray,
+    response: FloatArray,
+    rested: FloatArray | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Sensors as friction makes them, row after row, and where bearings rest in the last.
 
     The friction force of each bearing is bounded by mu times the vertical reaction plus the
     permanent force; both follow from the response to unit forces at the bearings.
@@ -45,6 +58,12 @@ def slid(structure: Structure, coefficients: FloatArray, response: FloatArray) -
         structure: with its bearings.
         coefficients: of the load patterns, float[rows, patterns].
         response: without friction, as `frictionless` has it.
+        rested: where bearings rested in the row before; None: there was none, and the first row is
+            without friction, as what is locked in before it is not known.
+
+    Returns:
+        float[rows, sensors] in SI units; and the motion without friction of each bearing [m], then
+        its friction force [N], in the last row, float[2, bearings].
 
     Raises:
         InputError: friction forces do not settle.
@@ -54,14 +73,17 @@ def slid(structure: Structure, coefficients: FloatArray, response: FloatArray) -
     influence = response[patterns:]
     count = len(structure.outputs["kind"])
     slide, normal = count, count + len(bearings)
+    motion = np.ascontiguousarray(free[:, slide:normal])
+    before = np.stack([motion[0], np.zeros(len(bearings))]) if rested is None else rested
     permanent = np.array([bearing.permanent_force for bearing in bearings])
     try:
         force = _core.slide(
-            np.ascontiguousarray(free[:, slide:normal] - free[0, slide:normal]),
+            motion,
             np.ascontiguousarray(influence[:, slide:normal].T),
             np.ascontiguousarray(free[:, normal:] + permanent),
             np.ascontiguousarray(influence[:, normal:].T),
             np.array([bearing.mu for bearing in bearings]),
+            before,
         )
     except (_core.NotConverged, _core.InvalidInput) as error:
         raise InputError(
@@ -69,7 +91,7 @@ def slid(structure: Structure, coefficients: FloatArray, response: FloatArray) -
         ) from None
     # What a bearing does to the structure is a part of the reaction there.
     own = influence[:, :count] + _own_reactions(structure)
-    return np.asarray(free[:, :count] + force @ own)
+    return np.asarray(free[:, :count] + force @ own), np.stack([motion[-1], force[-1]])
 
 
 def _own_reactions(structure: Structure) -> FloatArray:

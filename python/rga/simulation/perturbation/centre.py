@@ -155,7 +155,7 @@ class Centre:
         places = tuple((bearing.node, bearing.dof) for bearing in structure.bearings)
         if places not in self.frictionless:
             self.frictionless[places] = frictionless(structure, self.loads)
-        return slid(structure, self.coefficients, self.frictionless[places])
+        return slid(structure, self.coefficients, self.frictionless[places])[0]
 
     def _known(
         self, effects: Mapping[str, Effect], structure: Structure, warms: bool

@@ -22,6 +22,8 @@ pub struct Bearings<'a> {
     pub normal_influence: Array<'a, f64>,
     /// `[b]`
     pub mu: Array<'a, f64>,
+    /// `[2, b]` displacements without friction, then friction forces, in the row before the first
+    pub before: Array<'a, f64>,
 }
 
 /// A sweep that changes forces by less than this part has converged.
@@ -29,12 +31,14 @@ const CONVERGED: f64 = 1e-12;
 
 const SWEEPS: usize = 100_000;
 
-/// Friction forces `[n_t, b]`, from rest without friction (u = 0, r = 0).
+/// Friction forces `[n_t, b]`, from where the row before the first came to rest.
 pub fn slide(bearings: &Bearings) -> Result<Vec<f64>> {
     check(bearings)?;
-    let count = bearings.mu.len();
-    let mut rested = vec![0.0; count];
-    let mut friction = vec![0.0; count];
+    let mut friction = bearings.before.row(1).to_vec();
+    let mut rested = bearings.before.row(0).to_vec();
+    for (bearing, rested) in rested.iter_mut().enumerate() {
+        *rested += dot(bearings.flexibility.row(bearing), &friction);
+    }
     let mut history = Vec::with_capacity(bearings.free_displacement.values.len());
     for row in 0..bearings.free_displacement.len() {
         settle(bearings, row, &rested, &mut friction)?;
@@ -96,6 +100,7 @@ fn check(bearings: &Bearings) -> Result<()> {
             &bearings.normal_influence,
             &[count, count],
         ),
+        ("before", &bearings.before, &[2, count]),
     ] {
         array.check_shape(name, shape)?;
         array.check_finite(name)?;

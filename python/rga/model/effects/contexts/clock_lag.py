@@ -4,9 +4,10 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from rga.arrays import FloatArray
 from rga.model.action import Action
 from rga.model.effect import Effect, Values
-from rga.model.parameter import Parameter, Place, Value, listed
+from rga.model.parameter import Driven, Parameter, Place, Value, resolve
 from rga.model.readings import Readings
 
 
@@ -23,18 +24,50 @@ class ClockLag(Effect):
         test="one sharp event that all loggers see",
     )
     remembers = True
+    keeps_past = True
     sensor: Annotated[str | list[str] | None, Place("sensor")] = None
     time: Annotated[Value, Parameter("s", 0.0)] = 0.0
+
+    @property
+    def hindrance(self) -> str:
+        if isinstance(self.time, Driven):
+            return "how far back a clock shows must not follow a context"
+        if self._longest < 0:
+            return "a clock that is early shows what has not come yet"
+        return super().hindrance
+
+    @property
+    def _longest(self) -> float:
+        """How far back a reading may show, in all rows to come [s]."""
+        return float(resolve(self.time, {}, 1)[0])
 
     def change_contexts(self, contexts: Values, values: Values) -> None:
         if self.sensor is not None:
             return
-        clock = contexts["time"]
-        for name, column in contexts.items():
-            if name != "time":
-                contexts[name] = np.interp(clock - values["time"], clock, column)
+        names = [name for name in contexts if name != "time"]
+        columns = [contexts[name] for name in names]
+        late = self._late(columns, contexts["time"], values["time"])
+        contexts.update(zip(names, late, strict=True))
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        for name in listed(self.sensor):
-            column = readings.values[:, readings.columns[name]]
-            column[:] = np.interp(readings.time - values["time"], readings.time, column.copy())
+        if self.sensor is None:
+            return
+        places = readings.at(self.sensor)
+        columns = [readings.values[:, place] for place in places]
+        late = self._late(columns, readings.time, values["time"])
+        readings.values[:, places] = np.transpose(late)
+
+    def _late(
+        self, columns: list[FloatArray], clock: FloatArray, lag: FloatArray
+    ) -> list[FloatArray]:
+        """What columns have shown a lag earlier, float[rows] each."""
+        if not columns:
+            return []
+        table = np.stack([clock, *columns])
+        table = np.hstack([self.past.get("rows", table[:, :0]), table])
+        time = table[0]
+        if self._past is not None:
+            # What comes shows nothing before the last of these rows that is so far back.
+            reached = np.searchsorted(time, time[-1] - self._longest, side="right") - 1
+            self.past["rows"] = table[:, max(reached, 0) :].copy()
+        return [np.interp(clock - lag, time, column) for column in table[1:]]

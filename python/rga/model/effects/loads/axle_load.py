@@ -46,6 +46,7 @@ class AxleLoad(Effect):
 
     kind: Literal["axle_load"] = "axle_load"
     is_load = True
+    keeps_past = True
     of_all_rows = frozenset({"heading"})
     loads_by_geometry = True
     path: Annotated[list[str], Field(min_length=2)]
@@ -82,11 +83,19 @@ class AxleLoad(Effect):
                 raise ValueError(f"no frame member joins {pair[0]!r} and {pair[1]!r} of the path")
 
     def values(self, contexts: Mapping[str, FloatArray], rows: int) -> Values:
-        """Parameters of every row, and the `heading` of the train in all of them, 1 or -1."""
+        """Parameters of every row, and the `heading` of the train in all of them, 1 or -1.
+
+        Where rows are followed, it shows from the row before them on.
+        """
         resolved = super().values(contexts, rows)
-        moves = np.diff(resolved["position"])
-        backwards = bool((moves <= 0).all() and (moves < 0).any())
-        return {**resolved, "heading": np.full(rows, -1.0 if backwards else 1.0)}
+        position = resolved["position"]
+        before, heading = self.past.get("train", np.array([position[0], 1.0]))
+        moves = np.diff(np.append(before, position))
+        # A train that stands still heads as before.
+        if moves.any():
+            heading = -1.0 if (moves <= 0).all() else 1.0
+        self.past["train"] = np.array([position[-1], heading])
+        return {**resolved, "heading": np.full(rows, heading)}
 
     def exact_for(self, values: Values) -> Self:
         places = np.unique(self._stands(values))

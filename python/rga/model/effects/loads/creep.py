@@ -31,6 +31,7 @@ class Creep(Effect):
     )
     usual = f"amplitude {USUAL}: a judgement"
     remembers = True
+    keeps_past = True
     loads_by_geometry = True
     amplitude: Annotated[Value, Parameter("-", 0.0)] = 0.0
 
@@ -46,7 +47,10 @@ class Creep(Effect):
 
     def values(self, contexts: Mapping[str, FloatArray], rows: int) -> Values:
         time = contexts["time"]
-        first = time[:1] if self.onset is None else seconds(self.onset)
+        if self.onset is None:
+            first = self.past.setdefault("first", time[:1].copy())
+        else:
+            first = np.array([seconds(self.onset)])
         days = np.maximum(time - first, 0.0) / 86400
         return {"growth": super().values(contexts, rows)["amplitude"] * np.log10(1 + days)}
 

@@ -26,6 +26,7 @@ class SensorDrift(Effect):
     )
     usual = f"in {DAYS} days {USUAL} times a large offset ({OFFSET_WORDS}): a judgement"
     remembers = True
+    keeps_past = True
     on_sensors = True
     sensor: Sensors
     rate: Annotated[Value, Parameter("unit/day", 0.0)] = 0.0
@@ -39,7 +40,9 @@ class SensorDrift(Effect):
         return {"rate": USUAL.times(offset_scale(model, place["sensor"]) / DAYS)}
 
     def change_readings(self, readings: Readings, values: Values) -> None:
-        days = readings.days
-        if self.onset is not None and len(days):
-            days = np.maximum(readings.time - seconds(self.onset), 0.0) / 86400
+        time = readings.time
+        if self.onset is None:
+            days = (time - self.past.setdefault("first", time[:1].copy())) / 86400
+        else:
+            days = np.maximum(time - seconds(self.onset), 0.0) / 86400
         readings.values[:, readings.at(self.sensor)] += (values["rate"] * days)[:, None]

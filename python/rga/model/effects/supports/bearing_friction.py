@@ -48,6 +48,8 @@ class BearingFriction(Effect):
     )
     structural = True
     remembers = True
+    # Bearings act on each other: the simulation keeps the past of all that a structure has.
+    keeps_past = True
     support: Supports
     dof: Direction
     mu: Annotated[Value, Parameter("-", 0.0, least=0.0)] = 0.0
