@@ -90,6 +90,18 @@ class RunView:
         time, readings, contexts = arrays
         return StoredReadings(rows, time.reshape(-1), readings, contexts)
 
+    def measured_at(self, rows: ArrayLike) -> StoredReadings:
+        """Chosen rows of the record, int[n], without loading what lies between them.
+
+        Args:
+            rows: in any order; those that nothing was stored for are left out.
+        """
+        wanted = np.unique(np.asarray(rows, dtype=np.int64))
+        found, (time, readings, contexts) = self._source.chosen(
+            tables.measured, ("time", "readings", "contexts"), wanted
+        )
+        return StoredReadings(found, time.reshape(-1), readings, contexts)
+
     def inferred(
         self,
         first: int = 0,
