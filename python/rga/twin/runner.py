@@ -24,6 +24,7 @@ from rga.twin.history import Event, History
 from rga.twin.messages.hardware import HardwareInterface
 from rga.twin.messages.middleware import InProcess
 from rga.twin.messages.query_bus import QueryResponse
+from rga.twin.past.chosen_past import chosen_past, with_choice
 from rga.twin.repository import Identity, Repository, Run, RunView
 from rga.twin.restore import history_of, ledger_of, replay, standing_of
 from rga.twin.settings import Settings
@@ -252,9 +253,11 @@ class Running:
 
     def _ask_diagnosis(self) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along."""
-        record, given = self._record.rows(slice(0, self.row)), self.calibration.given
+        past, given = self._record.rows(slice(0, self.row)), self.calibration.given
         model, criteria = self._model, self._settings.criteria
-        changed = self.analysis.changed
+        changed, calibrated = self.analysis.changed, self.analysis.standing.calibrated
+        events, most = self._archive.run.events(), criteria.record.most_rows
+        record, choice = chosen_past(model, past, events, calibrated, most, self._seed)
         if changed and given is not None and given.found is not None:
             assert given.correction is not None
             found = diagnose_change(
@@ -262,16 +265,17 @@ class Running:
                 record,
                 given.found,
                 given.correction,
-                since=record.origin + float(record.time[self.analysis.standing.calibrated - 1]),
+                since=past.origin + float(past.time[calibrated - 1]),
                 criteria=criteria,
                 seed=self._seed,
                 progress=self._progress,
             )
             if found is not None:
-                return found
+                return with_choice(found, choice, len(past))
         findings = diagnose(
             model, record, criteria=criteria, seed=self._seed, progress=self._progress
         )
+        findings = with_choice(findings, choice, len(past))
         return in_doubt(findings) if changed and not findings.causes else findings
 
     @property

@@ -123,7 +123,7 @@ class _Expected:
     def memory(self) -> FloatArray:
         """Correlation from one row to the next, float[sensors]."""
         rest, observed = self.rest, self.rows.observed
-        # Rows that were chosen of many may be far apart: what they have not in common is no measure.
+        # Rows that were chosen of many may be far apart, and say nothing of their memory.
         pairs = observed[1:] & observed[:-1] & self.rows.near[1:, None]
         product = (rest[1:] * rest[:-1] * pairs).sum(0)
         before = ((rest[:-1] ** 2 + self.hidden[:-1]) * pairs).sum(0)
