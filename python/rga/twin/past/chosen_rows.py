@@ -48,8 +48,8 @@ def chosen_rows(
     """Choose rows of a past: all, or at most a number.
 
     All rows next to a mark are there, and ever fewer farther away, so that what began at it can be
-    dated. Conditions count by whether they occurred, not by how often: rare values of a context have
-    the same share as usual ones, before the last mark and since.
+    dated. Conditions count by whether they occurred, not by how often: rare values of a context
+    have the same share as usual ones, before the last mark and since.
 
     Args:
         rows: of the past.
