@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from rga.twin.past.chosen_rows import ON_END, Choice, chosen_rows
+from rga.twin.past.chosen_rows import ON_END, ChosenRows, chosen_rows
 
 ROWS, MOST, MARK = 30_011, 400, 28_503
 DRAW = np.random.default_rng(3)
@@ -18,7 +18,7 @@ RANGES = np.array([[-20.0, 40.0], [0.0, 100.0]])
 
 def choice(
     *marks: int, most: int = MOST, seed: int = 0, on_end: int = ON_END, zero: slice | None = None
-) -> Choice:
+) -> ChosenRows:
     taken_off = None if zero is None else np.arange(ROWS)[zero]
     return chosen_rows(
         ROWS, CONTEXTS, RANGES, marks, 200, most, seed, zero=taken_off, on_end=on_end

@@ -21,7 +21,7 @@ LEAST = 8
 
 
 @dataclass(frozen=True)
-class Choice:
+class ChosenRows:
     """Rows of a past.
 
     Attributes:
@@ -44,7 +44,7 @@ def chosen_rows(
     *,
     zero: IntArray | None = None,
     on_end: int = ON_END,
-) -> Choice:
+) -> ChosenRows:
     """Choose rows of a past: all, or at most a number.
 
     All rows next to a mark are there, and ever fewer farther away, so that what began at it can be
@@ -78,7 +78,7 @@ def chosen_rows(
     ''
     """
     if rows <= most:
-        return Choice(np.arange(rows), "")
+        return ChosenRows(np.arange(rows), "")
     on_end = min(on_end, most)
     runs = _Runs(-(-rows // on_end), most // on_end)
     # What counts from the first row needs it.
@@ -113,7 +113,7 @@ def chosen_rows(
     tell(runs.take_evenly(every, runs.left) + 1, "evenly over time")
     chosen = runs.rows(rows, on_end)
     words = f"{_number(len(chosen))} of {_number(rows)} rows, {on_end} on end: {', '.join(told)}"
-    return Choice(chosen, words)
+    return ChosenRows(chosen, words)
 
 
 class _Runs:
