@@ -67,7 +67,7 @@ class Record:
         """A time [s since the first row] as the record writes it: ISO 8601 text, or seconds."""
         return time_label(self.start, elapsed)
 
-    def rows(self, chosen: NDArray[np.bool_] | slice) -> "Record":
+    def rows(self, chosen: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "Record":
         """The chosen rows; time still counts from the first row of the file."""
         return replace(
             self,

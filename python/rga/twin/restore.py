@@ -1,21 +1,23 @@
 """The past of a run, out of the repository: the twin's state, its rows, and what happened."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 from pydantic import ValidationError
 
+from rga.arrays import IntArray
 from rga.errors import InputError
 from rga.findings.phrases import effect_words
 from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.digital_twin import TwinState, follow
-from rga.twin.hardware.interface import Station
+from rga.twin.hardware.interface import LIVE, Station
 from rga.twin.history import Event, History, Version
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
 from rga.twin.recent_rows import Stretch, carried_on
-from rga.twin.repository import RunView
+from rga.twin.repository import RunView, StoredReadings
 from rga.twin.run_state import Standing
 
 
@@ -128,17 +130,41 @@ def given_model(view: RunView) -> Model:
 
 def record_of(view: RunView, first: int = 0, end: int | None = None) -> Record:
     """The rows that the repository holds, from one to before another, as a record."""
-    station, seen = station_of(view), view.measured(first, end)
-    columns = seen.contexts.reshape(len(seen.rows), len(station.measured)).T
-    return Record(
+    return _as_record(view, view.measured(first, end), station_of(view).channels)
+
+
+def chosen_record(view: RunView, rows: IntArray) -> Record:
+    """Chosen rows that the repository holds, as a record.
+
+    Args:
+        view: a run of the repository.
+        rows: int[n].
+    """
+    return _as_record(view, view.measured_at(rows), station_of(view).channels)
+
+
+def times_and_contexts(view: RunView, end: int) -> Record:
+    """The rows before one as a record without its readings."""
+    return _as_record(view, view.times_and_contexts(end), ())
+
+
+def _as_record(view: RunView, seen: StoredReadings, channels: tuple[str, ...]) -> Record:
+    station, rows = station_of(view), len(seen.rows)
+    columns = seen.contexts.reshape(rows, len(station.measured)).T
+    record = Record(
         time=seen.time,
         start=station.start,
         time_format=station.time_format,
-        sensors=station.channels,
-        readings=seen.readings.reshape(len(seen.rows), len(station.channels)),
+        sensors=channels,
+        readings=seen.readings.reshape(rows, len(channels)),
         contexts=dict(zip(station.measured, columns, strict=True)),
         sha256=view.identity.source,
     )
+    if not view.identity.source.startswith(LIVE):
+        return record
+    # Rows that go on arriving are told apart by what they are.
+    digest = sha256(record.time, record.readings, seen.contexts)
+    return replace(record, sha256=digest)
 
 
 def history_of(view: RunView) -> History:

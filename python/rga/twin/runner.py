@@ -6,6 +6,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
+from rga.arrays import IntArray
 from rga.diagnosis import diagnose
 from rga.errors import InputError
 from rga.findings import Findings
@@ -25,9 +26,10 @@ from rga.twin.hardware.recorded import Recorded
 from rga.twin.hardware.stored import Stored
 from rga.twin.history import Event, History
 from rga.twin.messages.query_bus import QueryResponse
+from rga.twin.past.chosen_past import chosen_past, with_choice
 from rga.twin.repository import Identity, Repository, Run
 from rga.twin.repository.sqlite import PATIENCE
-from rga.twin.restore import given_model, history_of, record_of
+from rga.twin.restore import chosen_record, given_model, history_of, times_and_contexts
 from rga.twin.settings import Settings
 from rga.twin.versions import beyond, written
 
@@ -346,9 +348,12 @@ class Running:
 
     def _ask_diagnosis(self) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along."""
-        record, given = self._record(self.row), self.calibration.given
+        given, past = self.calibration.given, self._past()
         model, criteria = self._model, self._settings.criteria
-        changed = self.analysis.changed
+        changed, calibrated = self.analysis.changed, self.analysis.standing.calibrated
+        events, most = self._archive.run.events(), criteria.record.most_rows
+        choice = chosen_past(model, past, events, calibrated, most, self._seed)
+        record = self._archive.used(self._record(past, choice.rows))
         if changed and given is not None and given.found is not None:
             assert given.correction is not None
             found = diagnose_change(
@@ -356,31 +361,30 @@ class Running:
                 record,
                 given.found,
                 given.correction,
-                since=self._calibrated_until,
+                since=past.origin + float(past.time[calibrated - 1]),
                 criteria=criteria,
                 seed=self._seed,
                 progress=self._progress,
             )
             if found is not None:
-                return found
+                return with_choice(found, choice, len(past))
         findings = diagnose(
             model, record, criteria=criteria, seed=self._seed, progress=self._progress
         )
+        findings = with_choice(findings, choice.words, len(past))
         return in_doubt(findings) if changed and not findings.causes else findings
 
-    def _record(self, rows: int) -> Record:
-        """The first so many rows."""
+    def _past(self) -> Record:
+        """The rows so far; their readings may be left out."""
         if isinstance(self._hardware, Recorded):
-            record = self._hardware.record.rows(slice(0, rows))
-        else:
-            record = record_of(self._archive.run, end=rows)
-        return self._archive.used(record)
+            return self._hardware.record.rows(slice(0, self.row))
+        return times_and_contexts(self._archive.run, self.row)
 
-    @property
-    def _calibrated_until(self) -> float:
-        """Clock of the last row of the first calibration [s]."""
-        calibrated = self.analysis.standing.calibrated
-        return float(self.calibration.rows.clock(calibrated - 1, calibrated)[0])
+    def _record(self, past: Record, rows: IntArray) -> Record:
+        """Chosen rows with their readings."""
+        if isinstance(self._hardware, Recorded):
+            return past if len(rows) == len(past) else past.rows(rows)
+        return chosen_record(self._archive.run, rows)
 
     def _label(self, row: int) -> str | float:
         if not len(self.calibration.ledger):

@@ -1,6 +1,7 @@
 """The historical repository: what is stored comes back, as it stood."""
 
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from numpy.testing import assert_array_equal
 
 from rga.errors import InputError
 from rga.twin.history import Event
-from rga.twin.repository import Identity, Repository, Run, StoredFindings
+from rga.twin.repository import Identity, Repository, Run, StoredFindings, source
+from rga.twin.repository.chunks import unpack
 from stored_runs import IDENTITY, noisy, version
 
 
@@ -31,6 +33,47 @@ def test_measured_rows_come_back(run: Run) -> None:
     assert run.row == 2999
 
 
+def test_chosen_rows_come_back(run: Run) -> None:
+    time, readings, contexts = np.arange(3000.0) * 60, noisy(3000, 5), noisy(3000, 2, seed=1)
+    with run.step() as step:
+        step.measured(0, time[:2500], readings[:2500], contexts[:2500])
+    with run.step() as step:
+        step.measured(2000, time[2000:], readings[2000:] + 1, contexts[2000:])
+    readings[2000:] += 1
+    rows = np.array([2999, 7, 8, 1023, 1024, 1999, 2000, 2499, 2500, 4000])
+    chosen, known = run.measured_at(rows), np.sort(rows)[:-1]
+    assert_array_equal(chosen.rows, known)
+    assert_array_equal(chosen.time, time[known])
+    assert_array_equal(chosen.readings, readings[known])
+    assert_array_equal(chosen.contexts, contexts[known])
+    assert_array_equal(run.as_of(row=2499).measured_at([2499]).readings, noisy(3000, 5)[[2499]])
+
+
+def test_chosen_rows_of_many_packets(run: Run) -> None:
+    readings = noisy(400, 5)
+    for first in range(0, 400, 4):
+        with run.step() as step:
+            rows = slice(first, first + 4)
+            step.measured(first, np.arange(400.0)[rows], readings[rows], np.zeros((4, 0)))
+    chosen = run.measured_at(np.arange(1, 400, 3))
+    assert_array_equal(chosen.readings, readings[1::3])
+    assert chosen.contexts.shape == (len(chosen.rows), 0)
+
+
+def test_only_chunks_with_chosen_rows_are_loaded(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    with run.step() as step:
+        step.measured(0, np.arange(9000.0), noisy(9000, 5), noisy(9000, 2))
+    loaded = []
+
+    def counted(packed: bytes, count: int) -> Any:
+        loaded.append(count)
+        return unpack(packed, count)
+
+    monkeypatch.setattr(source, "unpack", counted)
+    assert_array_equal(run.measured_at([5, 6, 8999]).rows, [5, 6, 8999])
+    assert loaded == [1024] * 3 + [808] * 3
+
+
 def test_a_record_without_measured_contexts(run: Run) -> None:
     with run.step() as step:
         step.measured(4, [240.0, 300.0], noisy(2, 5), np.zeros((2, 0)))
@@ -41,6 +84,7 @@ def test_a_record_without_measured_contexts(run: Run) -> None:
 def test_nothing_stored_is_read_as_nothing(run: Run) -> None:
     assert (run.steps, run.row) == (0, -1)
     assert run.measured().readings.shape == (0, 0)
+    assert run.measured_at([0, 5]).readings.shape == (0, 0)
     assert len(run.simulated(within=([0, 0, 0], [1, 1, 1]))) == 0
     assert run.count_simulated() == run.count_simulated(within=([0, 0, 0], [1, 1, 1])) == 0
     assert run.version_in_force() is None

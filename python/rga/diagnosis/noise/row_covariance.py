@@ -13,6 +13,8 @@ from scipy.linalg import cholesky_banded, lapack
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 
+#: typical steps beyond which one row says nothing of the next: longer than rows that are held out
+APART = 20.0
 #: numbers in the columns that are weighted at a time: with their products they stay in the cache
 CACHED = 1 << 15
 
@@ -48,6 +50,7 @@ class RowCovariance:
 
     Attributes:
         weight: of an innovation, float[sensors, rows]; 0 where a reading is missing.
+        near: whether a row follows the one before at about the typical interval, bool[rows].
     """
 
     def __init__(
@@ -59,7 +62,9 @@ class RowCovariance:
         self.context_jacobian = context_jacobian
         step = np.diff(time, prepend=time[0] - 1.0)
         typical = float(np.median(step[1:])) if len(step) > 1 else 1.0
-        memory = noise.phi[:, None] ** (step / max(typical, 1e-12))
+        steps = step / max(typical, 1e-12)
+        self.near = steps <= APART
+        memory = noise.phi[:, None] ** steps
         # After a missing reading the memory starts anew: a little information is given up.
         memory[:, 1:][~observed.T[:, :-1]] = 0.0
         memory[:, 0] = 0.0

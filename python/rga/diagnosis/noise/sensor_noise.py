@@ -122,7 +122,9 @@ class _Expected:
     @property
     def memory(self) -> FloatArray:
         """Correlation from one row to the next, float[sensors]."""
-        rest, pairs = self.rest, self.rows.observed[1:] & self.rows.observed[:-1]
+        rest, observed = self.rest, self.rows.observed
+        # Rows that were chosen of many may be far apart, and say nothing of their memory.
+        pairs = observed[1:] & observed[:-1] & self.rows.near[1:, None]
         product = (rest[1:] * rest[:-1] * pairs).sum(0)
         before = ((rest[:-1] ** 2 + self.hidden[:-1]) * pairs).sum(0)
         return np.asarray(np.clip(product / np.maximum(before, 1e-300), 0.0, LARGEST_MEMORY))

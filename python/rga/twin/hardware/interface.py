@@ -11,6 +11,9 @@ from rga.arrays import FloatArray
 from rga.model.effect import seconds
 from rga.records.record import time_label
 
+#: how the source of rows that go on arriving begins; the name of the twin follows
+LIVE = "live:"
+
 
 @dataclass(frozen=True)
 class Packet:

@@ -9,7 +9,7 @@ from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record
 from rga.twin.hardware.inbox import Inbox
-from rga.twin.hardware.interface import Packet, Station
+from rga.twin.hardware.interface import LIVE, Packet, Station
 
 
 class Live:
@@ -27,7 +27,7 @@ class Live:
         station = inbox.station
         if station is None:
             raise InputError("no row has arrived yet", f"twin {name!r}", "feed rows to it")
-        self.source, self.station = source_of(name), station
+        self.source, self.station = f"{LIVE}{name}", station
         self._inbox = inbox
 
     @property
@@ -47,11 +47,6 @@ class Live:
     def taken(self, rows: int) -> None:
         """So many rows are in the repository: the inbox need not keep them."""
         self._inbox.drop(rows)
-
-
-def source_of(name: str) -> str:
-    """How the repository names the rows of a live twin."""
-    return f"live:{name}"
 
 
 def check_lives(model: Model) -> None:

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, select
+from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, select, tuple_
 
 from rga.arrays import FloatArray
 from rga.twin.repository import tables
 from rga.twin.repository.chunks import LONGEST, unpack
 from rga.twin.repository.entries import Rows
+
+#: chunks that are loaded at a time
+BATCH = 32
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,9 @@ class Source:
             where.append(c.first_row < end)
         if version is not None:
             where.append(c.version == version)
-        chunks = self.entries(table, where=where)
+        columns = [c.first_row, c.length, *(c[name] for name in names)]
+        columns += [c.version] if "version" in c else []
+        chunks = self.entries(table, *columns, where=where)
         spans = [np.arange(chunk.first_row, chunk.first_row + chunk.length) for chunk in chunks]
         stored = np.concatenate(spans) if spans else np.zeros(0, dtype=np.int64)
         rows, place = np.unique(stored if at_the_time else stored[::-1], return_index=True)
@@ -77,6 +82,41 @@ class Source:
         owner = np.repeat(np.arange(len(chunks)), [chunk.length for chunk in chunks])[chosen]
         arrays = [joined(chunks, name)[chosen] for name in names]
         return rows[inside], arrays, [chunks[index] for index in owner]
+
+    def chosen(
+        self, table: Table, names: Sequence[str], rows: Rows
+    ) -> tuple[Rows, list[FloatArray]]:
+        """Some rows as they were stored last; of the others' chunks nothing is loaded.
+
+        Args:
+            table: that holds them in chunks.
+            names: of arrays of the chunks.
+            rows: int[n], ascending.
+
+        Returns:
+            Those that were stored, int[m], and an array float[m, width] for each name.
+        """
+        c = table.c
+        index = self.entries(table, c.step, c.ordinal, c.first_row, c.length)
+        owner = np.full(len(rows), -1)
+        for number, chunk in enumerate(index):
+            first, end = np.searchsorted(rows, [chunk.first_row, chunk.first_row + chunk.length])
+            owner[first:end] = number
+        stored, owner = rows[owner >= 0], owner[owner >= 0]
+        wanted = np.unique(owner)
+        parts: list[list[FloatArray]] = [[] for _ in names]
+        for batch in np.split(wanted, range(BATCH, len(wanted), BATCH)):
+            keys = [(index[number].step, index[number].ordinal) for number in batch]
+            chunks = self.entries(table, where=[tuple_(c.step, c.ordinal).in_(keys)])
+            for number, chunk in zip(batch, chunks, strict=True):
+                inside = stored[owner == number] - chunk.first_row
+                for part, name in zip(parts, names, strict=True):
+                    part.append(unpack(getattr(chunk, name), chunk.length)[inside])
+        if not len(stored):
+            return stored, [np.zeros((0, 0)) for _ in names]
+        # Chunks came as they were stored, rows of a later one perhaps within an earlier one.
+        order = np.argsort(np.concatenate([np.flatnonzero(owner == number) for number in wanted]))
+        return stored, [np.concatenate(part)[order] for part in parts]
 
     def step_at(self, row: int) -> int:
         """Number of the last step about rows up to this one; 0 where there is none."""

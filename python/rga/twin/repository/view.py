@@ -98,6 +98,25 @@ class RunView:
         time, readings, contexts = arrays
         return StoredReadings(rows, time.reshape(-1), readings, contexts)
 
+    def times_and_contexts(self, end: int) -> StoredReadings:
+        """The rows before one without their readings, which are float[n, 0]."""
+        rows, (time, contexts), _ = self._source.rows(
+            tables.measured, ("time", "contexts"), 0, end, None
+        )
+        return StoredReadings(rows, time.reshape(-1), np.zeros((len(rows), 0)), contexts)
+
+    def measured_at(self, rows: ArrayLike) -> StoredReadings:
+        """Chosen rows of the record, int[n], without loading what lies between them.
+
+        Args:
+            rows: in any order; those that nothing was stored for are left out.
+        """
+        wanted = np.unique(np.asarray(rows, dtype=np.int64))
+        found, (time, readings, contexts) = self._source.chosen(
+            tables.measured, ("time", "readings", "contexts"), wanted
+        )
+        return StoredReadings(found, time.reshape(-1), readings, contexts)
+
     def inferred(
         self,
         first: int = 0,

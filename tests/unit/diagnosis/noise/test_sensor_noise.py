@@ -10,14 +10,17 @@ from rga.diagnosis.noise.sensor_noise import estimate_noise
 ROWS, SENSORS, MEMORY = 240, 24, 0.6
 
 
-def noise_of(values: FloatArray, observed: BoolArray | None = None) -> tuple[Noise, FloatArray]:
+def noise_of(
+    values: FloatArray, observed: BoolArray | None = None, row: FloatArray | None = None
+) -> tuple[Noise, FloatArray]:
     rows, sensors = values.shape
     seen = np.ones(values.shape, dtype=bool) if observed is None else observed
     deviation = np.where(seen, values, 0.0).std(0)
     start = Noise(deviation, np.full(sensors, 0.3), np.zeros(0), deviation)
     jacobian = np.zeros((rows, sensors, 0))
     known, floor = np.zeros(0, dtype=bool), np.full(sensors, 1e-9)
-    return estimate_noise(values, 600.0 * np.arange(rows), seen, jacobian, start, known, floor)
+    time = 600.0 * (np.arange(rows) if row is None else row)
+    return estimate_noise(values, time, seen, jacobian, start, known, floor)
 
 
 def with_memory(innovations: FloatArray) -> FloatArray:
@@ -46,6 +49,15 @@ def test_heavy_tails_are_distinguished_from_gaussian_noise(memory: bool) -> None
             assert np.isinf(noise.freedom)
             assert not tails.any()
             assert (noise.sigma == noise.deviation).all()
+
+
+@pytest.mark.parametrize("on_end", [3, 4, ROWS])
+def test_runs_of_rows_far_apart_show_the_memory_within_them(on_end: int) -> None:
+    runs = ROWS // on_end
+    light = np.random.default_rng(4).standard_normal((runs, on_end, SENSORS))
+    values = np.concatenate([with_memory(run) for run in light])
+    row = np.add.outer(5000.0 * np.arange(runs), np.arange(on_end)).ravel()
+    assert noise_of(values, row=row)[0].phi.mean() == pytest.approx(MEMORY, abs=0.04)
 
 
 def test_means_of_readings_drawn_in_are_as_sure_as_they_say() -> None:

@@ -1,0 +1,1 @@
+"""What of a long past a diagnosis is to see."""
