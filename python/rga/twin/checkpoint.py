@@ -63,6 +63,7 @@ class Checkpoint:
         self._archive.keep_state("synchrony", self._analysis.synchrony.to_bytes())
         if standing.calibrated:
             self._archive.keep_state("rows", calibration.rows.to_bytes())
+            self._archive.keep_state("memories", calibration.rows.memories.to_bytes())
         for name in ESTIMATORS:
             estimator: ContextEstimator | None = getattr(calibration, name)
             if estimator is not None and estimator is not self._kept[name]:
@@ -95,6 +96,8 @@ class Checkpoint:
         self.stale = standing.learned_under != self._twin.state.version
         if not self._own:
             self._read_estimators(view)
+        if (memories := view.state("memories")) is not None:
+            self._calibration.rows.memories.restore(memories)
         learned, sound, given = (self._kept[name] for name in ESTIMATORS)
         self._calibration.take_up(
             view.rows, view.state("rows"), standing, learned, sound, given, self._states.copy()

@@ -13,6 +13,8 @@ from rga.twin.settings import Pace
 
 PLACE = "command"
 DECISIONS = ("accept", "reject")
+#: how the outcome of a command begins that could not be carried out
+REFUSED = "refused: "
 
 
 class CommandDesk:
@@ -46,17 +48,19 @@ class CommandDesk:
         Raises:
             InputError: it cannot be done.
         """
-        body = command.model_dump(mode="json", exclude=set(Command.model_fields) | {"kind"})
+        body = _body(command)
         if isinstance(command, Accept | Reject):
             body["proposal"] = self._open_proposal(command.proposal).number
+        self._tell(command, body)
         outcome = self._done(command)
-        self._keep(command, body, outcome)
+        self._archive.keep_command(command, body, self._row, outcome)
         return outcome
 
     def refuse(self, command: AnyCommand, why: str) -> None:
         """Keep that a command could not be carried out."""
-        body = command.model_dump(mode="json", exclude=set(Command.model_fields) | {"kind"})
-        self._keep(command, body | {"refused": True}, f"refused: {why}")
+        outcome = f"{REFUSED}{why}"
+        self._tell(command, _body(command), f": {outcome}")
+        self._archive.keep_command(command, _body(command), self._row, outcome)
 
     def _done(self, command: AnyCommand) -> str:
         if isinstance(command, Accept):
@@ -108,8 +112,8 @@ class CommandDesk:
         self._archive.excluded = standing.excluded
         self._calibration.read_again(standing)
         begin = "now" if command.since is None else str(command.since)
-        end = "" if command.until is None else f" to {command.until}"
-        return f"{command.sensor} is not used from {begin} on{end}".replace(" on to", " to")
+        end = "on" if command.until is None else f"to {command.until}"
+        return f"{command.sensor} is not used from {begin} {end}"
 
     def _open_proposal(self, number: int | None) -> Proposal:
         """The last proposal, if nobody has decided about it.
@@ -127,7 +131,9 @@ class CommandDesk:
         decided = [
             one
             for one in self._archive.run.commands()
-            if one.kind in DECISIONS and one.body == {"proposal": last.number}
+            if one.kind in DECISIONS
+            and one.body == {"proposal": last.number}
+            and not one.outcome.startswith(REFUSED)
         ]
         if decided:
             words = f"proposal {last.number} was decided by {decided[-1].who}: {decided[-1].kind}"
@@ -138,12 +144,17 @@ class CommandDesk:
     def _row(self) -> int:
         return max(0, self._analysis.standing.row - 1)
 
-    def _keep(self, command: AnyCommand, body: dict[str, Any], outcome: str) -> None:
-        self._archive.keep_command(command, body, self._row, outcome)
+    def _tell(self, command: AnyCommand, body: dict[str, Any], more: str = "") -> None:
+        about = "".join(f", {name} {value}" for name, value in body.items() if value is not None)
         why = f" ({command.why})" if command.why else ""
-        words = f"{command.who} asked to {command.kind}{why}: {outcome}"
+        words = f"{command.who} asked to {command.kind}{about}{why}{more}"
         self._analysis.event("command", self._row, words)
 
     def _check_calibrated(self) -> None:
         if not self._analysis.standing.calibrated:
             raise InputError("the twin is not calibrated yet", PLACE, "wait for its calibration")
+
+
+def _body(command: AnyCommand) -> dict[str, Any]:
+    """What a command is about, without who gave it, and why and when."""
+    return command.model_dump(mode="json", exclude=set(Command.model_fields) | {"kind"})

@@ -31,7 +31,7 @@ from rga.twin.repository import Identity, Repository, Run
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.restore import chosen_record, given_model, history_of, times_and_contexts
 from rga.twin.settings import Settings
-from rga.twin.versions import beyond, written
+from rga.twin.versions import beyond, with_ends, written
 
 Progress = Callable[[str, float], None]
 WRITTEN = ("findings.json", "model.json", "report.html")
@@ -341,7 +341,9 @@ class Running:
             return
         if closing:
             self._closing = findings
-        effects = beyond(self._model, findings.account.extended)
+        effects = with_ends(
+            beyond(self._model, findings.account.extended), self._label(self.row - 1)
+        )
         with self._archive.step():
             self.analysis.conclude(findings, effects, closing)
             self._checkpoint.keep()
@@ -367,7 +369,7 @@ class Running:
                 progress=self._progress,
             )
             if found is not None:
-                return with_choice(found, choice, len(past))
+                return with_choice(found, choice.words, len(past))
         findings = diagnose(
             model, record, criteria=criteria, seed=self._seed, progress=self._progress
         )

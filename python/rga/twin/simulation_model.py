@@ -1,12 +1,14 @@
 """The simulation model: what the channels of a station would read at given contexts."""
 
+import hashlib
+
 import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
 from rga.inference.networks.design_samples import design
 from rga.model import Model
-from rga.simulation import Simulator
+from rga.simulation import Memory, Simulator
 from rga.twin.correction import Correction
 from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q3, Q5, R3, R5, sha256
@@ -27,6 +29,8 @@ class SimulationModel:
         simulator: of the corrected model.
         gains: factor of every channel on what the simulator says, float[channels].
         remembers: whether what it says of a row hangs on the rows before.
+        carries: whether a memory of a fixed size stands for these.
+        structure: tells its correction from others.
     """
 
     def __init__(
@@ -43,6 +47,8 @@ class SimulationModel:
         self.simulator = Simulator(self.corrected)
         self._given = self.simulator if correction is None else Simulator(self.model)
         self.remembers = any(effect.remembers for effect in model.effects.values())
+        self.carries = self.remembers and not self.simulator.hindrance
+        self.structure = "" if correction is None else sha256_of(correction)
 
     def draw(self, query: Q3) -> R3:
         """Contexts drawn from a box, and what the channels read there."""
@@ -73,7 +79,8 @@ class SimulationModel:
         """What the channels read at the contexts of rows of the record."""
         clock = np.concatenate([query.time_before, query.time])
         contexts = np.concatenate([query.contexts_before, query.contexts])
-        simulated = self.readings(clock, contexts)[len(query.time_before) :]
+        readings, memory = self._followed(clock, contexts, query.memory)
+        simulated = readings[len(query.time_before) :]
         last = dict(zip(self.model.context, query.contexts[-1].tolist(), strict=True))
         return R5(
             row=query.row,
@@ -83,7 +90,18 @@ class SimulationModel:
             context=last,
             sha256=sha256(simulated),
             simulated=simulated,
+            memory=memory,
         )
+
+    def _followed(
+        self, clock: FloatArray, contexts: FloatArray, memory: Memory | None
+    ) -> tuple[FloatArray, Memory | None]:
+        if not self.carries:
+            return self.readings(clock, contexts), None
+        table = dict(zip(self.model.context, contexts.T, strict=True))
+        followed = self.simulator.follow({**table, "time": clock}, memory)
+        shown = self.gains * followed.readings + self.offsets(clock, contexts)
+        return np.asarray(shown), followed.memory
 
     def readings(self, clock: FloatArray, contexts: FloatArray) -> FloatArray:
         """What the channels read at contexts of rows that follow one another.
@@ -134,6 +152,11 @@ class SimulationModel:
             else:
                 table[name] = np.full(len(zero_clock), (low + high) / 2)
         return np.asarray(self._given.predict(table).mean(axis=0))
+
+
+def sha256_of(correction: Correction) -> str:
+    """What tells a correction from others."""
+    return hashlib.sha256(correction.model_dump_json().encode()).hexdigest()
 
 
 def mounted(model: Model, channels: tuple[str, ...]) -> Model:

@@ -35,6 +35,24 @@ def beyond(given: Model, model: Model) -> Effects:
     return {name: effect for name, effect in effects.items() if name not in given.effects}
 
 
+def with_ends(effects: Effects, end: str | float) -> Effects:
+    """Effects whose ramps are full at a time at the latest: one without an end goes on growing.
+
+    Args:
+        effects: that a diagnosis found in rows up to that time.
+        end: that time, as the record writes it.
+
+    >>> with_ends({"slow": {"profile": "ramp", "end": None}, "new": {"profile": "step"}}, 90.0)
+    {'slow': {'profile': 'ramp', 'end': 90.0}, 'new': {'profile': 'step'}}
+    """
+    return {
+        name: {**one, "end": end}
+        if one.get("profile") == "ramp" and one.get("end") is None
+        else one
+        for name, one in effects.items()
+    }
+
+
 def first_row_under(effects: Effects, rows: int, label: Callable[[int], str | float]) -> int | None:
     """The first row from which on all effects act; None where none says when it began.
 

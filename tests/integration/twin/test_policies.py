@@ -67,12 +67,14 @@ def after(rows: int, alarm: int | None = None, interval: int = 30) -> Standing:
 def test_when_a_recalibration_is_due(
     name: str, standing: Standing, last: bool, expected: int | None
 ) -> None:
-    assert policy(name).due(standing, last) == expected
+    standing = standing.model_copy(update={"ended": last})
+    assert policy(name).due(standing) == expected
 
 
 @pytest.mark.parametrize("name", POLICIES)
 def test_level_a_never_recalibrates(name: str) -> None:
-    assert policy(name, level="A").due(after(500, alarm=120), True) is None
+    standing = after(500, alarm=120).model_copy(update={"ended": True})
+    assert policy(name, level="A").due(standing) is None
 
 
 def test_an_interval_follows_what_recalibrations_were_worth() -> None:

@@ -194,7 +194,8 @@ def test_a_state_of_networks_is_what_it_was(
         ledger, states = calibration.ledger, calibration.states
         assert len(states) > 1
         laws = [list(model.context.values())[column] for column in calibration.latent]
-        given = 0, ledger.readings, ledger.contexts, ledger.time, laws
+        rows = ledger.rows(0, len(ledger))
+        given = 0, rows.readings, rows.contexts, rows.time, laws
         for state in states:
             again = State.from_bytes(state.to_bytes(), lambda version: given_model)
             assert (again.rows, again.doubted) == (state.rows, state.doubted)

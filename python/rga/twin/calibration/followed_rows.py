@@ -13,6 +13,7 @@ from rga.twin.calibration.blocks import BLOCK
 from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.calibration.estimator import ContextEstimator
 from rga.twin.calibration.expectation import against_expected, scatter_share
+from rga.twin.calibration.memories import Mark, Memories
 from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q5, sha256
 from rga.twin.messages.query_bus import QueryResponse
@@ -27,6 +28,7 @@ class FollowedRows:
     Attributes:
         ledger: they.
         summaries: of those that have gone by.
+        memories: of effects that look back.
         noise: standard deviation of each channel's noise, float[channels]; NaN for one that is
             not to be looked at.
 
@@ -48,6 +50,7 @@ class FollowedRows:
         self._ranges = np.array([one.range for one in self._laws]).reshape(-1, 2)
         self._stated = [model.sensors[name].noise for name in station.channels]
         self.noise = np.ones(len(station.channels))
+        self.memories = Memories()
 
     def take_up(
         self, rows: int, followed: int, stuck: tuple[str, ...], state: bytes | None
@@ -132,7 +135,11 @@ class FollowedRows:
         if estimator is not None:
             contexts, spread = self._inferred(estimator, first, end)
         version = self._exchange.twin.state.version
-        answer = self._exchange.ask(self._question(first, end, version, contexts))
+        simulation = self._exchange.twin.simulation(version)
+        answer = self._exchange.ask(self._question(simulation, first, end, contexts))
+        if answer.memory is not None:
+            mark = Mark(end, version, simulation.structure, answer.memory)
+            self.memories.keep(first, mark)
         simulated = np.where(self._complete(first, end), answer.simulated, np.nan)
         self.ledger.followed(first, contexts, spread, simulated)
         gaps = (self.ledger.rows(first, end).readings - simulated) ** 2
@@ -152,8 +159,7 @@ class FollowedRows:
         contexts, _ = self._inferred(estimator, first, end)
         given = self._exchange.twin.simulation()
         corrected = SimulationModel(given.model, self._station, estimator.correction)
-        version = self._exchange.twin.state.version
-        answer = corrected.follow(self._question(first, end, version, contexts))
+        answer = corrected.follow(self._question(corrected, first, end, contexts))
         return contexts, np.where(self._complete(first, end), answer.simulated, np.nan)
 
     def _inferred(
@@ -174,11 +180,15 @@ class FollowedRows:
         )
         return contexts, spread
 
-    def _question(self, first: int, end: int, version: int, contexts: FloatArray) -> Q5:
+    def _question(
+        self, simulation: SimulationModel, first: int, end: int, contexts: FloatArray
+    ) -> Q5:
         """What does the twin simulate at contexts of rows, float[rows, contexts]?"""
-        remembers = self._exchange.twin.simulation(version).remembers
+        version = self._exchange.twin.state.version
         # A train's direction shows from row to row; more of the past only matters to a memory.
-        begin = 0 if remembers else max(0, first - 1)
+        begin, memory = 0 if simulation.remembers else max(0, first - 1), None
+        if simulation.carries:
+            begin, memory = self.memories.before(first, version, simulation.structure)
         return Q5(
             row=end - 1,
             version=version,
@@ -189,6 +199,7 @@ class FollowedRows:
             contexts=contexts,
             time_before=self.clock(begin, first),
             contexts_before=self.ledger.rows(begin, first).contexts,
+            memory=memory,
         )
 
     def _prior(self, first: int, end: int) -> tuple[FloatArray, FloatArray]:

@@ -8,6 +8,7 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record
+from rga.simulation import Simulator
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.hardware.interface import LIVE, Packet, Station
 
@@ -62,6 +63,8 @@ def check_lives(model: Model) -> None:
             place,
             "feed readings without it, and state no zero",
         )
+    if hindrance := Simulator(model).hindrance:
+        raise InputError(hindrance, place, "mend it, or play finished records with rga run")
     if moving := [name for name, one in model.context.items() if one.law == "linear"]:
         raise InputError(
             f"{', '.join(moving)} moves along a line over a whole record",

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, model_validator
 
 from rga.arrays import FloatArray
+from rga.simulation import Memory
 from rga.twin.correction import Correction
 
 Rows = Annotated[int, Field(ge=0)]
@@ -194,8 +195,9 @@ class Q5(Message):
         first: first of the rows.
         time: clock of the rows [s], float[n].
         contexts: float[n, contexts], in the order of the model.
-        time_before, contexts_before: the same of earlier rows: of all for effects with a memory,
-            else of the last.
+        time_before, contexts_before: the same of earlier rows: of those behind the memory, or of
+            the last.
+        memory: what effects that look back have kept of the rows before all these; None: nothing.
     """
 
     kind: Literal["Q5"] = "Q5"
@@ -207,6 +209,7 @@ class Q5(Message):
     contexts: FloatArray = Field(default_factory=_no_rows, exclude=True)
     time_before: FloatArray = Field(default_factory=_no_rows, exclude=True)
     contexts_before: FloatArray = Field(default_factory=_no_rows, exclude=True)
+    memory: Memory | None = Field(default=None, exclude=True)
 
 
 class R5(Message):
@@ -215,6 +218,7 @@ class R5(Message):
     Attributes:
         context: of the last row.
         simulated: float[n, channels].
+        memory: with which the next rows are simulated; None: nothing looks back.
     """
 
     kind: Literal["R5"] = "R5"
@@ -224,6 +228,7 @@ class R5(Message):
     context: dict[str, float]
     sha256: Hash
     simulated: FloatArray = Field(default_factory=_no_rows, exclude=True)
+    memory: Memory | None = Field(default=None, exclude=True)
 
 
 Query = Q1 | Q2 | Q3 | Q4 | Q5
