@@ -40,6 +40,8 @@ COUNTED = {
     "diagnosis": ("diagnosis", "diagnoses"),
     "version": ("new version of the model", "new versions of the model"),
     "rollback": ("return to an earlier version", "returns to an earlier version"),
+    "proposal": ("proposal", "proposals"),
+    "command": ("command", "commands"),
 }
 #: so many events of one kind in a row stand in the table by themselves
 MOST_IN_A_ROW = 3

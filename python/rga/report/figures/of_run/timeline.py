@@ -59,6 +59,8 @@ LOOKS = {
     "diagnosis": Look("diagnosis", INK, "D", False),
     "version": Look("new version", "#009e73", "s", True),
     "rollback": Look("went back", "#a0447f", "X", True),
+    "proposal": Look("proposal", "#009e73", "d", False),
+    "command": Look("command", INK, "P", False),
     "novel context": Look("novel context", "#9a6b00", "|", False),
 }
 
