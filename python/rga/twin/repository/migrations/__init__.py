@@ -1,15 +1,18 @@
 """Brings the tables of a repository to where the code is."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from alembic.migration import MigrationContext
-from alembic.operations import Operations
-from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, inspect
+from sqlalchemy import Connection, inspect, text
 
+if TYPE_CHECKING:
+    from alembic.script import ScriptDirectory
+
+#: revision of the tables that the code reads and writes
+CURRENT = "0003"
 # A name of its own: the database of a server may hold another application's revisions.
-OPTIONS: dict[str, Any] = {"version_table": "rga_repository", "compare_type": True}
+VERSIONS = "rga_repository"
+OPTIONS: dict[str, Any] = {"version_table": VERSIONS, "compare_type": True}
 
 
 def state(connection: Connection) -> Literal["empty", "foreign", "older", "current", "newer"]:
@@ -17,20 +20,26 @@ def state(connection: Connection) -> Literal["empty", "foreign", "older", "curre
     held = revision(connection)
     if held is None:
         return "foreign" if inspect(connection).get_table_names() else "empty"
-    scripts = _scripts()
-    if held == scripts.get_current_head():
+    if held == CURRENT:
         return "current"
-    known = {script.revision for script in scripts.walk_revisions()}
+    known = {script.revision for script in _scripts().walk_revisions()}
     return "older" if held in known else "newer"
 
 
 def revision(connection: Connection) -> str | None:
     """The revision of the tables; None where they are none of a repository."""
-    return MigrationContext.configure(connection, opts=OPTIONS).get_current_revision()
+    if not inspect(connection).has_table(VERSIONS):
+        return None
+    held = connection.scalar(text(f"SELECT version_num FROM {VERSIONS}"))
+    return None if held is None else str(held)
 
 
 def upgrade(connection: Connection) -> None:
     """Run what is missing, within the transaction that is open; nothing where all is there."""
+    # Most repositories are current, and alembic is heavy.
+    from alembic.migration import MigrationContext
+    from alembic.operations import Operations
+
     context = MigrationContext.configure(connection, opts=OPTIONS)
     scripts = _scripts()
     missing = list(scripts.iterate_revisions("heads", context.get_current_revision() or "base"))
@@ -40,5 +49,7 @@ def upgrade(connection: Connection) -> None:
         context.stamp(scripts, script.revision)
 
 
-def _scripts() -> ScriptDirectory:
+def _scripts() -> "ScriptDirectory":
+    from alembic.script import ScriptDirectory
+
     return ScriptDirectory(Path(__file__).parent)
