@@ -24,9 +24,6 @@ from rga.twin.settings import Settings, as_settings
 from rga.twin.twin import Twin
 from rga.twin.versions import written
 
-#: stages between which a command does not break anything off
-CALM = ("gather", "watch", "report", "done")
-
 
 @dataclass(frozen=True)
 class Fed:
@@ -202,9 +199,10 @@ class LiveTwin:
 
     def _carry_out_commands(self, happened: list[Event]) -> None:
         """Do what people asked for, where that breaks nothing off."""
-        if self._taken_up().stage not in CALM:
-            return
         for number, text in self._inbox.commands(self._taken_up().commanded):
+            # What one begins comes before the next, as it would were they asked for one by one.
+            if not self._taken_up().calm:
+                return
             command = read_command(text)
             try:
                 self._act(partial(self._taken_up().carry_out, command, number), happened)

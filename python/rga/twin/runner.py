@@ -32,6 +32,10 @@ from rga.twin.versions import beyond, written
 
 Progress = Callable[[str, float], None]
 WRITTEN = ("findings.json", "model.json", "report.html")
+#: stages that wait for rows, or for nothing
+CALM = ("gather", "watch", "report", "done")
+#: stages in which nothing is learned about a version that was put in force by hand
+UNLEARNED = ("gather", "calibrate", "report", "done")
 
 
 @contextmanager
@@ -154,9 +158,21 @@ class Running:
 
         When rows arrive therefore never changes what comes of them.
         """
-        if self._checkpoint.stale or self.stage not in ("gather", "watch"):
-            return self.stage not in ("report", "done")
+        if not self.calm:
+            return True
+        if self.stage in ("report", "done"):
+            return False
         return self._hardware.ended or self._waiting >= self._wanted
+
+    @property
+    def calm(self) -> bool:
+        """Whether nothing is begun: a command does not break anything off."""
+        return self.stage in CALM and not self._to_learn
+
+    @property
+    def _to_learn(self) -> bool:
+        """Whether a version was put in force by hand that is to be learned about."""
+        return self._checkpoint.stale and self.stage not in UNLEARNED
 
     @property
     def version(self) -> int:
@@ -182,7 +198,7 @@ class Running:
         """Do what is next, and have it acknowledged by the repository."""
         if self.stage == "initialise":
             self._initialise()
-        elif self._checkpoint.stale and self.stage not in ("gather", "calibrate", "report", "done"):
+        elif self._to_learn:
             with self._archive.step():
                 self.analysis.take_up_version()
                 self._checkpoint.stale = False
@@ -218,7 +234,7 @@ class Running:
         with self._archive.step():
             outcome = self._desk.carry_out(command)
             if isinstance(command, Rollback):
-                self._checkpoint.stale = True
+                self._checkpoint.compare_version()
             self._note(number)
         return outcome
 
