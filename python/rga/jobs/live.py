@@ -15,6 +15,7 @@ from rga.jobs.run import FILE, concluded, made
 from rga.model import Model, as_model, read_model
 from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.commands import AnyCommand, read_command
+from rga.twin.hardware.inbox import FILE as INBOX
 from rga.twin.hardware.inbox import Addressee, Inbox
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
@@ -67,6 +68,8 @@ class LiveTwin:
         self._directory = Path(directory)
         if not self._directory.is_dir():
             raise InputError("there is no such directory", str(directory), "begin with rga.live")
+        if not (self._directory / INBOX).is_file():
+            raise InputError("no live twin is here", str(directory), "begin with rga.live")
         self._inbox = Inbox(self._directory)
         known = self._inbox.addressee
         if known is None:
@@ -113,11 +116,12 @@ class LiveTwin:
         record = as_record(rows, self.model, mapping)
         if not len(record):
             return Fed(0, 0)
-        if self._inbox.ended:
-            raise InputError("it has ended", f"twin {self.name!r}", "begin another")
-        station = self._inbox.station or station_for(self.model, record)
-        time, readings, contexts = as_rows(station, record)
-        new = self._inbox.put(station, time, readings, contexts)
+        new = None
+        while new is None:
+            if self._inbox.ended:
+                raise InputError("it has ended", f"twin {self.name!r}", "begin another")
+            station = self._inbox.station or station_for(self.model, record)
+            new = self._inbox.put(station, *as_rows(station, record))
         return Fed(new, len(record) - new)
 
     def ask(self, command: AnyCommand) -> int:
@@ -161,8 +165,13 @@ class LiveTwin:
         Raises:
             InputError: too few rows have come.
         """
-        if self._inbox.station is None:
-            raise InputError("no row has arrived", f"twin {self.name!r}", "feed rows to it")
+        wanted, rows = self._settings.pace(None).calibration_rows, self._inbox.rows
+        if rows < wanted:
+            raise InputError(
+                f"the calibration wants {wanted} rows, and {rows} have come",
+                f"twin {self.name!r}",
+                "feed more rows to it",
+            )
         self._inbox.end()
         with self._playing:
             self.play()
