@@ -132,7 +132,7 @@ class Running:
             self._archive, self._twin, self.analysis, self.calibration, model, learn is not None
         )
         self._desk = CommandDesk(
-            self.analysis, self._archive, self.calibration, station.channels, self._pace
+            self.analysis, self._archive, self.calibration, station, self._pace
         )
         if self._checkpoint.take_up():
             self.resumed_at = self.row
