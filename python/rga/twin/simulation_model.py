@@ -74,6 +74,8 @@ class SimulationModel:
         clock = np.concatenate([query.time_before, query.time])
         contexts = np.concatenate([query.contexts_before, query.contexts])
         simulated = self.readings(clock, contexts)[len(query.time_before) :]
+        if len(query.unknown):
+            simulated[query.unknown] = np.nan
         last = dict(zip(self.model.context, query.contexts[-1].tolist(), strict=True))
         return R5(
             row=query.row,

@@ -133,7 +133,7 @@ class FollowedRows:
             contexts, spread = self._inferred(estimator, first, end)
         version = self._exchange.twin.state.version
         answer = self._exchange.ask(self._question(first, end, version, contexts))
-        simulated = np.where(self._complete(first, end), answer.simulated, np.nan)
+        simulated = answer.simulated
         self.ledger.followed(first, contexts, spread, simulated)
         gaps = (self.ledger.rows(first, end).readings - simulated) ** 2
         gaps[:, self.ledger.stuck] = np.nan
@@ -154,7 +154,7 @@ class FollowedRows:
         corrected = SimulationModel(given.model, self._station, estimator.correction)
         version = self._exchange.twin.state.version
         answer = corrected.follow(self._question(first, end, version, contexts))
-        return contexts, np.where(self._complete(first, end), answer.simulated, np.nan)
+        return contexts, answer.simulated
 
     def _inferred(
         self, estimator: ContextEstimator, first: int, end: int
@@ -189,6 +189,7 @@ class FollowedRows:
             contexts=contexts,
             time_before=self.clock(begin, first),
             contexts_before=self.ledger.rows(begin, first).contexts,
+            unknown=self._unknown(first, end),
         )
 
     def _prior(self, first: int, end: int) -> tuple[FloatArray, FloatArray]:
@@ -206,7 +207,7 @@ class FollowedRows:
     def _measured(self) -> list[int]:
         return [self._names.index(name) for name in self._station.measured]
 
-    def _complete(self, first: int, end: int) -> NDArray[np.bool_]:
-        """Whether all measured contexts are there, bool[rows, 1]."""
+    def _unknown(self, first: int, end: int) -> NDArray[np.bool_]:
+        """Whether a measured context is missing, bool[rows]."""
         measured = self.ledger.rows(first, end).measured
-        return np.asarray(np.isfinite(measured).all(axis=1, keepdims=True))
+        return np.asarray(~np.isfinite(measured).all(axis=1))

@@ -196,6 +196,8 @@ class Q5(Message):
         contexts: float[n, contexts], in the order of the model.
         time_before, contexts_before: the same of earlier rows: of all for effects with a memory,
             else of the last.
+        unknown: rows of which a measured context is missing, whose readings are not simulated,
+            bool[n]; of no length where there is none.
     """
 
     kind: Literal["Q5"] = "Q5"
@@ -207,6 +209,7 @@ class Q5(Message):
     contexts: FloatArray = Field(default_factory=_no_rows, exclude=True)
     time_before: FloatArray = Field(default_factory=_no_rows, exclude=True)
     contexts_before: FloatArray = Field(default_factory=_no_rows, exclude=True)
+    unknown: Flags = Field(default_factory=_no_flags, exclude=True)
 
 
 class R5(Message):
@@ -214,7 +217,7 @@ class R5(Message):
 
     Attributes:
         context: of the last row.
-        simulated: float[n, channels].
+        simulated: float[n, channels], NaN in rows that were unknown.
     """
 
     kind: Literal["R5"] = "R5"
