@@ -74,7 +74,8 @@ class CommandDesk:
 
     def _accept(self, proposal: Proposal) -> str:
         self._check_calibrated()
-        self._analysis.adopt(proposal.effects, proposal.gain, proposal.gain_ci90)
+        first = self._analysis.standing.proposed
+        self._analysis.adopt(proposal.effects, proposal.gain, proposal.gain_ci90, first)
         return f"proposal {proposal.number} is accepted: {proposal.words}"
 
     def _roll_back(self, version: int) -> str:

@@ -22,7 +22,7 @@ from rga.twin.commands import AnyCommand, Rollback
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.hardware.interface import HardwareInterface
 from rga.twin.hardware.recorded import Recorded
-from rga.twin.hardware.stored import Stored
+from rga.twin.hardware.stored import Stored, length_of
 from rga.twin.history import Event, History
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.repository import Identity, Repository, Run
@@ -87,16 +87,6 @@ def reopened(place: str | Path) -> Iterator["Running"]:
         yield Running(given_model(kept), hardware, kept, settings, identity.seed, None)
 
 
-def _length(hardware: HardwareInterface, settings: Settings) -> int | None:
-    """Rows of the record that a run is of; None: it does not end."""
-    if not hardware.ended:
-        return None
-    if isinstance(hardware, Stored):
-        # More rows may have been meant to come than were taken in.
-        return max(hardware.rows, settings.calibration_rows or 1)
-    return hardware.rows
-
-
 class Running:
     """A run between two steps.
 
@@ -126,7 +116,7 @@ class Running:
         self._model, self._settings, self._seed = model, settings, seed
         self._progress = progress or (lambda stage, done: None)
         self._hardware, station = hardware, hardware.station
-        self._pace = settings.pace(_length(hardware, settings))
+        self._pace = settings.pace(length_of(hardware, settings))
         self._twin = DigitalTwin(model, station)
         self._archive = Archive(kept, model, station, self._twin.simulation)
         exchange = QueryResponse(self._twin, self._archive)
