@@ -3,15 +3,18 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from itertools import pairwise
+from pathlib import Path
+from time import sleep
 from typing import Any
 
 import numpy as np
 
-from rga import LiveTwin
+from rga import LiveTwin, load_model, load_record
 from rga.model import Model, read_effect
 from rga.records import Record
 from rga.simulation import Simulator
 from rga.twin import Settings
+from rga.twin.hardware.inbox import Inbox
 from rga.twin.history import Event, History
 from rga.twin.repository import Repository, StoredCommand
 
@@ -20,6 +23,8 @@ SETTINGS = Settings(level="C", calibration_rows=40, packet=10, settle=12)
 #: a bearing that is lower from a row on
 LOW = {"kind": "support_settlement", "support": "east", "dof": "uz", "displacement": -0.002}
 SINKS_AT = 75
+#: rows that a feeder in a process of its own sends at once, and how long it rests then [s]
+FED, PAUSE = 3, 0.01
 
 
 def sinking(model: Model, measured: Any, rows: int, *, sinks: bool = True) -> Record:
@@ -80,3 +85,42 @@ def commands(place: Any) -> tuple[StoredCommand, ...]:
     """What people asked a twin for, as its repository has it."""
     with Repository.open(place, read_only=True) as repository:
         return repository.latest().commands()
+
+
+def feed_from(folder: Path) -> None:
+    """Feed the record of a folder from where nobody knows whether it was kept."""
+    model = load_model(folder / "model.json")
+    record = load_record(folder / "record.csv", model)
+    with LiveTwin(folder) as twin, (folder / "acknowledged").open("a", encoding="utf-8") as told:
+        for first in range(acknowledged(folder), len(record), FED):
+            part = record.rows(slice(first, first + FED))
+            twin.feed(part)
+            told.write(f"{first + len(part)}\n")
+            told.flush()
+            sleep(PAUSE)
+
+
+def acknowledged(folder: Path) -> int:
+    """Rows of which `feed` has said that they are kept."""
+    path = folder / "acknowledged"
+    said = path.read_text(encoding="utf-8").split() if path.exists() else []
+    return int(said[-1]) if said else 0
+
+
+def play_until(folder: Path, rows: int) -> None:
+    """Play until so many rows have arrived and all that is due is done."""
+    with LiveTwin(folder) as twin:
+        arrived = 0
+        while arrived < rows:
+            arrived = arrived_in(folder)
+            twin.play()
+            sleep(PAUSE)
+
+
+def arrived_in(folder: Path) -> int:
+    """Rows that have ever arrived."""
+    inbox = Inbox(folder)
+    try:
+        return inbox.rows
+    finally:
+        inbox.close()
