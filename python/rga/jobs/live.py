@@ -20,6 +20,7 @@ from rga.twin.hardware.inbox import Addressee, Inbox
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
+from rga.twin.repository.faults import RepositoryFault
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings, as_settings
 from rga.twin.twin import Twin
@@ -215,6 +216,8 @@ class LiveTwin:
             command = read_command(text)
             try:
                 self._act(partial(self._taken_up().carry_out, command, number), happened)
+            except RepositoryFault:
+                raise
             except InputError as error:
                 # What was begun is not to be gone on with.
                 self._let_go()

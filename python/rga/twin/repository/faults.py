@@ -28,6 +28,10 @@ _MENDED = {
 }
 
 
+class RepositoryFault(InputError):
+    """What keeps a repository from being used for now: whatever was begun may be done later."""
+
+
 @contextmanager
 def as_input_errors(where: str) -> Iterator[None]:
     """Turns what a user can mend into an InputError; other faults pass."""
@@ -38,9 +42,9 @@ def as_input_errors(where: str) -> Iterator[None]:
         name = name or getattr(error.orig, "sqlstate", None) or ""
         for beginning, (what, remedy) in _MENDED.items():
             if name.startswith(beginning):
-                raise InputError(what, where, remedy) from error
+                raise RepositoryFault(what, where, remedy) from error
         if isinstance(error, OperationalError) and not name.startswith("SQLITE_"):
             words = str(error.orig).strip().partition("\n")[0]
             remedy = "check the URL, and that the server runs and lets you in"
-            raise InputError(f"the server says: {words}", where, remedy) from error
+            raise RepositoryFault(f"the server says: {words}", where, remedy) from error
         raise
