@@ -17,6 +17,7 @@ from rga.twin import Settings
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.history import Event, History
 from rga.twin.repository import Repository, StoredCommand
+from rga.twin.runner import Running
 
 #: of a twin whose contexts are all measured
 SETTINGS = Settings(level="C", calibration_rows=40, packet=10, settle=12)
@@ -124,3 +125,18 @@ def arrived_in(folder: Path) -> int:
         return inbox.rows
     finally:
         inbox.close()
+
+
+def play_step_by_step(place: Path) -> None:
+    """Play to the end of what is due, each step by a twin of its own."""
+    happened = steps = 1
+    while happened or steps:
+        seen: list[int] = []
+
+        def once(running: Running, seen: list[int] = seen) -> bool:
+            seen.append(running.row)
+            return len(seen) < 2
+
+        with LiveTwin(place) as twin:
+            happened = len(twin.play(once))
+            steps = len(seen) - 1

@@ -3,18 +3,16 @@
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from random import Random
 from typing import Any
 
 import pytest
 
 import rga
-from live_streams import SETTINGS, assert_same, commands, history, kinds
+from live_streams import SETTINGS, commands, history, kinds
 from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record
 from rga.twin import Accept, Exclude, Note, Recalibrate, Reject, Rollback, carry_out, rollback
-from rga.twin.runner import Running
 
 Given = tuple[Model, Record]
 BY: dict[str, str] = {"who": "Ada", "why": "as said", "given_at": "2026-11-26T12:00:00+00:00"}
@@ -228,65 +226,3 @@ def test_rollback_says_who_asked(ended: Path, tmp_path: Path) -> None:
     with rollback(place, 1, who="Ada", why="to see") as stored:
         assert stored.version == 1
     assert [(one.who, one.why) for one in commands(place)] == [("Ada", "to see")]
-
-
-def drawn(draw: Random, count: int) -> list[Any]:
-    """Commands, possible and impossible."""
-    made: list[Callable[[], Any]] = [
-        lambda: Note(**BY),
-        lambda: Recalibrate(**BY),
-        lambda: Rollback(version=draw.randint(1, 3), **BY),
-        lambda: Accept(proposal=draw.choice([None, 1, 2]), **BY),
-        lambda: Reject(**BY),
-        lambda: Exclude(sensor=draw.choice(["D1", "S L0-L1", "D9"]), **BY),
-        lambda: Exclude(sensor="D2", since=600.0 * draw.randint(0, 99), until=5e4, **BY),
-    ]
-    return [draw.choice(made)() for _ in range(count)]
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_reopening_between_commands_changes_nothing(
-    seed: int, sinks: Given, taken_in: Callable[..., Path]
-) -> None:
-    """Asked for together and played at once, or each by itself, by one twin after another."""
-    draw = Random(seed)
-    batches = [drawn(draw, draw.randint(1, 3)) for _ in range(4)]
-    ends = []
-    for together in (True, False):
-        place, fed = taken_in(sinks, 90, adopt="ask"), 90
-        for batch in batches:
-            for asked in [batch] if together else [[one] for one in batch]:
-                with rga.LiveTwin(place) as twin:
-                    for command in asked:
-                        twin.ask(command)
-                    if together:
-                        twin.play()
-                play_step_by_step(place)
-            fed = min(100, fed + 5)
-            with rga.LiveTwin(place) as twin:
-                twin.feed(sinks[1].rows(slice(0, fed)))
-                if together:
-                    twin.play()
-            play_step_by_step(place)
-        with rga.Twin.open(place) as stored:
-            ends.append((stored.state, stored.history(), commands(place)))
-    assert len(ends[0][2]) == sum(map(len, batches))
-    assert ends[1][2] == ends[0][2]
-    assert ends[1][0].version == ends[0][0].version
-    assert ends[1][0].versions == ends[0][0].versions
-    assert_same(ends[1][1], ends[0][1])
-
-
-def play_step_by_step(place: Path) -> None:
-    """Play to the end of what is due, each step by a twin of its own."""
-    happened = steps = 1
-    while happened or steps:
-        seen: list[int] = []
-
-        def once(running: Running, seen: list[int] = seen) -> bool:
-            seen.append(running.row)
-            return len(seen) < 2
-
-        with rga.LiveTwin(place) as twin:
-            happened = len(twin.play(once))
-            steps = len(seen) - 1

@@ -123,6 +123,25 @@ def test_a_channel_that_is_left_out_is_missing(sound: Given, tmp_path: Path) -> 
     assert_same(found, played(model, whole, SETTINGS, tmp_path / "played.sqlite"))
 
 
+@pytest.mark.parametrize("row", [79, 75, 0])
+def test_a_packet_without_a_context_is_taken_up_again(
+    row: int, sound: Given, tmp_path: Path
+) -> None:
+    model, record = sound
+    contexts = {name: column.copy() for name, column in record.contexts.items()}
+    contexts["west load"][row] = np.nan
+    given = replace(record, contexts=contexts)
+    with rga.live(model, tmp_path, settings=SETTINGS) as twin:
+        twin.feed(given.rows(slice(0, 80)))
+        twin.play()
+    with rga.LiveTwin(tmp_path) as twin:
+        twin.feed(given)
+        twin.play()
+        found = history(twin)
+    assert np.isnan(found.simulated).any(axis=1).nonzero()[0].tolist() == [row]
+    assert_same(found, played(model, given, SETTINGS, tmp_path / "played.sqlite"))
+
+
 def test_settings_are_kept_with_the_twin(sound: Given, tmp_path: Path) -> None:
     """Whoever goes on needs the directory alone."""
     model, record = sound

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rga
-from live_streams import SETTINGS, arrived_in, assert_same, history, play_until
+from live_streams import SETTINGS, arrived_in, assert_same, commands, history, kinds, play_until
 from rga.errors import InputError
 from rga.jobs.live import Fed
 from rga.model import Model, read_model
@@ -271,6 +271,26 @@ def test_a_step_that_finds_no_room_is_taken_when_there_is(sound: Given, tmp_path
         twin.feed(record)
         twin.play()
         assert_same(found, history(twin))
+
+
+def test_a_command_that_finds_no_room_waits_and_is_not_refused(
+    sound: Given, tmp_path: Path
+) -> None:
+    model, record = sound
+    with rga.live(model, tmp_path, settings=SETTINGS) as twin:
+        twin.feed(record)
+        twin.play()
+        twin.ask(Note(who="Ada", why="long " * 2000))
+        running = twin._running
+        assert running is not None
+        connection = running._archive.run._connection
+        with connection.begin():
+            connection.exec_driver_sql("PRAGMA max_page_count = 1")
+        with pytest.raises(InputError, match="the disk of the repository is full"):
+            twin.play()
+        assert commands(tmp_path) == ()
+        assert kinds(twin.play()) == ["command"]
+    assert [one.outcome for one in commands(tmp_path)] == ["noted"]
 
 
 def test_no_rows_are_no_fault(sound: Given, tmp_path: Path) -> None:
