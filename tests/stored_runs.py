@@ -1,14 +1,20 @@
-"""What tests of the repository store."""
+"""What tests of the repository store, and an empty place on every kind of database."""
 
 import json
+import os
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sqlalchemy import text
+import pytest
+from sqlalchemy import create_engine, text
 
 from rga.twin.repository import Identity
 from rga.twin.repository.database import database
 
+SERVER = os.environ.get("RGA_TEST_POSTGRES", "")
 IDENTITY = Identity("a" * 64, "b" * 64, 3, json.dumps({"level": "C"}))
 
 
@@ -39,3 +45,21 @@ def alter(place: str, statement: str) -> None:
     with opened.engine.begin() as connection:
         connection.execute(text(statement))
     opened.engine.dispose()
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def place(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    """An empty place for a repository: a file, or a schema of its own on a server."""
+    if request.param == "sqlite":
+        yield str(tmp_path / "twin.sqlite")
+        return
+    if not SERVER:
+        pytest.skip("RGA_TEST_POSTGRES names no server")
+    schema = f"rga_{uuid.uuid4().hex}"
+    address = SERVER.replace("postgresql://", "postgresql+psycopg://", 1)
+    engine = create_engine(address, isolation_level="AUTOCOMMIT")
+    with engine.connect() as connection:
+        connection.execute(text(f"CREATE SCHEMA {schema}"))
+        yield f"{SERVER}{'&' if '?' in SERVER else '?'}options=-csearch_path%3D{schema}"
+        connection.execute(text(f"DROP SCHEMA {schema} CASCADE"))
+    engine.dispose()

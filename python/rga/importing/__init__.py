@@ -2,6 +2,6 @@
 
 from rga.importing.imported import ImportedModel
 from rga.importing.importer import import_model
-from rga.importing.notes import ImportRefused, Note
+from rga.importing.notes import ImportNote, ImportRefused
 
-__all__ = ["ImportRefused", "ImportedModel", "Note", "import_model"]
+__all__ = ["ImportNote", "ImportRefused", "ImportedModel", "import_model"]

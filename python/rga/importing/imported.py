@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from rga.importing.notes import Note
+from rga.importing.notes import ImportNote
 from rga.model import Model
 
 
@@ -18,6 +18,6 @@ class ImportedModel:
     """
 
     model: Model
-    notes: list[Note] = field(default_factory=list)
+    notes: list[ImportNote] = field(default_factory=list)
     counts: dict[str, int] = field(default_factory=dict)
     load_sums: dict[str, tuple[float, float, float]] = field(default_factory=dict)

@@ -24,7 +24,7 @@ ROW = re.compile(r"(?P<sheet>.+), row (?P<row>\d+)(?: \((?P<name>.*)\))?")
 
 
 @dataclass(frozen=True)
-class Note:
+class ImportNote:
     """One thing that a reader says.
 
     Attributes:
@@ -53,7 +53,7 @@ class ImportRefused(InputError):
         counts: what it found, by kind.
     """
 
-    def __init__(self, path: str, notes: list[Note], counts: dict[str, int]) -> None:
+    def __init__(self, path: str, notes: list[ImportNote], counts: dict[str, int]) -> None:
         self.path, self.notes, self.counts = path, notes, counts
         grave = [note for note in notes if note.severity in ("refused", "question")]
         super().__init__(
@@ -82,7 +82,7 @@ class Notes:
         places.append(where)
 
     def refuse(self, where: str, what: str, remedy: str, unless: Acceptance | None = None) -> None:
-        """Note what would make the model wrong, or was accepted.
+        """ImportNote what would make the model wrong, or was accepted.
 
         Args:
             unless: what the user may accept instead.
@@ -98,10 +98,10 @@ class Notes:
         """Whether something keeps the file from becoming a model."""
         return any(severity in ("refused", "question") for severity, _, _ in self._places)
 
-    def listed(self) -> list[Note]:
+    def listed(self) -> list[ImportNote]:
         """All notes, gravest first."""
         notes = [
-            Note(severity, joined(places), what, remedy)
+            ImportNote(severity, joined(places), what, remedy)
             for (severity, what, remedy), places in self._places.items()
         ]
         return sorted(notes, key=lambda note: ORDER.index(note.severity))

@@ -14,19 +14,18 @@ from rga.given import as_record
 from rga.jobs.run import FILE, concluded, made
 from rga.model import Model, as_model, read_model
 from rga.records import Record, RecordMapping, RecordSource
-from rga.twin.commands import AnyCommand, read_command
+from rga.twin.commands.command import AnyCommand, read_command
+from rga.twin.hardware.inbox import FILE as INBOX
 from rga.twin.hardware.inbox import Addressee, Inbox
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
+from rga.twin.repository.faults import RepositoryFault
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings, as_settings
 from rga.twin.twin import Twin
 from rga.twin.versions import written
-
-#: stages between which a command does not break anything off
-CALM = ("gather", "watch", "report", "done")
 
 
 @dataclass(frozen=True)
@@ -73,6 +72,8 @@ class LiveTwin:
         self._directory = Path(directory)
         if not self._directory.is_dir():
             raise InputError("there is no such directory", str(directory), "begin with rga.live")
+        if not (self._directory / INBOX).is_file():
+            raise InputError("no live twin is here", str(directory), "begin with rga.live")
         self._inbox = Inbox(self._directory)
         known = self._inbox.addressee
         if known is None:
@@ -119,11 +120,12 @@ class LiveTwin:
         record = as_record(rows, self.model, mapping)
         if not len(record):
             return Fed(0, 0)
-        if self._inbox.ended:
-            raise InputError("it has ended", f"twin {self.name!r}", "begin another")
-        station = self._inbox.station or station_for(self.model, record)
-        time, readings, contexts = as_rows(station, record)
-        new = self._inbox.put(station, time, readings, contexts)
+        new = None
+        while new is None:
+            if self._inbox.ended:
+                raise InputError("it has ended", f"twin {self.name!r}", "begin another")
+            station = self._inbox.station or station_for(self.model, record)
+            new = self._inbox.put(station, *as_rows(station, record))
         return Fed(new, len(record) - new)
 
     def ask(self, command: AnyCommand) -> int:
@@ -167,8 +169,13 @@ class LiveTwin:
         Raises:
             InputError: too few rows have come.
         """
-        if self._inbox.station is None:
-            raise InputError("no row has arrived", f"twin {self.name!r}", "feed rows to it")
+        wanted, rows = self._settings.pace(None).calibration_rows, self._inbox.rows
+        if rows < wanted:
+            raise InputError(
+                f"the calibration wants {wanted} rows, and {rows} have come",
+                f"twin {self.name!r}",
+                "feed more rows to it",
+            )
         self._inbox.end()
         with self._playing:
             self.play()
@@ -211,12 +218,15 @@ class LiveTwin:
 
     def _carry_out_commands(self, happened: list[Event]) -> None:
         """Do what people asked for, where that breaks nothing off."""
-        if self._taken_up().stage not in CALM:
-            return
         for number, text in self._inbox.commands(self._taken_up().commanded):
+            # What one begins comes before the next, as it would were they asked for one by one.
+            if not self._taken_up().calm:
+                return
             command = read_command(text)
             try:
                 self._act(partial(self._taken_up().carry_out, command, number), happened)
+            except RepositoryFault:
+                raise
             except InputError as error:
                 # What was begun is not to be gone on with.
                 self._let_go()

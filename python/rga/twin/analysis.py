@@ -228,13 +228,23 @@ class RealityGapAnalysis:
             standing.stage = "report"
 
     def adopt(
-        self, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
+        self,
+        effects: Effects,
+        gain: float | None,
+        gain_ci90: tuple[float, float] | None,
+        first: int | None = None,
     ) -> None:
-        """Let effects become a version of the twin; none bring back the model as it was given."""
+        """Let effects become a version of the twin; none bring back the model as it was given.
+
+        Args:
+            effects: beyond the model as it was given.
+            gain, gain_ci90: held-out gain of the diagnosis that names them.
+            first: of the latest rows that stand under them; None: as it follows from them.
+        """
         if effects:
-            self._change_version(effects=effects, gain=gain, gain_ci90=gain_ci90)
+            self._change_version(first, effects=effects, gain=gain, gain_ci90=gain_ci90)
         else:
-            self._change_version(restore=1)
+            self._change_version(first, restore=1)
 
     def _propose(
         self, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
@@ -242,6 +252,7 @@ class RealityGapAnalysis:
         row, causes = self.standing.row - 1, [effect_words(one) for one in effects.values()]
         words = f"a model with {', '.join(causes)}" if causes else "the model as it was given"
         number = self._archive.propose(row, words, effects, gain, gain_ci90)
+        self.standing.proposed = self._under_the_same(effects)
         self.event("proposal", row, f"proposal {number}: {words}")
 
     def _detect(self, first: int, end: int) -> None:
@@ -299,10 +310,12 @@ class RealityGapAnalysis:
             calibration.restore(kept, calibration.sound)
             calibration.follow(*recent)
 
-    def _change_version(self, **change: Any) -> None:
+    def _change_version(self, first: int | None, **change: Any) -> None:
         """Q1 with an update or a rollback; a gap that rises by a quarter takes an update back."""
         standing, calibration = self.standing, self._calibration
-        recent = (self._under_the_same(change.get("effects", {})), standing.row)
+        if first is None:
+            first = self._under_the_same(change.get("effects", {}))
+        recent = (first, standing.row)
         before, old = calibration.rows.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.sound
         answer = self.ask_twin(**change)

@@ -11,14 +11,14 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.model import Model
 from rga.records import Record
-from rga.twin.commands import AnyCommand
-from rga.twin.exclusion import Excluded, without_excluded
+from rga.twin.commands.command import AnyCommand
+from rga.twin.commands.exclusion import Excluded, without_excluded
 from rga.twin.hardware.interface import Packet, Station
 from rga.twin.history import Event
 from rga.twin.messages.queries import Q1, Q2, Q4, R1, R2, R3, R4, Message, Response, sha256
-from rga.twin.recent_rows import Stretch
 from rga.twin.repository import Run, Transaction
 from rga.twin.restore import stored_rows
+from rga.twin.rows.recent import Stretch
 from rga.twin.simulation_model import SimulationModel
 from rga.twin.versions import Effects, extended, written
 

@@ -93,7 +93,7 @@ class Checkpoint:
         synchrony = view.state("synchrony")
         assert synchrony is not None  # every step keeps it
         self._analysis.synchrony.restore(synchrony)
-        self.stale = standing.learned_under != self._twin.state.version
+        self.compare_version()
         if not self._own:
             self._read_estimators(view)
         if (memories := view.state("memories")) is not None:
@@ -103,6 +103,11 @@ class Checkpoint:
             view.rows, view.state("rows"), standing, learned, sound, given, self._states.copy()
         )
         return True
+
+    def compare_version(self) -> None:
+        """Note whether another version is in force than was learned about."""
+        learned_under = self._analysis.standing.learned_under
+        self.stale = learned_under != self._twin.state.version
 
     def _read_estimators(self, view: RunView) -> None:
         """Those that infer, and those of the states that were kept."""

@@ -16,8 +16,8 @@ from rga.twin.digital_twin import TwinState, follow
 from rga.twin.hardware.interface import LIVE, Station
 from rga.twin.history import Event, History, Version
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
-from rga.twin.recent_rows import Stretch, carried_on
 from rga.twin.repository import RunView, StoredReadings
+from rga.twin.rows.recent import Stretch, carried_on
 from rga.twin.run_state import Standing
 
 
@@ -173,8 +173,10 @@ def history_of(view: RunView) -> History:
     record = record_of(view)
     rows = stored_rows(view, station, model, at_the_time=True)
     stuck = np.array([name in standing.stuck for name in station.channels], dtype=np.bool_)
-    gaps = (rows.readings - rows.simulated) ** 2
-    gaps[:, stuck] = np.nan
+    # As they were kept: readings that were not used have none.
+    kept, gaps = view.gaps(at_the_time=True), np.full(rows.readings.shape, np.nan)
+    if len(kept.rows):
+        gaps[kept.rows] = kept.gaps
     told = rows.readings[: standing.calibrated or len(rows)]
     state = replay(view, station.channels)
     latent = [list(model.context).index(name) for name in state.latent]

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from rga.twin.exclusion import Excluded
+from rga.twin.commands.exclusion import Excluded
 from rga.twin.settings import Inference
 
 Stage = Literal[
@@ -35,6 +35,7 @@ class Standing(BaseModel):
         distinct: least distance of a novel context, in shares of the ranges.
         diagnosed: rows of the last diagnosis.
         changed: rows when the version last changed.
+        proposed: first of the rows that stand under what was proposed last; None: nothing was.
         about_change: whether the last diagnosis asked what has changed.
         ended: whether no more rows will come.
         excluded: readings that are not used: a sensor, and the clock from and to which [s]; None:
@@ -62,6 +63,7 @@ class Standing(BaseModel):
     distinct: float = 0.0
     diagnosed: int | None = None
     changed: int = 0
+    proposed: int | None = None
     about_change: bool = False
     ended: bool = False
     excluded: tuple[Excluded, ...] = ()

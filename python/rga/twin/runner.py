@@ -6,8 +6,6 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from rga.arrays import IntArray
-from rga.diagnosis import diagnose
 from rga.errors import InputError
 from rga.findings import Findings
 from rga.model import Model
@@ -16,25 +14,28 @@ from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.calibration.estimator import Learn
-from rga.twin.changes import diagnose_change, in_doubt
 from rga.twin.checkpoint import Checkpoint
-from rga.twin.command_desk import CommandDesk
-from rga.twin.commands import AnyCommand, Rollback
+from rga.twin.commands.command import AnyCommand, Rollback
+from rga.twin.commands.desk import CommandDesk
 from rga.twin.digital_twin import DigitalTwin
 from rga.twin.hardware.interface import HardwareInterface
 from rga.twin.hardware.recorded import Recorded
-from rga.twin.hardware.stored import Stored
+from rga.twin.hardware.stored import Stored, length_of
 from rga.twin.history import Event, History
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.past.chosen_past import chosen_past, with_choice
+from rga.twin.past.past_diagnosis import PastDiagnosis
 from rga.twin.repository import Identity, Repository, Run
 from rga.twin.repository.sqlite import PATIENCE
-from rga.twin.restore import chosen_record, given_model, history_of, times_and_contexts
+from rga.twin.restore import given_model, history_of
 from rga.twin.settings import Settings
 from rga.twin.versions import beyond, with_ends, written
 
 Progress = Callable[[str, float], None]
 WRITTEN = ("findings.json", "model.json", "report.html")
+#: stages that wait for rows, or for nothing
+CALM = ("gather", "watch", "report", "done")
+#: stages in which nothing is learned about a version that was put in force by hand
+UNLEARNED = ("gather", "calibrate", "report", "done")
 
 
 @contextmanager
@@ -117,7 +118,7 @@ class Running:
         self._model, self._settings, self._seed = model, settings, seed
         self._progress = progress or (lambda stage, done: None)
         self._hardware, station = hardware, hardware.station
-        self._pace = settings.pace(hardware.rows if hardware.ended else None)
+        self._pace = settings.pace(length_of(hardware, settings))
         self._twin = DigitalTwin(model, station)
         self._archive = Archive(kept, model, station, self._twin.simulation)
         exchange = QueryResponse(self._twin, self._archive)
@@ -129,11 +130,14 @@ class Running:
         )
         self._closing: Findings | None = None
         self.resumed_at: int | None = None
+        self._diagnosis = PastDiagnosis(
+            model, hardware, self._archive, settings.criteria, seed, self._progress
+        )
         self._checkpoint = Checkpoint(
             self._archive, self._twin, self.analysis, self.calibration, model, learn is not None
         )
         self._desk = CommandDesk(
-            self.analysis, self._archive, self.calibration, station.channels, self._pace
+            self.analysis, self._archive, self.calibration, station, self._pace
         )
         if self._checkpoint.take_up():
             self.resumed_at = self.row
@@ -164,9 +168,21 @@ class Running:
 
         When rows arrive therefore never changes what comes of them.
         """
-        if self._checkpoint.stale or self.stage not in ("gather", "watch"):
-            return self.stage not in ("report", "done")
+        if not self.calm:
+            return True
+        if self.stage in ("report", "done"):
+            return False
         return self._hardware.ended or self._waiting >= self._wanted
+
+    @property
+    def calm(self) -> bool:
+        """Whether nothing is begun: a command does not break anything off."""
+        return self.stage in CALM and not self._to_learn
+
+    @property
+    def _to_learn(self) -> bool:
+        """Whether a version was put in force by hand that is to be learned about."""
+        return self._checkpoint.stale and self.stage not in UNLEARNED
 
     @property
     def version(self) -> int:
@@ -192,7 +208,7 @@ class Running:
         """Do what is next, and have it acknowledged by the repository."""
         if self.stage == "initialise":
             self._initialise()
-        elif self._checkpoint.stale and self.stage not in ("gather", "calibrate", "report", "done"):
+        elif self._to_learn:
             with self._archive.step():
                 self.analysis.take_up_version()
                 self._checkpoint.stale = False
@@ -228,7 +244,7 @@ class Running:
         with self._archive.step():
             outcome = self._desk.carry_out(command)
             if isinstance(command, Rollback):
-                self._checkpoint.stale = True
+                self._checkpoint.compare_version()
             self._note(number)
         return outcome
 
@@ -350,43 +366,10 @@ class Running:
 
     def _ask_diagnosis(self) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along."""
-        given, past = self.calibration.given, self._past()
-        model, criteria = self._model, self._settings.criteria
-        changed, calibrated = self.analysis.changed, self.analysis.standing.calibrated
-        events, most = self._archive.run.events(), criteria.record.most_rows
-        choice = chosen_past(model, past, events, calibrated, most, self._seed)
-        record = self._archive.used(self._record(past, choice.rows))
-        if changed and given is not None and given.found is not None:
-            assert given.correction is not None
-            found = diagnose_change(
-                model,
-                record,
-                given.found,
-                given.correction,
-                since=past.origin + float(past.time[calibrated - 1]),
-                criteria=criteria,
-                seed=self._seed,
-                progress=self._progress,
-            )
-            if found is not None:
-                return with_choice(found, choice.words, len(past))
-        findings = diagnose(
-            model, record, criteria=criteria, seed=self._seed, progress=self._progress
+        analysis = self.analysis
+        return self._diagnosis.ask(
+            self.row, analysis.standing.calibrated, analysis.changed, self.calibration.given
         )
-        findings = with_choice(findings, choice.words, len(past))
-        return in_doubt(findings) if changed and not findings.causes else findings
-
-    def _past(self) -> Record:
-        """The rows so far; their readings may be left out."""
-        if isinstance(self._hardware, Recorded):
-            return self._hardware.record.rows(slice(0, self.row))
-        return times_and_contexts(self._archive.run, self.row)
-
-    def _record(self, past: Record, rows: IntArray) -> Record:
-        """Chosen rows with their readings."""
-        if isinstance(self._hardware, Recorded):
-            return past if len(rows) == len(past) else past.rows(rows)
-        return chosen_record(self._archive.run, rows)
 
     def _label(self, row: int) -> str | float:
         if not len(self.calibration.ledger):

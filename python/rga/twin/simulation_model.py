@@ -81,6 +81,8 @@ class SimulationModel:
         contexts = np.concatenate([query.contexts_before, query.contexts])
         readings, memory = self._followed(clock, contexts, query.memory)
         simulated = readings[len(query.time_before) :]
+        if len(query.unknown):
+            simulated[query.unknown] = np.nan
         last = dict(zip(self.model.context, query.contexts[-1].tolist(), strict=True))
         return R5(
             row=query.row,

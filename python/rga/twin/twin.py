@@ -13,7 +13,7 @@ from rga.model import Effect, Model
 from rga.model.effect import seconds
 from rga.records import Record
 from rga.simulation.whatif import WhatIf, whatif
-from rga.twin.commands import AnyCommand, Rollback
+from rga.twin.commands.command import AnyCommand, Rollback
 from rga.twin.digital_twin import TwinState
 from rga.twin.history import History
 from rga.twin.messages.log_text import retold

@@ -1,5 +1,5 @@
 """An empty place for a repository on every kind of database."""
 
-from empty_repositories import place
+from stored_runs import place
 
 __all__ = ["place"]

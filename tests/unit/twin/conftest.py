@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from empty_repositories import place
 from rga.twin.repository import Repository, Run
-from stored_runs import IDENTITY
+from stored_runs import IDENTITY, place
 
 __all__ = ["place"]
 

@@ -18,7 +18,7 @@ from rga.twin.hardware.interface import Packet, Station
 from rga.twin.hardware.recorded import Recorded
 from rga.twin.messages.queries import Q1, Q2, Q3, Q5, R1, R5, Box, read_message, sha256
 from rga.twin.novelty import novel, spacing
-from rga.twin.recent_rows import KEPT, RecentRows, Stretch
+from rga.twin.rows.recent import KEPT, RecentRows, Stretch
 from rga.twin.settings import Settings
 from rga.twin.sync.window_rule import WindowRule
 from rga.twin.versions import first_row_under

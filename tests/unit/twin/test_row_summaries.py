@@ -5,8 +5,8 @@ import pytest
 
 from rga.arrays import FloatArray
 from rga.twin.hardware.interface import Packet
-from rga.twin.recent_rows import RecentRows, Stretch
-from rga.twin.row_summaries import BLOCK, BLOCKS, RowSummaries
+from rga.twin.rows.recent import RecentRows, Stretch
+from rga.twin.rows.summaries import BLOCK, BLOCKS, RowSummaries
 
 
 class Followed:

@@ -9,7 +9,7 @@ import typer
 from rga.cli.options import JsonTarget, OutputFile
 
 if TYPE_CHECKING:
-    from rga.importing import ImportedModel, Note
+    from rga.importing import ImportedModel, ImportNote
 
 
 class MemberKinds(StrEnum):
@@ -159,7 +159,7 @@ def import_model(
 
 
 def _content(
-    counts: dict[str, int], notes: "list[Note]", found: "ImportedModel | None"
+    counts: dict[str, int], notes: "list[ImportNote]", found: "ImportedModel | None"
 ) -> dict[str, Any]:
     from dataclasses import asdict
 
@@ -172,7 +172,7 @@ def _content(
     }
 
 
-def _show(counts: dict[str, int], notes: "list[Note]") -> None:
+def _show(counts: dict[str, int], notes: "list[ImportNote]") -> None:
     shown = dict(counts)
     cut, frames = shown.pop("frames cut", 0), shown.pop("frames", 0)
     parts = ", ".join(f"{count} {kind}" for kind, count in shown.items() if count)

@@ -135,5 +135,5 @@ class ScriptModel:
         return self.nodes[tag]
 
     def refuse(self, given: Arguments, what: str) -> None:
-        """Note what would make the model wrong."""
+        """ImportNote what would make the model wrong."""
         self.refusals.append((given.where, what))

@@ -79,7 +79,7 @@ def says_pynite(path: Path) -> bool:
 
 def read_pynite_script(
     path: Path, without: Collection[str] = ()
-) -> tuple["Recorded", list[tuple[str, str]]]:
+) -> tuple["BuiltModel", list[tuple[str, str]]]:
     """The model that a script makes, and what was taken for granted.
 
     Args:
@@ -89,7 +89,7 @@ def read_pynite_script(
     Raises:
         InputError: it cannot be read, or makes no model.
     """
-    made: list[Recorded] = []
+    made: list[BuiltModel] = []
     module = OpenedNames("Pynite", {"FEModel3D": _Making(made)})
     modules: dict[str, Opened] = {}
     for name in ("Pynite", "PyNite"):
@@ -117,18 +117,18 @@ class _Making(Opened):
 
     trust = "model"
 
-    def __init__(self, made: list["Recorded"]) -> None:
+    def __init__(self, made: list["BuiltModel"]) -> None:
         self.made = made
 
     def attribute(self, name: str) -> Any:
         return self if name == "FEModel3D" else Anything(name)
 
     def call(self, values: list[Any], named: dict[str, Any], where: str) -> Any:
-        self.made.append(Recorded())
+        self.made.append(BuiltModel())
         return self.made[-1]
 
 
-class Recorded(Opened):
+class BuiltModel(Opened):
     """A model as a script builds it, with the parts of an `FEModel3D`.
 
     Attributes:
@@ -173,7 +173,7 @@ class _Method(Opened):
 
     trust = "model"
 
-    def __init__(self, model: Recorded, name: str) -> None:
+    def __init__(self, model: BuiltModel, name: str) -> None:
         self.model, self.name = model, name
 
     def attribute(self, name: str) -> Any:

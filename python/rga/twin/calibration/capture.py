@@ -27,7 +27,7 @@ from rga.twin.hardware.interface import Packet, Station
 from rga.twin.messages.queries import Q1, Q2, Q3, Q4, Box
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.novelty import beside
-from rga.twin.recent_rows import RecentRows
+from rga.twin.rows.recent import RecentRows
 from rga.twin.run_state import Standing
 from rga.twin.settings import Inference, Settings
 

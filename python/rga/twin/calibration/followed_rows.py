@@ -17,8 +17,8 @@ from rga.twin.calibration.memories import Mark, Memories
 from rga.twin.hardware.interface import Station
 from rga.twin.messages.queries import Q5, sha256
 from rga.twin.messages.query_bus import QueryResponse
-from rga.twin.recent_rows import RecentRows
-from rga.twin.row_summaries import RowSummaries
+from rga.twin.rows.recent import RecentRows
+from rga.twin.rows.summaries import RowSummaries
 from rga.twin.simulation_model import SimulationModel
 
 
@@ -140,7 +140,7 @@ class FollowedRows:
         if answer.memory is not None:
             mark = Mark(end, version, simulation.structure, answer.memory)
             self.memories.keep(first, mark)
-        simulated = np.where(self._complete(first, end), answer.simulated, np.nan)
+        simulated = answer.simulated
         self.ledger.followed(first, contexts, spread, simulated)
         gaps = (self.ledger.rows(first, end).readings - simulated) ** 2
         gaps[:, self.ledger.stuck] = np.nan
@@ -160,7 +160,7 @@ class FollowedRows:
         given = self._exchange.twin.simulation()
         corrected = SimulationModel(given.model, self._station, estimator.correction)
         answer = corrected.follow(self._question(corrected, first, end, contexts))
-        return contexts, np.where(self._complete(first, end), answer.simulated, np.nan)
+        return contexts, answer.simulated
 
     def _inferred(
         self, estimator: ContextEstimator, first: int, end: int
@@ -200,6 +200,7 @@ class FollowedRows:
             time_before=self.clock(begin, first),
             contexts_before=self.ledger.rows(begin, first).contexts,
             memory=memory,
+            unknown=self._unknown(first, end),
         )
 
     def _prior(self, first: int, end: int) -> tuple[FloatArray, FloatArray]:
@@ -217,7 +218,7 @@ class FollowedRows:
     def _measured(self) -> list[int]:
         return [self._names.index(name) for name in self._station.measured]
 
-    def _complete(self, first: int, end: int) -> NDArray[np.bool_]:
-        """Whether all measured contexts are there, bool[rows, 1]."""
+    def _unknown(self, first: int, end: int) -> NDArray[np.bool_]:
+        """Whether a measured context is missing, bool[rows]."""
         measured = self.ledger.rows(first, end).measured
-        return np.asarray(np.isfinite(measured).all(axis=1, keepdims=True))
+        return np.asarray(~np.isfinite(measured).all(axis=1))

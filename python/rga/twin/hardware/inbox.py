@@ -146,7 +146,7 @@ class Inbox:
 
     def put(
         self, station: Station, time: FloatArray, readings: FloatArray, contexts: FloatArray
-    ) -> int:
+    ) -> int | None:
         """Keep rows that are later than all before; others were here already.
 
         Args:
@@ -155,10 +155,11 @@ class Inbox:
             readings, contexts: float[n, channels], float[n, measured contexts].
 
         Returns:
-            How many rows were new.
+            How many rows were new; None: nothing is kept, for another has named another station
+            or the end meanwhile.
         """
         with self._writing() as connection:
-            known = connection.execute(select(_station.c.rows, _station.c.last)).one_or_none()
+            known = connection.execute(select(_station)).one_or_none()
             if known is None:
                 first, last = 0, -np.inf
                 connection.execute(
@@ -167,6 +168,8 @@ class Inbox:
                     )
                 )
             else:
+                if known.ended or known.station != station.to_json():
+                    return None
                 first, last = known.rows, known.last
             new = np.flatnonzero(time > last)
             if not len(new):

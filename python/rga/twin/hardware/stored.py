@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from rga.twin.hardware.interface import Packet
+from rga.twin.hardware.interface import HardwareInterface, Packet
 from rga.twin.repository import RunView
 from rga.twin.restore import station_of
+from rga.twin.settings import Settings
 
 
 class Stored:
@@ -44,3 +45,13 @@ class Stored:
 
     def taken(self, rows: int) -> None:
         """The repository keeps them."""
+
+
+def length_of(hardware: HardwareInterface, settings: Settings) -> int | None:
+    """Rows of the record that a run is of; None: it does not end."""
+    if not hardware.ended:
+        return None
+    if isinstance(hardware, Stored):
+        # More rows may have been meant to come than were taken in.
+        return max(hardware.rows, settings.calibration_rows or 1)
+    return hardware.rows

@@ -198,6 +198,8 @@ class Q5(Message):
         time_before, contexts_before: the same of earlier rows: of those behind the memory, or of
             the last.
         memory: what effects that look back have kept of the rows before all these; None: nothing.
+        unknown: rows of which a measured context is missing, whose readings are not simulated,
+            bool[n]; of no length where there is none.
     """
 
     kind: Literal["Q5"] = "Q5"
@@ -210,6 +212,7 @@ class Q5(Message):
     time_before: FloatArray = Field(default_factory=_no_rows, exclude=True)
     contexts_before: FloatArray = Field(default_factory=_no_rows, exclude=True)
     memory: Memory | None = Field(default=None, exclude=True)
+    unknown: Flags = Field(default_factory=_no_flags, exclude=True)
 
 
 class R5(Message):
@@ -217,7 +220,7 @@ class R5(Message):
 
     Attributes:
         context: of the last row.
-        simulated: float[n, channels].
+        simulated: float[n, channels], NaN in rows that were unknown.
         memory: with which the next rows are simulated; None: nothing looks back.
     """
 

@@ -7,11 +7,6 @@ from sqlalchemy.exc import DBAPIError, OperationalError
 
 from rga.errors import InputError
 
-
-class InUse(InputError):
-    """Another process writes there."""
-
-
 # By the beginning of SQLite's name of the error, and by PostgreSQL's state.
 _MENDED = {
     "SQLITE_NOTADB": ("the file is no repository", "name a file that rga wrote, or a new one"),
@@ -33,6 +28,14 @@ _MENDED = {
 }
 
 
+class RepositoryFault(InputError):
+    """What keeps a repository from being used for now: whatever was begun may be done later."""
+
+
+class InUse(RepositoryFault):
+    """Another process writes there."""
+
+
 #: what says that another process writes there
 _LOCKED = ("SQLITE_BUSY", "55P03")
 
@@ -47,10 +50,10 @@ def as_input_errors(where: str) -> Iterator[None]:
         name = name or getattr(error.orig, "sqlstate", None) or ""
         for beginning, (what, remedy) in _MENDED.items():
             if name.startswith(beginning):
-                kind = InUse if name in _LOCKED else InputError
+                kind = InUse if name in _LOCKED else RepositoryFault
                 raise kind(what, where, remedy) from error
         if isinstance(error, OperationalError) and not name.startswith("SQLITE_"):
             words = str(error.orig).strip().partition("\n")[0]
             remedy = "check the URL, and that the server runs and lets you in"
-            raise InputError(f"the server says: {words}", where, remedy) from error
+            raise RepositoryFault(f"the server says: {words}", where, remedy) from error
         raise

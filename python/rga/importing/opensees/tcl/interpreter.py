@@ -8,7 +8,7 @@ from rga.errors import InputError
 from rga.importing.opensees.tcl.expressions import Expression, truth
 from rga.importing.opensees.tcl.numbers import written
 from rga.importing.opensees.tcl.variables import TclVariables
-from rga.importing.opensees.tcl.words import Command, Cutter, Word, WordPart, commands, parts_of
+from rga.importing.opensees.tcl.words import Cutter, TclCommand, Word, WordPart, commands, parts_of
 from rga.importing.scripts.values import Steps, Unknown, checked_size
 
 #: procedures within procedures, and files within files
@@ -103,7 +103,7 @@ class TclInterpreter:
         """A place in words; that in the main file goes without its name."""
         return f"line {line}" if file == self.main else f"{file}, line {line}"
 
-    def _command(self, one: Command, file: str) -> Any:
+    def _command(self, one: TclCommand, file: str) -> Any:
         where = self.where(one.line, file)
         self.steps.take(where)
         first = one.words[0]
@@ -280,7 +280,7 @@ class Deeper:
         self.interpreter.depth -= 1
 
 
-def _shown(one: Command) -> str:
+def _shown(one: TclCommand) -> str:
     """A command in short."""
     marks = {"variable": "$", "script": "["}
     words = (

@@ -5,7 +5,7 @@ from typing import Any
 
 from rga.errors import InputError
 from rga.importing.opensees.tcl.interpreter import TclInterpreter, TclText
-from rga.importing.opensees.tcl.words import Command, commands
+from rga.importing.opensees.tcl.words import TclCommand, commands
 from rga.importing.scripts.values import Unknown
 
 #: commands that set the variable which their first word names
@@ -31,7 +31,7 @@ def skip(tcl: TclInterpreter, bodies: list[Any], why: Unknown, where: str) -> An
     return Unknown(why.reason)
 
 
-def _within(tcl: TclInterpreter, body: Any, seen: set[str]) -> Iterator[tuple[str, Command]]:
+def _within(tcl: TclInterpreter, body: Any, seen: set[str]) -> Iterator[tuple[str, TclCommand]]:
     """Commands in a script by name, with those in its own scripts and procedures."""
     try:
         line, file = (body.line, body.file) if isinstance(body, TclText) else (1, tcl.main)

@@ -43,7 +43,7 @@ class Word:
 
 
 @dataclass(frozen=True)
-class Command:
+class TclCommand:
     """A command: its words, and its line in the file."""
 
     words: tuple[Word, ...]
@@ -51,7 +51,7 @@ class Command:
 
 
 @lru_cache(maxsize=4096)
-def commands(text: str, first: int, file: str) -> tuple[Command, ...]:
+def commands(text: str, first: int, file: str) -> tuple[TclCommand, ...]:
     """The commands of a script.
 
     Args:
@@ -94,7 +94,7 @@ class Cutter:
         """The sign at the place; nothing at the end."""
         return self.text[self.place : self.place + 1]
 
-    def commands(self) -> Iterator[Command]:
+    def commands(self) -> Iterator[TclCommand]:
         """The commands from the place to the end."""
         while self.place < len(self.text):
             self._skip(BLANK)
@@ -106,7 +106,7 @@ class Cutter:
                 words.append(self._word())
                 self._skip(BETWEEN)
             if words:
-                yield Command(tuple(words), line)
+                yield TclCommand(tuple(words), line)
 
     def _skip(self, what: re.Pattern[str]) -> None:
         found = what.match(self.text, self.place)

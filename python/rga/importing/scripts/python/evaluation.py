@@ -84,7 +84,7 @@ class Evaluation(ABC):
         """Whether a name of a part of the model is a result or a number, and no part itself."""
 
     def refuse(self, node: ast.AST, words: str) -> None:
-        """Note what is not followed and may change the model."""
+        """ImportNote what is not followed and may change the model."""
         self.refusals.append((words, self.where(node)))
 
     def value(self, node: ast.AST) -> Any:

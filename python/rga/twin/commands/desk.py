@@ -7,7 +7,8 @@ from rga.model.effect import seconds
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
-from rga.twin.commands import Accept, AnyCommand, Command, Exclude, Note, Reject, Rollback
+from rga.twin.commands.command import Accept, AnyCommand, Command, Exclude, Note, Reject, Rollback
+from rga.twin.hardware.interface import Station
 from rga.twin.repository import Proposal
 from rga.twin.settings import Pace
 
@@ -24,7 +25,7 @@ class CommandDesk:
         analysis: changes the twin.
         archive: keeps proposals and commands.
         calibration: reads the rows.
-        channels: names of the sensors.
+        station: what is mounted on the structure.
         pace: how many rows a recalibration learns from.
     """
 
@@ -33,11 +34,11 @@ class CommandDesk:
         analysis: RealityGapAnalysis,
         archive: Archive,
         calibration: ContextCapture,
-        channels: tuple[str, ...],
+        station: Station,
         pace: Pace,
     ) -> None:
         self._analysis, self._archive = analysis, archive
-        self._calibration, self._channels, self._pace = calibration, channels, pace
+        self._calibration, self._station, self._pace = calibration, station, pace
 
     def carry_out(self, command: AnyCommand) -> str:
         """Do what is asked, and keep it with what came of it.
@@ -77,7 +78,8 @@ class CommandDesk:
 
     def _accept(self, proposal: Proposal) -> str:
         self._check_calibrated()
-        self._analysis.adopt(proposal.effects, proposal.gain, proposal.gain_ci90)
+        first = self._analysis.standing.proposed
+        self._analysis.adopt(proposal.effects, proposal.gain, proposal.gain_ci90, first)
         return f"proposal {proposal.number} is accepted: {proposal.words}"
 
     def _roll_back(self, version: int) -> str:
@@ -99,11 +101,12 @@ class CommandDesk:
 
     def _exclude(self, command: Exclude) -> str:
         standing, clock = self._analysis.standing, self._calibration.rows.last_clock
-        if command.sensor not in self._channels:
-            known = ", ".join(self._channels)
+        if command.sensor not in self._station.channels:
+            known = ", ".join(self._station.channels)
             raise InputError(
                 f"there is no sensor {command.sensor!r}", PLACE, f"name one of {known}"
             )
+        self._check_moments(command.since, command.until)
         since = clock if command.since is None else seconds(command.since)
         until = None if command.until is None else seconds(command.until)
         if until is not None and not until > since:
@@ -114,6 +117,21 @@ class CommandDesk:
         begin = "now" if command.since is None else str(command.since)
         end = "on" if command.until is None else f"to {command.until}"
         return f"{command.sensor} is not used from {begin} {end}"
+
+    def _check_moments(self, *moments: float | str | None) -> None:
+        """Whether times are written as the rows write theirs.
+
+        Raises:
+            InputError: one is not.
+        """
+        dated = self._station.time_format == "iso"
+        if wrong := [one for one in moments if one is not None and isinstance(one, str) != dated]:
+            written = "dates" if dated else "seconds"
+            raise InputError(
+                f"the rows are written in {written}, and {wrong[0]!r} is none",
+                PLACE,
+                f"give {written} as in the rows",
+            )
 
     def _open_proposal(self, number: int | None) -> Proposal:
         """The last proposal, if nobody has decided about it.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.twin.recent_rows import RecentRows
+from rga.twin.rows.recent import RecentRows
 
 #: rows of a block, and how many blocks back a row is remembered: two weeks of minutes
 BLOCK, BLOCKS = 256, 80

@@ -1,0 +1,92 @@
+"""The diagnosis of a past, of the rows of it that tell most."""
+
+from collections.abc import Callable
+
+from rga.arrays import IntArray
+from rga.diagnosis import diagnose
+from rga.findings import Findings
+from rga.findings.criteria import Criteria
+from rga.model import Model
+from rga.records import Record
+from rga.twin.archive import Archive
+from rga.twin.calibration.estimator import ContextEstimator
+from rga.twin.changes import diagnose_change, in_doubt
+from rga.twin.hardware.interface import HardwareInterface
+from rga.twin.hardware.recorded import Recorded
+from rga.twin.past.chosen_past import chosen_past, with_choice
+from rga.twin.restore import chosen_record, times_and_contexts
+
+
+class PastDiagnosis:
+    """Diagnoses the rows so far.
+
+    Args:
+        model: as it was given.
+        hardware: where rows come from.
+        archive: keeps them, and what happened.
+        criteria: of the diagnosis.
+        seed: of everything random.
+        progress: called with a stage and the share of it that is done.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        hardware: HardwareInterface,
+        archive: Archive,
+        criteria: Criteria,
+        seed: int,
+        progress: Callable[[str, float], None],
+    ) -> None:
+        self._model, self._hardware, self._archive = model, hardware, archive
+        self._criteria, self._seed, self._progress = criteria, seed, progress
+
+    def ask(
+        self, rows: int, calibrated: int, changed: bool, given: ContextEstimator | None
+    ) -> Findings:
+        """What has changed since the calibration, if it has; else what was wrong all along.
+
+        Args:
+            rows: of the past.
+            calibrated: rows of the first calibration.
+            changed: whether something seems to have changed since.
+            given: what the calibration learned about the model as it was given.
+
+        Raises:
+            InputError: the rows cannot be diagnosed.
+        """
+        model, criteria, past = self._model, self._criteria, self._past(rows)
+        events, most = self._archive.run.events(), criteria.record.most_rows
+        choice = chosen_past(model, past, events, calibrated, most, self._seed)
+        record = self._archive.used(self._chosen(past, choice.rows))
+        if changed and given is not None and given.found is not None:
+            assert given.correction is not None
+            found = diagnose_change(
+                model,
+                record,
+                given.found,
+                given.correction,
+                since=past.origin + float(past.time[calibrated - 1]),
+                criteria=criteria,
+                seed=self._seed,
+                progress=self._progress,
+            )
+            if found is not None:
+                return with_choice(found, choice.words, rows)
+        findings = diagnose(
+            model, record, criteria=criteria, seed=self._seed, progress=self._progress
+        )
+        findings = with_choice(findings, choice.words, rows)
+        return in_doubt(findings) if changed and not findings.causes else findings
+
+    def _past(self, rows: int) -> Record:
+        """The rows so far; their readings may be left out."""
+        if isinstance(self._hardware, Recorded):
+            return self._hardware.record.rows(slice(0, rows))
+        return times_and_contexts(self._archive.run, rows)
+
+    def _chosen(self, past: Record, rows: IntArray) -> Record:
+        """Chosen rows with their readings."""
+        if isinstance(self._hardware, Recorded):
+            return past if len(rows) == len(past) else past.rows(rows)
+        return chosen_record(self._archive.run, rows)
