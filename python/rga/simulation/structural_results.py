@@ -19,6 +19,7 @@ from rga.model.effect import Values, when_all_act
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.notebook import short_html
+from rga.quantities import counted
 from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.critical_places import ForcesAlong
 from rga.simulation.paths.response import respond
@@ -33,6 +34,8 @@ SECTION_FORCES = ("N", "Vy", "Vz", "T", "My", "Mz")
 REACTIONS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 #: numbers that one call may return: 0.8 GB
 MOST = 100_000_000
+#: stations that may be asked for: extremes are found between them as well
+MOST_STATIONS = 1001
 
 
 @dataclass(frozen=True)
@@ -92,13 +95,15 @@ class Results:
         return rga.plot_results(self, ax, row=row, **shown)
 
     def _repr_html_(self) -> str:
-        rows = len(self.displacements)
-        said = f"{rows} row{'s' if rows != 1 else ''}; the extremes of every member [N, N m, Pa]"
+        said = (
+            f"{counted(len(self.displacements), 'row')}; the extremes of every member [N, N m, Pa]"
+        )
         return short_html(self.model.name, said, self.members())
 
     def __repr__(self) -> str:
-        rows = len(self.displacements)
-        return f"Results of {self.model.name!r}: {rows} rows, {len(self.model.members)} members"
+        rows = counted(len(self.displacements), "row")
+        members = counted(len(self.model.members), "member")
+        return f"Results of {self.model.name!r}: {rows}, {members}"
 
     def members(self, row: int | None = None) -> pl.DataFrame:
         """The extremes of every member, however many stations there are, one line a member.
@@ -211,10 +216,10 @@ def results(
         model: the structure with its effects, or its file.
         contexts: as for `Simulator.predict`; None for a model that no context drives. Without
             `time` all effects act, those too that begin late.
-        stations: places along each member, its two ends among them.
+        stations: places along each member, its two ends among them: 2 to 1001.
 
     Raises:
-        InputError: as `Simulator.predict`; fewer than two stations, or more numbers than fit.
+        InputError: as `Simulator.predict`; another number of stations, or more numbers than fit.
         UnstableStructureError: the structure can move; names node and direction.
     """
     model = as_model(model)
@@ -335,8 +340,10 @@ def section_outputs(members: Sequence[int], places: FloatArray) -> OutputArrays:
 
 
 def _places(stations: int) -> FloatArray:
-    if stations < 2:
-        raise InputError(f"{stations} stations are too few", "results", "give two or more")
+    whole = isinstance(stations, (int, np.integer)) and not isinstance(stations, bool)
+    if not whole or not 2 <= stations <= MOST_STATIONS:
+        what = f"a member cannot have {stations!r} stations"
+        raise InputError(what, "stations", f"give a whole number from 2 to {MOST_STATIONS}")
     return np.linspace(0.0, 1.0, stations)
 
 

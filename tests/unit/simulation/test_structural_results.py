@@ -345,7 +345,7 @@ class TestTable:
         assert [one.name for one in tmp_path.iterdir()] == [path.name]
 
     def test_another_format_is_refused(self, tmp_path: Path) -> None:
-        with pytest.raises(InputError, match=r"'\.txt' is no format of tables"):
+        with pytest.raises(InputError, match=r"'\.txt' is no format of a table"):
             self.found().write(tmp_path / "results.txt")
         assert list(tmp_path.iterdir()) == []
 
@@ -359,9 +359,12 @@ class TestRefused:
         with pytest.raises(UnstableStructureError):
             results(beam(["ux", "uy", "uz"], [], load=UNIFORM))
 
-    def test_one_station_is_too_few(self) -> None:
-        with pytest.raises(InputError, match="1 stations are too few"):
-            results(beam(PINNED, SLIDING), stations=1)
+    def test_stations_are_two_to_a_thousand_and_one(self) -> None:
+        wrong: tuple[Any, ...] = (1, 1002, 100_000_000, 2.5, True, "5")
+        for stations in wrong:
+            with pytest.raises(InputError, match="give a whole number from 2 to 1001"):
+                results(beam(PINNED, SLIDING), stations=stations)
+        assert len(results(beam(PINNED, SLIDING), stations=1001).stations) == 1001
 
     def test_more_than_memory_holds_is_refused(self) -> None:
         with pytest.raises(InputError, match="more than fit into memory"):
