@@ -180,7 +180,7 @@ def test_results_take_contexts_as_they_are_written_and_from_a_file(
     assert "temperature" in lacking.err
     many = rga("results", model_file, rows, "-o", both, "--stations", "100000000")
     assert (many.code, many.err.count("\n")) == (2, 1)
-    assert "2 to 1001" in many.err
+    assert "2 to 10001" in many.err
 
 
 def test_whatif_compares_with_mid_range(tmp_path: Path, model_file: Path, rga: Rga) -> None:

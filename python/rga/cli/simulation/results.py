@@ -19,7 +19,7 @@ ContextFile = Annotated[
 ]
 Stations = Annotated[
     int,
-    typer.Option("--stations", help="Places along each member, its ends among them: 2 to 1001."),
+    typer.Option("--stations", help="Places along each member, its ends among them: 2 to 10001."),
 ]
 
 
