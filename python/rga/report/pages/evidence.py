@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from markupsafe import Markup
 
 from rga.diagnosis.assemble.effects import last_effect
@@ -88,11 +87,10 @@ def _rivalry(account: DiagnosisArrays, found: Found, place: int) -> Rivalry | No
 
 def _difference(against: Contrast) -> str:
     """How far a cause and its rival part, up to the number: much or little."""
-    most = int(np.argmax(against.size))
-    size = number(float(against.size[most]), 2)
-    if against.size[most] < PLAIN:
-        return f"On no channel do they differ by more than {size}"
-    return f"They differ most on {against.channels[most]}, by {size}"
+    most = number(float(against.size[0]), 2)
+    if against.size[0] < PLAIN:
+        return f"On no channel do they differ by more than {most}"
+    return f"They differ most on {against.channels[0]}, by {most}"
 
 
 def caveats(found: Found, place: int, cause: Cause, model: Model, lead: str) -> list[str]:
