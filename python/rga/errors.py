@@ -78,6 +78,19 @@ class ReportError(RuntimeError):
         return f"the report could not be drawn ({self.reason}): {findings} and {model} are whole"
 
 
+def kind_of(given: object) -> str:
+    """The kind of a thing that is not what was wanted, with its article.
+
+    >>> kind_of(3), kind_of({}), kind_of(None)
+    ('an int', 'a dict', 'None')
+    """
+    if given is None:
+        return "None"
+    name = type(given).__name__
+    vowel = name[0] in "aeiouAEIOU" or name == "ndarray"
+    return f"{'an' if vowel else 'a'} {name}"
+
+
 def in_short(error: Exception) -> str:
     """An error in one line, for what goes on without it.
 

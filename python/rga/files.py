@@ -1,6 +1,6 @@
 """Files that are written whole or not at all."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from errno import EISDIR
 from io import BytesIO
@@ -47,6 +47,28 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         raise InputError(what, str(path), "give another place") from None
 
 
+def wrong_ending(path: Path, what: str, endings: Sequence[str]) -> InputError:
+    """The error of a file to write whose ending names no format.
+
+    Args:
+        path: of the file.
+        what: it should hold.
+        endings: of the formats that there are.
+
+    >>> str(wrong_ending(Path("a.bmp"), "drawing", (".svg", ".png")))
+    "'.bmp' is no format of a drawing (a.bmp): name a .svg or .png file"
+    >>> wrong_ending(Path("a"), "table", (".csv", ".parquet")).what
+    'the name of the table has no ending'
+    """
+    *others, last = endings
+    remedy = f"name a {', '.join(others)} or {last} file"
+    if path.is_dir():
+        return InputError(f"the {what} cannot be written, it is a directory", str(path), remedy)
+    if not path.suffix:
+        return InputError(f"the name of the {what} has no ending", str(path), remedy)
+    return InputError(f"{path.suffix!r} is no format of a {what}", str(path), remedy)
+
+
 def write_table(table: "pl.DataFrame", path: str | Path) -> None:
     """Write a table as CSV or Parquet, by the ending of its file.
 
@@ -59,6 +81,5 @@ def write_table(table: "pl.DataFrame", path: str | Path) -> None:
     elif path.suffix.lower() == ".parquet":
         table.write_parquet(content)
     else:
-        problem = f"{path.suffix!r} is no format of tables"
-        raise InputError(problem, str(path), "name a .csv or .parquet")
+        raise wrong_ending(path, "table", (".csv", ".parquet"))
     write_whole({path: content.getvalue()})

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.model import Model
 from rga.records import Record, RecordMapping, RecordSource, load_record
 from rga.records.frames import is_frame
@@ -27,5 +27,5 @@ def as_record(
         return given
     if isinstance(given, (str, Path, list, tuple)) or is_frame(given):
         return load_record(given, model, mapping)
-    what = f"a {type(given).__name__} is no record"
+    what = f"{kind_of(given)} is no record"
     raise InputError(what, "record", "give a Record, or the path of its file")

@@ -118,6 +118,15 @@ def quantity(value: float, unit: str, ci90: Sequence[float] | None = None) -> st
     return f"{shown_values[0]}{after} [{shown_values[1]}, {shown_values[2]}]"
 
 
+def counted(count: int, what: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "row"), counted(2, "row")
+    ('1 row', '2 rows')
+    """
+    return f"{count} {what}{'s' if count != 1 else ''}"
+
+
 def duration(seconds: float) -> tuple[float, str]:
     """Seconds in the unit that suits a length of time, and the unit.
 

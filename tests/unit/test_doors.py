@@ -59,6 +59,14 @@ def test_diagnose_takes_files_as_it_takes_objects(
     assert given[-1][4] == Criteria()
 
 
+def test_a_record_is_read_against_a_model_or_its_file(model_file: Path, record_file: Path) -> None:
+    of_model = rga.load_record(record_file, rga.load_model(model_file))
+    for form in (str, Path):
+        read = rga.load_record(record_file, form(model_file))
+        assert read.sensors == of_model.sensors
+        assert (read.readings == of_model.readings).all()
+
+
 def test_a_mapping_goes_with_the_file(
     model_file: Path, record_file: Path, given: list[tuple[Any, ...]]
 ) -> None:
@@ -103,6 +111,15 @@ WRONG: Any = 3.5
         (lambda model: rga.Simulator(model).predict(WRONG), "contexts are a float"),
         (lambda model: rga.Simulator(model).predict(["load"]), "contexts are a list"),  # type: ignore[arg-type]
         (lambda model: as_settings(WRONG), "a float is no set of settings"),
+        (lambda model: rga.load_model({"a": 1}), "a dict is no path of a model file"),  # type: ignore[arg-type]
+        (lambda model: rga.load_record(model, 3), "an int is no model"),  # type: ignore[arg-type]
+        (lambda model: rga.load_record(WRONG, model), "a float is nothing that a record is"),
+        (lambda model: rga.load_record(np.zeros(3), model), "an ndarray is nothing that"),  # type: ignore[arg-type]
+        (lambda model: rga.load_record([WRONG], model), "a float is nothing that a record"),
+        (lambda model: rga.load_record(None, model), "None is nothing that a record"),  # type: ignore[arg-type]
+        (lambda model: rga.load_record(model.parent / "r.csv", model, WRONG), "no mapping"),
+        (lambda model: rga.draw(model, "x.svg", foo=1), "a drawing has no option 'foo'"),  # type: ignore[call-arg]
+        (lambda model: rga.draw(model, "x.svg", names=WRONG), "a float names nothing"),
     ],
 )
 def test_what_is_neither_is_refused_in_words(

@@ -10,7 +10,7 @@ from rga.building.parts import checked
 from rga.building.quantities import Amount, amount, amounts, difference, kelvin
 from rga.building.sensors import SensorKind, sensor_name, sensor_part
 from rga.building.structure_builder import StructureBuilder
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.model.io import model_content, write_model
 from rga.model.schema import ContextVariable, Model, Sensor
 
@@ -162,7 +162,22 @@ class ModelBuilder(StructureBuilder):
         return self._add("effects", name, keys)
 
     def effect(self, name: str, kind: str, **keys: Any) -> Self:
-        """Any effect of the vocabulary, by the keys of the model file."""
+        """Any effect of the vocabulary, by the keys of the model file.
+
+        Args:
+            kind: such as "nodal_load".
+            keys: of that kind: `effect("push", "nodal_load", forces={"B": [1000, 0, 0]})`.
+
+        Raises:
+            InputError: the kind is no text; a table of a model file, say.
+        """
+        if not isinstance(kind, str):
+            raise InputError(
+                f"{kind_of(kind)} is no kind of effect",
+                f"effect {name!r}",
+                f"write the kind, and its keys beside it: effect({name!r}, 'nodal_load', "
+                "forces={'B': [1000, 0, 0]})",
+            )
         return self._add("effects", name, {"kind": kind, **keys})
 
     def sensor(self, name: str, kind: SensorKind, **keys: Any) -> Self:

@@ -12,12 +12,12 @@ from rga.drawing.scene.sensors import SensorMark, sensor_marks
 from rga.drawing.scene.supports import SpringMark, SupportMark, spring_marks, support_marks
 from rga.drawing.states.diagrams import QUANTITIES, Quantity
 from rga.drawing.states.response import DrawnResponse, drawn_response, response_of_row
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.model.schema import Model
 from rga.simulation import Results
 
-#: what may be named
-NAMED = ("nodes", "members", "sensors", "supports")
+#: what may be named, and the word for all of it
+NAMED, ALL = ("nodes", "members", "sensors", "supports"), "all"
 
 
 class DrawingOptions(TypedDict, total=False):
@@ -25,7 +25,7 @@ class DrawingOptions(TypedDict, total=False):
 
     names: str | Iterable[str]
     sensors: bool | None
-    loads: Iterable[str] | None
+    loads: str | Iterable[str] | None
     local_axes: bool
     deformed: bool
     scale: float | None
@@ -39,7 +39,8 @@ class Selection:
     """What is to be shown beside members and supports.
 
     Attributes:
-        names: which parts are named, of "nodes", "members", "sensors" and "supports".
+        names: which parts are named, of "nodes", "members", "sensors" and "supports"; a call may
+            say "all".
         sensors: None: unless a deformed shape or forces are drawn.
         loads: load effects by name; None: all of them, unless forces are drawn.
         local_axes: of the members.
@@ -64,7 +65,9 @@ class Selection:
     def __post_init__(self) -> None:
         if unknown := sorted(self.names - set(NAMED)):
             raise InputError(
-                f"{unknown[0]!r} have no names to draw", "names", "choose of " + ", ".join(NAMED)
+                f"{unknown[0]!r} have no names to draw",
+                "names",
+                "choose of " + ", ".join((*NAMED, ALL)),
             )
         if self.forces not in (None, *QUANTITIES):
             raise InputError(
@@ -89,18 +92,32 @@ def asked(options: DrawingOptions) -> Selection:
     """What is to be shown, from the options of a call.
 
     Raises:
-        InputError: names of what has none; a scale that is not positive.
+        InputError: an unknown option; names of what has none; a scale that is not positive.
 
     >>> asked({"names": "nodes"}).names
     frozenset({'nodes'})
     """
-    names, loads = options.get("names", ()), options.get("loads")
+    known = DrawingOptions.__annotations__
+    if unknown := [name for name in options if name not in known]:
+        raise InputError(
+            f"a drawing has no option {unknown[0]!r}", "options", "choose of " + ", ".join(known)
+        )
+    named, loads = _several(options.get("names", ()), "names"), options.get("loads")
     given = {
         **options,
-        "names": frozenset([names] if isinstance(names, str) else names),
-        "loads": None if loads is None else tuple(loads),
+        "names": frozenset(NAMED if ALL in named else named),
+        "loads": None if loads is None else _several(loads, "loads"),
     }
     return Selection(**given)  # type: ignore[arg-type]
+
+
+def _several(given: str | Iterable[str], option: str) -> tuple[str, ...]:
+    """One name or several."""
+    if isinstance(given, str):
+        return (given,)
+    if not isinstance(given, Iterable):
+        raise InputError(f"{kind_of(given)} names nothing", option, "give a name, or several")
+    return tuple(given)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of
 from rga.drawing.views import views_of
 from rga.errors import InputError
-from rga.files import write_whole
+from rga.files import write_whole, wrong_ending
 from rga.model import as_model
 from rga.model.schema import Model
 from rga.simulation import Results
@@ -50,8 +50,7 @@ def draw(
     model, path, shown = as_model(model), Path(path), asked(options)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        formats = "name a " + ", ".join(SUFFIXES[:-1]) + f" or {SUFFIXES[-1]} file"
-        raise InputError(f"{suffix!r} is no format of a drawing", str(path), formats)
+        raise wrong_ending(path, "drawing", SUFFIXES)
     if not NARROWEST <= width <= WIDEST:
         raise InputError(
             f"a sheet cannot be {width:g} inches wide",

@@ -51,6 +51,7 @@ class Room:
         letter: float = LETTER,
         over: bool = False,
         rivals: FloatArray | None = None,
+        beyond: FloatArray | None = None,
     ) -> PlacedLabel | None:
         """The best free place beside a point, which is taken from then on; None where none is.
 
@@ -62,6 +63,8 @@ class Room:
             over: the label may stand on its place and on lines.
             rivals: points that a reader may take the label for, float[k, 2] [inch]: the middle of
                 the label stands nearer to its own; None: a line leads from the label to its point.
+            beyond: direction of length one in which the middle of the label had best stand from its
+                point, float[2].
 
         >>> room = Room()
         >>> [room.place("S1", (0.0, 0.0)).box[0] > 0, room.place("S2", (0.0, 0.0)).box[0] > 0]
@@ -69,6 +72,11 @@ class Room:
         """
         wide, high = letter * columns(text), LINE
         found = [(-1, self._around(at, wide, high))] if over else []
+        if beyond is not None:
+            for step, distance in enumerate(DISTANCES):
+                away = distance + float(np.abs(beyond) @ (wide, high)) / 2
+                middle = np.asarray(at) + away * beyond
+                found.append((step - len(DISTANCES), self._around(middle, wide, high)))
         for step, distance in enumerate(DISTANCES):
             for side, (right, up) in enumerate(SIDES):
                 away = width / 2 + distance * (0.75 if right and up else 1.0)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.findings.schema import Findings
 
 
@@ -20,7 +20,7 @@ def as_findings(given: Findings | str | Path) -> Findings:
         return given
     if isinstance(given, str | Path):
         return load_findings(given)
-    what = f"a {type(given).__name__} is no findings"
+    what = f"{kind_of(given)} is no findings"
     raise InputError(what, "findings", "give Findings, or the path of their file")
 
 

@@ -9,17 +9,20 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.files import write_whole
-from rga.model.mistakes import refusal
+from rga.model.mistakes import REMEDY, refusal
 from rga.model.schema import Model
+
+#: of a model file, by its ending; JSON by any other
+LANGUAGES = {".toml": "TOML", ".yaml": "YAML", ".yml": "YAML"}
 
 
 def load_model(path: str | Path) -> Model:
     """Read a model file (JSON, TOML or YAML).
 
     Args:
-        path: the file; the format follows from its suffix.
+        path: the file; the format follows from its suffix, and is JSON for an unknown one.
 
     Returns:
         The validated model.
@@ -28,6 +31,9 @@ def load_model(path: str | Path) -> Model:
         InputError: the file is missing or unreadable, or breaks the schema; where it does so in
             several places, with all of them (`SeveralMistakes`).
     """
+    if not isinstance(path, (str, Path)):
+        what = f"{kind_of(path)} is no path of a model file"
+        raise InputError(what, "model", "give the path of a JSON, TOML or YAML file")
     path = Path(path)
     try:
         raw = path.read_bytes()
@@ -37,10 +43,16 @@ def load_model(path: str | Path) -> Model:
         ) from None
     try:
         content = _parse(raw, path.suffix.lower())
-    except (ValueError, yaml.YAMLError, RecursionError) as error:
+    except UnicodeDecodeError:
+        raise InputError("this is no UTF-8 text", str(path), "save it as UTF-8") from None
+    except RecursionError:
+        what = "lists or tables stand too deep in one another"
+        raise InputError(what, str(path), REMEDY) from None
+    except (ValueError, yaml.YAMLError) as error:
         problem = " ".join(str(error).split())
+        language = LANGUAGES.get(path.suffix.lower(), "JSON")
         raise InputError(
-            f"this is no {path.suffix[1:].upper()} text: {problem}", str(path), "mend the syntax"
+            f"this is no {language} text: {problem}", str(path), "mend the syntax"
         ) from None
     model = read_model(content, str(path))
     model._sha256 = hashlib.sha256(raw).hexdigest()
@@ -62,12 +74,15 @@ def as_model(given: Model | str | Path) -> Model:
     if isinstance(given, str | Path):
         return load_model(given)
     raise InputError(
-        f"a {type(given).__name__} is no model", "model", "give a Model, or the path of its file"
+        f"{kind_of(given)} is no model", "model", "give a Model, or the path of its file"
     )
 
 
 def read_model(content: Any, where: str) -> Model:
     """A model from parsed content; InputError with every mistake: key, value, what is right."""
+    if not isinstance(content, dict | Model):
+        what = "there is nothing in it" if content is None else f"{kind_of(content)} is no model"
+        raise InputError(what, where, f"give a table of the parts of a model, {REMEDY}")
     try:
         return Model.model_validate(content)
     except ValidationError as error:
@@ -105,9 +120,10 @@ def model_content(model: Model) -> dict[str, Any]:
 
 def _parse(raw: bytes, suffix: str) -> Any:
     text = raw.decode("utf-8-sig")
-    if suffix == ".toml":
+    language = LANGUAGES.get(suffix)
+    if language == "TOML":
         return tomllib.loads(text)
-    if suffix in (".yaml", ".yml"):
+    if language == "YAML":
         return yaml.safe_load(text)
     return json.loads(text, object_pairs_hook=_unique)
 

@@ -8,6 +8,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
+from rga.quantities import counted
 from rga.records.mapping import Channel, FileMapping
 from rga.records.numbers import missing_words
 from rga.records.table import Table
@@ -123,7 +124,7 @@ def told_of(
         stated = (*table.missing, *mapping.missing, *source.channel.missing)
         series = table.frame[source.column]
         for word, rows in missing_words(series, table.notation, stated).items():
-            words.setdefault(word, []).append(f"{name} ({rows} rows)")
+            words.setdefault(word, []).append(f"{name} ({counted(rows, 'row')})")
     for word, places in words.items():
         more = f" and {len(places) - 5} more channels" if len(places) > 5 else ""
         told.append(f"{word!r} stands for a missing value: {', '.join(places[:5])}{more}")

@@ -7,7 +7,7 @@ from typing import Any
 
 import polars as pl
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.records.table import Table
 
 #: what a record is read from: a file, several in time, a folder, a mapping, or a data frame
@@ -44,9 +44,7 @@ def table_of_frame(given: Any) -> Table:
 
 def _of_pandas(frame: Any) -> pl.DataFrame:
     if not (hasattr(frame, "columns") and hasattr(frame, "index")):
-        raise InputError(
-            f"this is a {type(frame).__name__}, no data frame", "record", "give a data frame"
-        )
+        raise InputError(f"this is {kind_of(frame)}, no data frame", "record", "give a data frame")
     names = [str(name) for name in frame.columns]
     if double := next((name for name in names if names.count(name) > 1), None):
         raise InputError(

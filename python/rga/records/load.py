@@ -7,7 +7,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.model import Model
+from rga.model import Model, as_model
 from rga.records.beside import side_by_side
 from rga.records.channels import quoted
 from rga.records.frames import RecordSource, is_frame, table_of_frame
@@ -16,7 +16,7 @@ from rga.records.logger_data import LoggerData, in_time, measured
 from rga.records.mapping import FileMapping, RecordMapping, read_mapping
 from rga.records.read import read_table
 from rga.records.record import Record
-from rga.records.sources import files_in, find_sources
+from rga.records.sources import files_in, find_sources, named_files
 
 #: deviations of the noise of a context, by which a value lies outside its range by chance
 CHANCE = 4.0
@@ -26,7 +26,7 @@ STILL = 50
 
 def load_record(
     source: RecordSource,
-    model: Model,
+    model: Model | str | Path,
     mapping: str | Path | RecordMapping | None = None,
 ) -> Record:
     """Read a measured record into the channels, units and contexts of a model.
@@ -34,15 +34,16 @@ def load_record(
     Args:
         source: a file of any format that is known; several that follow each other in time; a folder
             whose `import.toml` names its files; or a data frame of polars or pandas.
-        model: names the sensors and contexts and states their units.
+        model: names the sensors and contexts and states their units; or its file.
         mapping: the mapping, or its file; left out, `import.toml` beside the record, else beside
             the model, else none: the columns are named and measured as the model says.
 
     Raises:
-        InputError: a file, or what it holds, cannot be used as it stands.
+        InputError: a file, or what it holds, cannot be used as it stands, or this is no record.
 
     Example: `load_record(["january.csv", "february.csv"], model)` reads two months as one record.
     """
+    model = as_model(model)
     chosen: RecordMapping
     if is_frame(source):
         if mapping is None or isinstance(mapping, RecordMapping):
@@ -51,7 +52,7 @@ def load_record(
             chosen = read_mapping(mapping)
         main = measured(table_of_frame(source), chosen, model)
     else:
-        paths, chosen = find_sources(source, model.path, mapping)  # type: ignore[arg-type]
+        paths, chosen = find_sources(named_files(source), model.path, mapping)
         main = _logger(paths, chosen, model)
     noises = {name for name, one in model.sensors.items() if one.noise is not None}
     noises |= {name for name, one in model.context.items() if one.noise is not None}

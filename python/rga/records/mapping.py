@@ -15,7 +15,7 @@ from pydantic import (
     model_validator,
 )
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.no_booleans import NO_BOOLEAN
 
 MAPPING_NAME = "import.toml"
@@ -246,6 +246,9 @@ def read_mapping(path: str | Path) -> RecordMapping:
     Raises:
         InputError: the file is missing, is no TOML, or has an unknown key or a wrong value.
     """
+    if not isinstance(path, (str, Path)):
+        what = f"{kind_of(path)} is no mapping"
+        raise InputError(what, "mapping", "give a RecordMapping, or the path of its file")
     path = Path(path)
     try:
         content = path.read_text(encoding="utf-8-sig")

@@ -13,6 +13,7 @@ from rga.arrays import FloatArray
 from rga.files import write_table
 from rga.model.effect import seconds
 from rga.notebook import short_html
+from rga.quantities import counted
 
 if TYPE_CHECKING:
     import polars as pl
@@ -140,10 +141,8 @@ class Record:
     def _repr_html_(self) -> str:
         last = self.time_label(self.time[-1]) if len(self) else self.start
         first = self.time_label(self.time[0]) if len(self) else self.start
-        said = (
-            f"{len(self)} rows of {len(self.sensors)} channels and {len(self.contexts)} contexts, "
-            f"from {first} to {last}"
-        )
+        channels = f"{len(self.sensors)} channels and {len(self.contexts)} contexts"
+        said = f"{counted(len(self), 'row')} of {channels}, from {first} to {last}"
         return short_html("record", said, self.to_frame())
 
     def channels(self, keep: Sequence[str]) -> "Record":

@@ -4,20 +4,38 @@ from collections.abc import Sequence
 from glob import has_magic
 from os.path import normpath
 from pathlib import Path
+from typing import Any
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.records.mapping import MAPPING_NAME, RecordMapping, find_mapping, read_mapping
 
 
+def named_files(given: object) -> list[Path]:
+    """The paths that a user names as a record.
+
+    Raises:
+        InputError: this is neither a path nor several.
+    """
+    several: Sequence[Any] = given if isinstance(given, (list, tuple)) else [given]
+    wrong = [one for one in several if not isinstance(one, (str, Path))]
+    if wrong:
+        raise InputError(
+            f"{kind_of(wrong[0])} is nothing that a record is read from",
+            "record",
+            "give the path of a file, several, a folder, or a data frame of polars or pandas",
+        )
+    return [Path(one) for one in several]
+
+
 def find_sources(
-    named: str | Path | Sequence[str | Path],
+    places: Sequence[Path],
     model: Path | None,
     mapping: str | Path | RecordMapping | None,
 ) -> tuple[list[Path], RecordMapping]:
     """The files of a record, and its mapping.
 
     Args:
-        named: a file, several in time, a pattern such as "2024-*.csv", a folder with an
+        places: a file, several in time, a pattern such as "2024-*.csv", a folder with an
             `import.toml` that names its files, or an `import.toml`.
         model: file of the model, beside which a mapping may stand.
         mapping: the mapping, or its file; None: beside the record, else beside the model, if any.
@@ -25,7 +43,6 @@ def find_sources(
     Raises:
         InputError: a file or the mapping is missing, or a folder does not say what its files are.
     """
-    places = [Path(named)] if isinstance(named, (str, Path)) else [Path(one) for one in named]
     if not places:
         raise InputError("no file is named", "record", "name a file, several, or a folder")
     first = places[0]

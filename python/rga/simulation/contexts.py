@@ -7,7 +7,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.model.effect import seconds
 
 
@@ -55,7 +55,7 @@ def contexts_by_name(given: Contexts, known: Collection[str]) -> Mapping[str, Ar
         named = {name: np.asarray(given[columns[name]]) for name in wanted}
     else:
         raise InputError(
-            f"contexts are a {type(given).__name__}",
+            f"contexts are {kind_of(given)}",
             "contexts",
             "give names with values, or a table with columns",
         )

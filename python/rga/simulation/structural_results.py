@@ -19,6 +19,7 @@ from rga.model.effect import Values, when_all_act
 from rga.model.schema import DOFS, Model
 from rga.model.structure import Load, Structure, build_structure
 from rga.notebook import short_html
+from rga.quantities import counted
 from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.critical_places import ForcesAlong
 from rga.simulation.paths.response import respond
@@ -33,6 +34,8 @@ SECTION_FORCES = ("N", "Vy", "Vz", "T", "My", "Mz")
 REACTIONS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 #: numbers that one call may return: 0.8 GB
 MOST = 100_000_000
+#: stations that may be asked for: extremes are found between them as well
+MOST_STATIONS = 10_001
 
 
 @dataclass(frozen=True)
@@ -92,13 +95,15 @@ class Results:
         return rga.plot_results(self, ax, row=row, **shown)
 
     def _repr_html_(self) -> str:
-        rows = len(self.displacements)
-        said = f"{rows} row{'s' if rows != 1 else ''}; the extremes of every member [N, N m, Pa]"
+        said = (
+            f"{counted(len(self.displacements), 'row')}; the extremes of every member [N, N m, Pa]"
+        )
         return short_html(self.model.name, said, self.members())
 
     def __repr__(self) -> str:
-        rows = len(self.displacements)
-        return f"Results of {self.model.name!r}: {rows} rows, {len(self.model.members)} members"
+        rows = counted(len(self.displacements), "row")
+        members = counted(len(self.model.members), "member")
+        return f"Results of {self.model.name!r}: {rows}, {members}"
 
     def members(self, row: int | None = None) -> pl.DataFrame:
         """The extremes of every member, however many stations there are, one line a member.
@@ -106,7 +111,8 @@ class Results:
         Columns: member, N min, N max, V max [N], M max [N m], stress min, stress max [Pa], and the
         utilisation: the largest stress over the yield strength where the material states one,
         else null. It says nothing of buckling. V and M are the larger of the two planes,
-        without sign.
+        without sign. Where a member may bend and its section states no fibres, its stresses are
+        not known, and null.
 
         Args:
             row: of the contexts, from 1; None: of all rows.
@@ -124,8 +130,12 @@ class Results:
             self.model.materials[member.material].yield_strength
             for member in self.model.members.values()
         ]
+        known = [
+            member.kind != "frame" or bool(self.model.sections[member.section].fibres)
+            for member in self.model.members.values()
+        ]
         worst = np.maximum(np.abs(lowest), np.abs(highest))
-        return pl.DataFrame(
+        table = pl.DataFrame(
             {
                 "member": list(self.model.members),
                 "N min": forces[..., 0, 0].min(axis=0),
@@ -138,8 +148,12 @@ class Results:
                     None if limit is None else float(size / limit)
                     for size, limit in zip(worst, strength, strict=True)
                 ],
-            }
+                "known": known,
+            },
+            schema_overrides={"utilisation": pl.Float64},
         )
+        stresses = pl.col("stress min", "stress max", "utilisation")
+        return table.with_columns(pl.when("known").then(stresses)).drop("known")
 
     def to_frame(self) -> pl.DataFrame:
         """All results in one table: row, time, quantity, of, at, value, unit.
@@ -211,10 +225,10 @@ def results(
         model: the structure with its effects, or its file.
         contexts: as for `Simulator.predict`; None for a model that no context drives. Without
             `time` all effects act, those too that begin late.
-        stations: places along each member, its two ends among them.
+        stations: places along each member, its two ends among them: 2 to 10001.
 
     Raises:
-        InputError: as `Simulator.predict`; fewer than two stations, or more numbers than fit.
+        InputError: as `Simulator.predict`; another number of stations, or more numbers than fit.
         UnstableStructureError: the structure can move; names node and direction.
     """
     model = as_model(model)
@@ -232,9 +246,10 @@ def results(
         )
 
     given = {} if contexts is None else contexts_by_name(contexts, model.context)
-    response = _respond(model, given, wanted)
+    nodes, members = len(model.nodes), len(model.members)
+    response = _respond(model, given, wanted, 6 * (nodes + len(held) + members * stations))
     found = response.quantities
-    rows, nodes, members = len(found), len(model.nodes), len(model.members)
+    rows = len(found)
     motions, reactions, forces = np.split(found, np.cumsum([6 * nodes, 6 * len(held)]), axis=1)
     return Results(
         model=model,
@@ -272,7 +287,7 @@ def forces_of_members(
     def wanted(structure: Structure) -> OutputArrays:
         return section_outputs([structure.members[name] for name in members], places)
 
-    response = _respond(model, contexts, wanted)
+    response = _respond(model, contexts, wanted, 6 * len(members) * stations)
     shape = (len(response.quantities), len(members), stations, 6)
     return response.quantities.reshape(shape), response.values
 
@@ -335,8 +350,10 @@ def section_outputs(members: Sequence[int], places: FloatArray) -> OutputArrays:
 
 
 def _places(stations: int) -> FloatArray:
-    if stations < 2:
-        raise InputError(f"{stations} stations are too few", "results", "give two or more")
+    whole = isinstance(stations, (int, np.integer)) and not isinstance(stations, bool)
+    if not whole or not 2 <= stations <= MOST_STATIONS:
+        what = f"a member cannot have {stations!r} stations"
+        raise InputError(what, "stations", f"give a whole number from 2 to {MOST_STATIONS}")
     return np.linspace(0.0, 1.0, stations)
 
 
@@ -350,8 +367,23 @@ def _respond(
     model: Model,
     contexts: Mapping[str, ArrayLike],
     wanted: Callable[[Structure], OutputArrays],
+    count: int,
 ) -> Response:
-    """The response of a model of which other things are read than what its sensors show."""
+    """The response of a model of which other things are read than what its sensors show.
+
+    Args:
+        model, contexts: as for `results`.
+        wanted: what is read.
+        count: of its numbers in a row.
+    """
+    rows = max((np.size(column) for column in contexts.values()), default=1)
+    if rows * count > MOST:
+        at_a_time = f"{counted(MOST // count, 'row')} or fewer at a time, or "
+        raise InputError(
+            f"{counted(rows, 'row')} of {count} results are more than fit into memory",
+            "results",
+            f"give {at_a_time if count <= MOST else ''}fewer stations",
+        )
     bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
     begun = when_all_act(bare.values())
     if begun is not None and "time" not in contexts:
@@ -359,15 +391,7 @@ def _respond(
     silent = model.model_copy(update={"sensors": {}, "effects": bare})
     structure = build_structure(silent)
     outputs = wanted(structure)
-    count = len(outputs["kind"])
     structure.outputs, structure.per_si = outputs, np.ones(count)
-    rows = max((np.size(column) for column in contexts.values()), default=1)
-    if rows * count > MOST:
-        raise InputError(
-            f"{rows} rows of {count} results are more than fit into memory",
-            "results",
-            f"give {MOST // count} rows or fewer at a time, or fewer stations",
-        )
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         values = Simulator(silent, structure).parameters(contexts)
         exact = {name: one.exact_for(values[name]) for name, one in silent.effects.items()}

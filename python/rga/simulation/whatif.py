@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -119,6 +120,12 @@ def check_settings(model: Model, settings: Mapping[str, float]) -> None:
             )
     for name, variable in model.context.items():
         low, high = variable.range
+        if isnan(settings.get(name, 0.0)):
+            raise InputError(
+                f"{name} = nan is no number",
+                f"model {model.name!r}",
+                f"give a value near {low:g}..{high:g} {variable.unit}",
+            )
         far = FAR * (high - low)
         if name in settings and not low - far <= settings[name] <= high + far:
             raise InputError(

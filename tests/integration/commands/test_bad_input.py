@@ -161,7 +161,9 @@ def test_files_that_are_not_there(
 
 MODELS: dict[str, tuple[str, list[str]]] = {
     "no JSON": ("{", ["no JSON"]),
-    "no object": ("[]", ["model.json"]),
+    "a list": ("[]", ["a list is no model (", "model.json"]),
+    "null": ("null", ["there is nothing in it (", "model.json"]),
+    "too deep": ("[" * 100_000, ["too deep in one another"]),
 }
 
 
@@ -173,6 +175,15 @@ def test_models(case: str, tmp_path: Path, rga: Callable[..., Any]) -> None:
     assert outcome.code == 2
     for part in expected:
         assert part in one_line(outcome.err)
+
+
+def test_a_model_must_be_text(tmp_path: Path, rga: Callable[..., Any]) -> None:
+    path = tmp_path / "model"
+    path.write_text("{}", encoding="utf-16")
+    said = one_line(rga("whatif", path).err)
+    assert said == f"error: this is no UTF-8 text ({path}): save it as UTF-8\n"
+    path.write_text("{", encoding="utf-8")
+    assert "this is no JSON text: " in one_line(rga("whatif", path).err)
 
 
 def test_mistakes_of_a_model_are_listed_as_in_python(
@@ -212,11 +223,13 @@ def test_effects(case: str, tmp_path: Path, model_file: Path, rga: Callable[...,
         assert part in one_line(outcome.err)
 
 
-@pytest.mark.parametrize("setting", ["wind=3", "temperature", "temperature=warm", "=3"])
+@pytest.mark.parametrize(
+    "setting", ["wind=3", "temperature", "temperature=warm", "=3", "temperature=nan"]
+)
 def test_settings(setting: str, model_file: Path, rga: Callable[..., Any]) -> None:
     outcome = rga("whatif", model_file, "--set", setting)
     assert outcome.code == 2
-    one_line(outcome.err)
+    assert "its range away" not in one_line(outcome.err)
 
 
 RUN_SETTINGS = {
@@ -245,10 +258,12 @@ def test_outputs(tmp_path: Path, model_file: Path, rga: Callable[..., Any]) -> N
         ("simulate", model_file, contexts, "-o", tmp_path / "file" / "out.csv"),
         ("simulate", model_file, contexts, "-o", tmp_path / "folder.csv"),
         ("dataset", model_file, "-n", "4", "-o", tmp_path / "out.csv"),
+        ("draw", model_file, "-o", tmp_path),
+        ("draw", model_file, "-o", tmp_path / "drawing"),
     ):
         outcome = rga(*arguments)
         assert outcome.code == 2
-        one_line(outcome.err)
+        assert "''" not in one_line(outcome.err)
     assert (tmp_path / "file").read_text(encoding="utf-8") == "mine"
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "contexts.csv",

@@ -164,7 +164,8 @@ def test_results_take_contexts_as_they_are_written_and_from_a_file(
     tmp_path: Path, model_file: Path, rga: Rga
 ) -> None:
     written, rows = tmp_path / "written.csv", tmp_path / "rows.csv"
-    rga("results", model_file, "--contexts", "load=5e4, temperature=20", "-o", written)
+    of_one = rga("results", model_file, "--contexts", "load=5e4, temperature=20", "-o", written)
+    assert of_one.out.startswith("1 row of 3 nodes")
     table = pl.read_csv(written)
     assert table["time"].null_count() == len(table), "no time was given"
     assert set(table["row"]) == {1}
@@ -177,6 +178,9 @@ def test_results_take_contexts_as_they_are_written_and_from_a_file(
     lacking = rga("results", model_file, "--contexts", "load=5e4", "-o", both)
     assert lacking.code == 2
     assert "temperature" in lacking.err
+    many = rga("results", model_file, rows, "-o", both, "--stations", "100000000")
+    assert (many.code, many.err.count("\n")) == (2, 1)
+    assert "2 to 10001" in many.err
 
 
 def test_whatif_compares_with_mid_range(tmp_path: Path, model_file: Path, rga: Rga) -> None:

@@ -178,6 +178,10 @@ def test_report_says_all_and_fetches_nothing(tmp_path: Path) -> None:
     assert html.count('<svg role="img" aria-label="') == 5 + channels
     assert html.count("data:text/csv") == channels
     plain = reader.text.replace("\u00a0", " ")
+    assert "Left out on paper: the HTML file of this report draws each channel" in plain
+    assert "What is left: " in plain
+    assert "d_perp" in plain
+    assert "\u22a5" not in plain
     for words in re.split(r" \| |\n", SAID):
         assert words in plain
     assert re.search(r'class="best".*?spring', html, re.DOTALL)

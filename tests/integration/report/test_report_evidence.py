@@ -20,6 +20,7 @@ from rga.model import Effect, Model, read_model
 from rga.model.effect import seconds
 from rga.records import Record
 from rga.report import write_report
+from rga.report.pages.evidence import _difference
 from rga.report.text.actions import BY_VERDICT, actions
 from rga.simulation import Simulator
 
@@ -301,6 +302,9 @@ def test_the_rival_is_the_nearest_alternative(restrained: Findings) -> None:
     residual = found.problem.whole_residual(found.fit.simulated)[:, columns]
     np.testing.assert_allclose(shown.measured - shown.predicted, residual, atol=1e-9)
     assert list(shown.size) == sorted(shown.size, reverse=True)
+    much, little = (replace(shown, size=share * shown.size / shown.size[0]) for share in (16, 2))
+    assert _difference(much) == f"They differ most on {shown.channels[0]}, by 16"
+    assert _difference(little) == "On no channel do they differ by more than 2.0"
 
 
 def test_what_hangs_on_a_channel_is_what_is_left_without_it(restrained: Findings) -> None:

@@ -166,6 +166,10 @@ WRONG: dict[str, tuple[Callable[[ModelBuilder], Any], str]] = {
     "empty": (lambda b: b.load_case("none"), "there is no load in it"),
     "force": (lambda b: b.load_case("f", forces={"A": (1, 2)}), "no list of 3 quantities"),
     "group": (lambda b: b.load_case("f", uniform={"roof": (0, 0, 1)}), "no member or group 'roof'"),
+    "effect": (
+        lambda b: b.effect("push", {"kind": "nodal_load"}),  # type: ignore[arg-type]
+        "beside it: effect('push', 'nodal_load', forces={'B': [1000, 0, 0]})",
+    ),
     "sensor kind": (lambda b: b.sensor("s", "stress", member="A-B"), "is no kind of sensor"),
     "sensor unit": (lambda b: b.sensor("s", "strain", member="A-B", unit="kg"), "the unit 'kg'"),
     "sensor key": (

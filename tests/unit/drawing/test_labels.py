@@ -3,6 +3,7 @@
 from itertools import combinations
 
 import numpy as np
+import pytest
 
 from rga.drawing.labels import Room, overlap
 
@@ -30,6 +31,13 @@ class TestRoom:
         left, bottom, right, top = placed.box
         covered = (line > (left, bottom)) & (line < (right, top))
         assert not covered.all(axis=1).any()
+
+    def test_a_label_may_have_a_way_to_stand(self) -> None:
+        for way in ((0.0, -1.0), (1.0, 0.0), (-0.6, 0.8)):
+            placed = Room().place("-44.9", (1.0, 2.0), beyond=np.array(way))
+            assert placed is not None
+            middle = np.reshape(placed.box, (2, 2)).mean(axis=0) - (1.0, 2.0)
+            assert middle / np.linalg.norm(middle) == pytest.approx(way)
 
     def test_a_label_stands_nearer_to_its_point_than_any_rival(self) -> None:
         points = np.column_stack([np.arange(8) * 0.3, np.zeros(8)])

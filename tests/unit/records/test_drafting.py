@@ -155,6 +155,30 @@ def test_a_file_without_a_number_is_refused(
     assert not (tmp_path / "import.toml").exists()
 
 
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("2024-12-01,1,2\n2024-13-01,2,3\n", "'2024-13-01' cannot be read"),
+        ("2024-01-02,1,2\n2024-01-01,2,3\n", "the time runs backwards"),
+        ("2024-01-01,1,2\n2024-01-01,2,3\n", "the time is the same as in the row before"),
+        ("2024-01-01,inf,inf\n2024-01-02,2,3\n", "the value is infinite"),
+        ("2024-01-01,1e308,1e308\n2024-01-02,1e308,1e308\n", "nothing measures 1e+308"),
+    ],
+)
+def test_a_record_that_is_not_read_is_bad_input(
+    tmp_path: Path, model_file: Path, rga: Callable[..., Any], rows: str, said: str
+) -> None:
+    (tmp_path / "r.csv").write_text(f"time,D1,S1\n{rows}", encoding="utf-8")
+    outcome = rga("import-record", tmp_path / "r.csv", "--model", model_file)
+    assert outcome.code == 2
+    target = tmp_path / "import.toml"
+    *_, fault, remedy = outcome.out.splitlines()
+    assert fault.startswith("To fill in, before the record is read: ")
+    assert said in fault
+    assert remedy == f"Mend {target} or the files there, then: rga check {model_file} {target}"
+    assert said in target.read_text(encoding="utf-8").splitlines()[0]
+
+
 @pytest.mark.parametrize("kind", ["import", "settings"])
 def test_schemas_are_printed(kind: str, rga: Callable[..., Any]) -> None:
     content = json.loads(rga("schema", kind).out)

@@ -142,7 +142,7 @@ def test_codes_of_many_columns_are_counted(tmp_path: Path, truss: Model) -> None
     path = tmp_path / "r.csv"
     path.write_text("\n".join([f"time,{names}", *rows]), encoding="utf-8")
     doubts = " ".join(draft_mapping([path], truss, tmp_path).doubts)
-    shown = ", ".join(f"c{k} (1 rows)" for k in range(5))
+    shown = ", ".join(f"c{k} (1 row)" for k in range(5))
     assert f"-9999 stands in {shown} and 3 more columns: is it a missing value?" in doubts
 
 

@@ -57,8 +57,8 @@ def test_a_messy_file_is_read_without_a_key(
         "'Datum' and 'Uhrzeit'",
         "time stamps have no zone",
         "D1 from µm to mm",
-        "'Overrange' stands for a missing value: temperature (1 rows)",
-        "'-9999' stands for a missing value: D1 (1 rows)",
+        "'Overrange' stands for a missing value: temperature (1 row)",
+        "'-9999' stands for a missing value: D1 (1 row)",
     ):
         assert said in notes
     assert ("read as cp1252: 'Messung Brücke', line 1" in notes) == (encoding == "cp1252")

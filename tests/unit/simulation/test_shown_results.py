@@ -68,7 +68,7 @@ class TestRows:
     def test_a_file_serves_as_a_model(self, tmp_path: Path) -> None:
         write_model(hanger(), tmp_path / "model.json")
         found = rga.results(tmp_path / "model.json", {"size": 4.0})
-        assert repr(found) == "Results of 'hanger': 1 rows, 1 members"
+        assert repr(found) == "Results of 'hanger': 1 row, 1 member"
         assert np.isfinite(found.displacements).all()
 
 

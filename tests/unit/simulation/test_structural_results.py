@@ -315,7 +315,16 @@ class TestStresses:
         model = random_frame(0)
         found = results(model)
         assert list(found.stresses.of_members["m2"]) == ["axis"]
-        assert found.members()["utilisation"].to_list() == [None] * len(model.members)
+        bends = [one.kind == "frame" for one in model.members.values()]
+        for column in ("stress min", "stress max"):
+            assert found.members()[column].is_null().to_list() == bends
+        assert found.members()["utilisation"].is_null().all()
+
+    def test_a_bar_needs_no_fibres(self, two_bars: dict[str, Any]) -> None:
+        found = results(read_model(two_bars, "bars"), {"temperature": 20.0, "load": 5e4})
+        area = found.model.sections["bar"].A
+        lowest, stress = found.members()["N min"] / area, found.members()["stress min"]
+        assert stress.to_list() == pytest.approx(lowest.to_list())
 
 
 class TestTable:
@@ -345,7 +354,7 @@ class TestTable:
         assert [one.name for one in tmp_path.iterdir()] == [path.name]
 
     def test_another_format_is_refused(self, tmp_path: Path) -> None:
-        with pytest.raises(InputError, match=r"'\.txt' is no format of tables"):
+        with pytest.raises(InputError, match=r"'\.txt' is no format of a table"):
             self.found().write(tmp_path / "results.txt")
         assert list(tmp_path.iterdir()) == []
 
@@ -359,9 +368,12 @@ class TestRefused:
         with pytest.raises(UnstableStructureError):
             results(beam(["ux", "uy", "uz"], [], load=UNIFORM))
 
-    def test_one_station_is_too_few(self) -> None:
-        with pytest.raises(InputError, match="1 stations are too few"):
-            results(beam(PINNED, SLIDING), stations=1)
+    def test_stations_are_a_whole_number_of_two_to_many(self) -> None:
+        wrong: tuple[Any, ...] = (1, 10_002, 100_000_000, 2.5, True, "5")
+        for stations in wrong:
+            with pytest.raises(InputError, match="give a whole number from 2 to 10001"):
+                results(beam(PINNED, SLIDING), stations=stations)
+        assert len(results(beam(PINNED, SLIDING), stations=10_001).stations) == 10_001
 
     def test_more_than_memory_holds_is_refused(self) -> None:
         with pytest.raises(InputError, match="more than fit into memory"):

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from rga.checking.finding import Finding, parts
 from rga.checking.measured import Measured
 from rga.diagnosis.preparation.prepare import check_length
+from rga.quantities import counted
 
 
 def channels(measured: Measured) -> Iterator[Finding]:
@@ -40,6 +41,6 @@ def channels(measured: Measured) -> Iterator[Finding]:
             yield Finding("warning", "record", warning, "look into the file and its import.toml")
     few = measured.criteria.record.few_rows
     if len(record) < few:
-        what = f"it has {len(record)} rows: noise and intervals are rough estimates"
+        what = f"it has {counted(len(record), 'row')}: noise and intervals are rough estimates"
         yield Finding("note", "record", what, f"give {few} rows or more")
     check_length(record, measured.criteria.record)

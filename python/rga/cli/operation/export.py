@@ -14,10 +14,13 @@ RecordFile = Annotated[
 
 def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
     """Write the rows that a run has taken in as a record, which `rga run` reads again."""
+    from rga.quantities import counted
     from rga.twin import Twin
 
     with Twin.open(place) as twin:
         record = twin.record
     record.write(output)
     contexts = f" and {len(record.contexts)} contexts" if record.contexts else ""
-    typer.echo(f"{len(record)} rows of {len(record.sensors)} sensors{contexts} are in {output}.")
+    typer.echo(
+        f"{counted(len(record), 'row')} of {len(record.sensors)} sensors{contexts} are in {output}."
+    )

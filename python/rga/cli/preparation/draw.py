@@ -73,15 +73,13 @@ def draw(
     nothing happens there at the upper ends of their ranges.
     """
     from rga.drawing import draw as write
-    from rga.drawing.content import NAMED
     from rga.model import load_model
 
-    chosen = [part.value for part in names or []]
     drawn = write(
         load_model(model),
         output,
         width=width,
-        names=NAMED if "all" in chosen else chosen,
+        names=[part.value for part in names or []],
         sensors=sensors,
         loads=load,
         local_axes=axes,

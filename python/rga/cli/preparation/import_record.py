@@ -24,7 +24,11 @@ Force = Annotated[bool, typer.Option("--force", help="Replace a mapping that is 
 def import_record(
     files: Files, model: ModelOption, output: MappingOutput = None, force: Force = False
 ) -> None:
-    """Look at loggers' files, and write what is guessed of them as a first import.toml."""
+    """Look at loggers' files, and write what is guessed of them as a first import.toml.
+
+    The exit code is 2 where the record cannot be read by it as it stands: what is to be filled in
+    or mended is said.
+    """
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -50,4 +54,6 @@ def import_record(
         typer.echo(f"doubt: {doubt}")
     if draft.fault is not None:
         typer.echo(f"To fill in, before the record is read: {draft.fault}")
+        typer.echo(f"Mend {target} or the files there, then: rga check {model} {target}")
+        raise typer.Exit(2)
     typer.echo(f"Check {target}, and give it as the record: rga diagnose {model} {target} -o DIR")

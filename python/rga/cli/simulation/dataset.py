@@ -26,6 +26,7 @@ def dataset(
     from rga.cli.progress import shown_progress
     from rga.errors import InputError
     from rga.model import load_model
+    from rga.quantities import counted
     from rga.simulation.dataset import write_dataset
 
     if output.suffix.lower() != ".parquet":
@@ -42,4 +43,4 @@ def dataset(
             dask=dask,
             progress=progress,
         )
-    typer.echo(f"{rows} rows of {len(structure.sensors)} sensors are in {output}.")
+    typer.echo(f"{counted(rows, 'row')} of {len(structure.sensors)} sensors are in {output}.")

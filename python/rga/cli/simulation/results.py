@@ -18,7 +18,8 @@ ContextFile = Annotated[
     ),
 ]
 Stations = Annotated[
-    int, typer.Option("--stations", min=2, help="Places along each member, its ends among them.")
+    int,
+    typer.Option("--stations", help="Places along each member, its ends among them: 2 to 10001."),
 ]
 
 
@@ -36,19 +37,21 @@ def results(
     """
     from rga.model import load_model
     from rga.model.effect import when_all_act
+    from rga.quantities import counted
     from rga.records import load_contexts
     from rga.simulation import results as results_of
 
     structure = load_model(model)
-    rows = load_contexts(file, structure).values if file else {}
-    given: dict[str, ArrayLike] = {**rows, **settings(contexts, "--contexts")}
+    of_file = load_contexts(file, structure).values if file else {}
+    given: dict[str, ArrayLike] = {**of_file, **settings(contexts, "--contexts")}
     found = results_of(structure, given, stations=stations)
     found.write(output)
     begun = when_all_act(structure.effects.values())
     if begun is not None and "time" not in given:
         typer.echo("No time is given: all effects act, those too that begin late.")
+    rows = counted(len(found.displacements), "row")
     typer.echo(
-        f"{len(found.displacements)} rows of {len(structure.nodes)} nodes, {len(found.held)} "
+        f"{rows} of {len(structure.nodes)} nodes, {len(found.held)} "
         f"reactions and {len(structure.members)} members at {stations} stations are in {output}."
     )
     worst = found.members().drop_nulls("utilisation").sort("utilisation", descending=True)

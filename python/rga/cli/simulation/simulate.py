@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from rga.cli.options import ModelFile, OutputFile
-from rga.errors import InputError
 
 ContextFile = Annotated[
     Path,
@@ -22,14 +21,16 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
     import polars as pl
 
     from rga.cli.output import whole_file
+    from rga.files import wrong_ending
     from rga.model import load_model
     from rga.model.effect import when_all_act
+    from rga.quantities import counted
     from rga.records import load_contexts
     from rga.simulation import Simulator
 
     suffix = output.suffix.lower()
     if suffix not in (".csv", ".parquet"):
-        raise InputError(f"{suffix!r} is no format", str(output), "name a .csv or .parquet file")
+        raise wrong_ending(output, "record", (".csv", ".parquet"))
     structure = load_model(model)
     given = load_contexts(contexts, structure)
     if "time" not in given.values and when_all_act(structure.effects.values()) is not None:
@@ -42,4 +43,4 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
             frame.write_csv(draft)
         else:
             frame.write_parquet(draft)
-    typer.echo(f"{frame.height} rows of {len(sensors)} sensors are in {output}.")
+    typer.echo(f"{counted(frame.height, 'row')} of {len(sensors)} sensors are in {output}.")

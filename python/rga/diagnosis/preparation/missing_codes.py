@@ -3,6 +3,7 @@
 import numpy as np
 
 from rga.arrays import FloatArray
+from rga.quantities import counted
 from rga.records import Record
 
 #: rows in which the same number must stand: noise repeats no reading so far away
@@ -50,9 +51,9 @@ def _code(column: FloatArray, simulated: FloatArray) -> float | None:
 def _words(record: Record, code: float, channels: list[int]) -> str:
     names = ", ".join(record.sensors[number] for number in channels[:MOST_NAMED])
     more = len(channels) - MOST_NAMED
-    rows = int((record.readings[:, channels] == code).any(1).sum())
+    rows = counted(int((record.readings[:, channels] == code).any(1).sum()), "row")
     return (
-        f"{code:g} stands in {rows} rows of {names}{f' and {more} more channels' * (more > 0)}, "
+        f"{code:g} stands in {rows} of {names}{f' and {more} more channels' * (more > 0)}, "
         "far away from all else that they read, as a logger's code for a missing reading does: "
         "name it under missing in import.toml, or leave these cells empty"
     )

@@ -34,6 +34,7 @@ from rga.errors import InputError
 from rga.findings.criteria import Criteria
 from rga.findings.criteria.records import RecordCriteria
 from rga.model.schema import Model
+from rga.quantities import counted
 from rga.records import Record
 from rga.records.zero import zeros_of
 from rga.simulation import Simulator
@@ -141,7 +142,9 @@ def prepare(
     slight = [words for words in faults_of_rows if words not in serious]
     warnings = [*record.warnings, *limits, *slight, *zeros.warnings, *suspicious]
     if chosen.sum() < criteria.record.few_rows:
-        warnings.append(f"only {int(chosen.sum())} rows: noise and intervals are rough estimates")
+        warnings.append(
+            f"only {counted(int(chosen.sum()), 'row')}: noise and intervals are rough estimates"
+        )
     if passing := data.belief.passing:
         warnings.append(
             f"onsets were not looked for: {', '.join(passing)} passes once, and what depends on it "
@@ -234,7 +237,7 @@ def check_length(record: Record, criteria: RecordCriteria) -> None:
     """Refuse a record that is too short for a diagnosis (InputError)."""
     if len(record) < criteria.least_rows:
         raise InputError(
-            f"the record has {len(record)} rows",
+            f"the record has {counted(len(record), 'row')}",
             "record",
             f"a diagnosis needs {criteria.least_rows} at least",
         )

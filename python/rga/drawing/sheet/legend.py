@@ -38,6 +38,8 @@ def entries(content: Content, palette: Palette) -> list[Line2D | Patch]:
     elif response.deformed is not None:
         found.append(Line2D([], [], color=palette.deformed, lw=2.2, label="deformed"))
     for diagram in response.diagrams if response is not None else ():
+        if diagram.largest == 0:
+            continue
         signs = SIGNS.get(diagram.quantity, ("positive", "negative"))
         for colour, word in zip((palette.positive, palette.negative), signs, strict=True):
             found.append(Patch(fc=colour, ec=colour, alpha=0.45, label=word))
@@ -85,6 +87,10 @@ def state_words(response: DrawnResponse | None) -> str:
         most = f"largest {quantity(shape.largest, 'm')} at {label(shape.at)}"
         said.append(f"{times}, {most}" if shape.largest > 0 else "nothing moves")
     for diagram in response.diagrams:
+        if diagram.largest == 0:
+            why = "" if diagram.bends or diagram.quantity == "N" else ": truss members"
+            said.append(f"{WORDS[diagram.quantity]}: all zero{why}")
+            continue
         _, written = scale(diagram.unit, diagram.largest)
         most = quantity(diagram.largest, diagram.unit)
         said.append(f"{WORDS[diagram.quantity]}, written in {written}, at most {most}")

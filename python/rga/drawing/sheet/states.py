@@ -1,5 +1,6 @@
 """The deformed shape and diagrams of forces on a view."""
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -17,6 +18,16 @@ REACH, HALF = 0.42, 0.13
 WRITTEN, SAME = 48, 0.05
 #: share of the largest value below which one counts as none
 NOTHING = 1e-9
+
+
+@dataclass(frozen=True)
+class _Written:
+    """A value that is written: its size, its place [inch], its text, and which way it is off."""
+
+    size: float
+    top: FloatArray
+    text: str
+    away: FloatArray | None
 
 
 def curved_points(scene: Scene, shape: Deformed) -> FloatArray:
@@ -49,7 +60,7 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> int:
     both = diagram.quantity == "N"
     reach = (HALF if both else REACH) / diagram.largest
     bases = canvas.inches(scene.points)[scene.ends]
-    written = []
+    written: list[_Written] = []
     areas: dict[str, list[FloatArray]] = {canvas.palette.positive: [], canvas.palette.negative: []}
     for member in canvas.view.members:
         values, stations = diagram.values[member], diagram.positions[member]
@@ -65,29 +76,33 @@ def draw_diagram(canvas: Canvas, scene: Scene, diagram: Diagram) -> int:
             areas[colour].append(np.vstack([tops, base]))
         for k in diagram.told(member):
             foot = first + stations[k] * (last - first)
-            top = foot if both else foot + reach * values[k] * side
-            written.append((abs(float(values[k])), top, short(float(values[k]) * factor)))
+            value = float(values[k])
+            top = foot if both else foot + reach * value * side
+            away = None if both else np.sign(value) * side / np.linalg.norm(side)
+            written.append(_Written(abs(value), top, short(value * factor), away))
     for colour, polygons in areas.items():
         canvas.areas(polygons, colour, colour, 0.6, zorder=4, alpha=0.45)
     missed = 0
-    told = _once_each(sorted(written, key=lambda one: -one[0]))
-    tops = np.array([top for top, _ in told])
-    for top, text in told[:WRITTEN]:
-        placed = canvas.room.place(text, top, over=both, rivals=tops)
+    told = _once_each(sorted(written, key=lambda one: -one.size))
+    tops = np.array([one.top for one in told])
+    for one in told[:WRITTEN]:
+        placed = canvas.room.place(one.text, one.top, over=both, rivals=tops, beyond=one.away)
         if placed is None:
             missed += 1
         else:
             paper = {"facecolor": canvas.palette.paper, "alpha": 0.75, "lw": 0, "pad": 0.4}
-            canvas.text(text, placed.box[:2], canvas.palette.ink, va="bottom", bbox=paper)
+            canvas.text(one.text, placed.box[:2], canvas.palette.ink, va="bottom", bbox=paper)
     return missed
 
 
-def _once_each(written: list[tuple[float, FloatArray, str]]) -> list[tuple[FloatArray, str]]:
-    """Places with their texts, without one that stands there already for another member."""
-    found: list[tuple[FloatArray, str]] = []
-    for _, top, text in written:
-        if not any(text == other and np.abs(top - at).max() < SAME for at, other in found):
-            found.append((top, text))
+def _once_each(written: list[_Written]) -> list[_Written]:
+    """Values without one that stands there already for another member."""
+    found: list[_Written] = []
+    for one in written:
+        if not any(
+            one.text == other.text and np.abs(one.top - other.top).max() < SAME for other in found
+        ):
+            found.append(one)
     return found
 
 

@@ -41,12 +41,14 @@ class Diagram:
         positions: of the stations, as shares of each member's length, float[members, stations].
         values: there [N or N m], float[members, stations].
         sides: towards which positive values are drawn, float[members, 3].
+        bends: whether some member is no bar, which has N alone.
     """
 
     quantity: Quantity
     positions: FloatArray
     values: FloatArray
     sides: FloatArray
+    bends: bool
 
     @property
     def largest(self) -> float:
@@ -93,7 +95,8 @@ def section_diagram(
     members = np.arange(len(forces))
     values = forces[members, :, component]
     axis = np.array([SIDES[name][0] for name in SECTION_FORCES])[component]
-    return Diagram(quantity, positions, values, signs[:, None] * scene.axes[members, axis])
+    sides = signs[:, None] * scene.axes[members, axis]
+    return Diagram(quantity, positions, values, sides, bends=bool(scene.frame.any()))
 
 
 def _components(scene: Scene, quantity: Quantity) -> tuple[IntArray, FloatArray]:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.findings.criteria.criteria import Criteria
 from rga.settings_files import read_table, validated
 
@@ -19,7 +19,7 @@ def as_criteria(given: Criteria | str | Path | None) -> Criteria:
         return given
     if isinstance(given, str | Path):
         return load_criteria(given)
-    what = f"a {type(given).__name__} is no set of criteria"
+    what = f"{kind_of(given)} is no set of criteria"
     raise InputError(what, "criteria", "give Criteria, or the path of their file")
 
 

@@ -1,10 +1,11 @@
 """What in a logger's columns deserves a second look."""
 
 import numpy as np
+import polars as pl
 
 from rga.arrays import FloatArray
-from rga.errors import InputError
-from rga.records.table import Table
+from rga.records.numbers import numbers_of
+from rga.records.table import LARGEST, Table
 from rga.records.times import Clock
 
 #: numbers that loggers write where they have no reading
@@ -42,11 +43,13 @@ def still_value(values: FloatArray) -> float | None:
 
 
 def readable(table: Table, column: str) -> FloatArray | None:
-    """Numbers of a column; None where it holds others things as well."""
-    try:
-        return table.numbers(column)
-    except InputError:
+    """Numbers of a column, infinite ones where nothing measures them; None where it holds others
+    things as well."""
+    series = table.frame[column]
+    if not (series.dtype.is_numeric() or series.dtype in (pl.String, pl.Null)):
         return None
+    read, bad = numbers_of(series, table.notation, table.missing)
+    return None if bad.any() else np.where(np.abs(read) > LARGEST, np.inf, read)
 
 
 def gaps_in(clock: Clock) -> str | None:

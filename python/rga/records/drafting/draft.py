@@ -11,6 +11,7 @@ import numpy as np
 
 from rga.errors import InputError
 from rga.model import Model
+from rga.quantities import counted
 from rga.records.channels import quoted
 from rga.records.drafting.candidates import candidate_lines
 from rga.records.drafting.doubts import codes_in, gaps_in, readable, still_value
@@ -117,9 +118,9 @@ def _some_numbers(loggers: Sequence[_Logger]) -> None:
     if any({*one.first.frame.columns} - {*one.taken, *one.empty} for one in loggers):
         return
     frame = loggers[0].first.frame
-    rows, names = frame.height, quoted(frame.columns)
+    rows, names = counted(frame.height, "row"), quoted(frame.columns)
     raise InputError(
-        f"no column beside the time holds a number: {rows} rows were read of the columns {names}",
+        f"no column beside the time holds a number: {rows} were read of the columns {names}",
         ", ".join(one.name for one in loggers),
         "give a logger's file with readings; where columns or rows are found wrongly, write "
         "delimiter, header_line and data_line into an import.toml",
@@ -339,7 +340,9 @@ def _missing_lines(logger: _Logger, doubts: Doubts, where: str) -> list[str]:
     if not codes:
         return []
     for code, columns in codes.items():
-        shown = ", ".join(f"{column} ({rows} rows)" for column, rows in list(columns.items())[:5])
+        shown = ", ".join(
+            f"{column} ({counted(rows, 'row')})" for column, rows in list(columns.items())[:5]
+        )
         more = f" and {len(columns) - 5} more columns" if len(columns) > 5 else ""
         doubts.add(f"{code:g} stands in {shown}{more}: is it a missing value?", where=where)
     stated = listed([f"{code:g}" for code in codes])

@@ -62,7 +62,7 @@ def card(cause: Cause, model: Model, words: str, rivals: list[str]) -> Card:
         facts=[
             ("log-odds", number(cause.log_odds), LOG_ODDS),
             (D_PRIME, number(cause.d_prime), SIZE),
-            (D_PRIME + "\N{UP TACK}", number(cause.d_perp), APART),
+            ("d_perp", number(cause.d_perp), APART),
         ],
         why=cause.why,
         rivals=rivals,

@@ -7,7 +7,7 @@ from markupsafe import Markup
 
 from rga.diagnosis.assemble.effects import last_effect
 from rga.diagnosis.checks.detectability import Least, least_seen
-from rga.diagnosis.checks.leave_one_out import Hold, contrast, hold
+from rga.diagnosis.checks.leave_one_out import Contrast, Hold, contrast, hold
 from rga.diagnosis.checks.profiles import onset_profile, profiles
 from rga.diagnosis.search.stepwise import Found
 from rga.findings.arrays import DiagnosisArrays
@@ -22,6 +22,9 @@ from rga.report.figures.profiles import draw_profiles
 from rga.report.figures.series import runs_on
 from rga.report.pages.cards import moment, own_unit, plain
 from rga.report.pages.fault_tolerant_parts import Lost, part
+
+#: times its noise by which a channel plainly tells two explanations apart
+PLAIN = 3.0
 
 
 def evidence(findings: Findings, cause: Cause) -> dict[str, Any] | None:
@@ -75,11 +78,19 @@ def _rivalry(account: DiagnosisArrays, found: Found, place: int) -> Rivalry | No
     apart = found.problem.criteria.rivals.log_odds
     lead = (
         f"It leads by {number(against.lead)} log-odds over its nearest rival, {rival}; below "
-        f"{apart:g} the two cannot be separated. On no channel do they differ by more than "
-        f"{number(max(against.size), 2)} times its noise (root mean square)."
+        f"{apart:g} the two cannot be separated. {_difference(against)} times its noise (root mean "
+        "square)."
     )
     figure = draw_contrast(against, account.model, runs_on(account), f"contrast-{place}")
     return Rivalry(rival, lead, figure)
+
+
+def _difference(against: Contrast) -> str:
+    """How far a cause and its rival part, up to the number: much or little."""
+    most = number(float(against.size[0]), 2)
+    if against.size[0] < PLAIN:
+        return f"On no channel do they differ by more than {most}"
+    return f"They differ most on {against.channels[0]}, by {most}"
 
 
 def caveats(found: Found, place: int, cause: Cause, model: Model, lead: str) -> list[str]:

@@ -118,10 +118,16 @@ function sensor(pen, [x, y], kind, colours) {
 }
 
 // Text where no other text stands; boxes are those that are taken.
-function label(pen, text, [x, y], colour, boxes) {
+function label(pen, text, [x, y], colour, boxes, beyond) {
   const shown = text.length > 24 ? text.slice(0, 23) + "\u2026" : text;
   const wide = pen.measureText(shown).width, high = 13;
-  for (const [dx, dy] of [[6, -5], [-wide - 6, -5], [6, 15], [-wide - 6, 15]]) {
+  const places = [[6, -5], [-wide - 6, -5], [6, 15], [-wide - 6, 15]];
+  if (beyond) {
+    // It had best stand beyond its point, in this direction of length one.
+    const [right, down] = beyond, away = 5 + (Math.abs(right) * wide + Math.abs(down) * high) / 2;
+    places.unshift([right * away - wide / 2, down * away + high / 2 - 3]);
+  }
+  for (const [dx, dy] of places) {
     const box = [x + dx, y + dy - high + 3, x + dx + wide, y + dy + 3];
     const free = boxes.every(one =>
       box[2] <= one[0] || box[0] >= one[2] || box[3] <= one[1] || box[1] >= one[3]);

@@ -176,19 +176,21 @@ function drawForces(places, colours, diagram) {
     }
     for (const n of diagram.told[k]) {
       const [x, y] = foot(diagram.positions[k][n]), lift = both ? 0 : reach * values[n];
-      written.push([Math.abs(values[n]), [x + lift * side[0], y + lift * side[1]], values[n]]);
+      const long = Math.hypot(...side) || 1, way = side.map(one => Math.sign(values[n]) * one / long);
+      const at = [x + lift * side[0], y + lift * side[1]];
+      written.push([Math.abs(values[n]), at, values[n], both ? null : way]);
     }
   });
   pen.globalAlpha = 1;
   written.sort((one, other) => other[0] - one[0]);
   const texts = new Set();
-  for (const [size, at, value] of written) {
+  for (const [size, at, value, beyond] of written) {
     const text = short(value * diagram.factor);
     // Members that meet tell of the same value once.
     const here = `${text} ${at.map(one => Math.round(one / 8))}`;
     if (size <= 1e-9 * diagram.largest || texts.has(here) || texts.size >= MOST_VALUES) continue;
     texts.add(here);
-    label(pen, text, at, colours.ink, boxes);
+    label(pen, text, at, colours.ink, boxes, beyond);
   }
 }
 
