@@ -1,6 +1,5 @@
-"""`rga replay` and `rga rollback`: the log of the twin, and an earlier model again."""
+"""`rga replay`: the log of the twin."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,9 +19,6 @@ Time = Annotated[
         help="As it stood at this time: a date as in the record, such as 2026-03-01T12:00, or "
         "seconds since the first row.",
     ),
-]
-VersionNumber = Annotated[
-    int, typer.Option("--to", min=1, help="Model version to put in force again.")
 ]
 
 
@@ -61,11 +57,3 @@ def _moment(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
-
-
-def rollback(place: Place, to: VersionNumber) -> None:
-    """Put an earlier model version of the twin in force again."""
-    from rga.twin import rollback
-
-    twin = rollback(place if "://" in place else Path(place), to)
-    typer.echo(f"Model version {twin.version} is in force.")
