@@ -52,7 +52,17 @@ def place(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
     """An empty place for a repository: a file, or a schema of its own on a server."""
     if request.param == "sqlite":
         yield str(tmp_path / "twin.sqlite")
-        return
+    else:
+        yield from _schema()
+
+
+@pytest.fixture
+def server() -> Iterator[str]:
+    """A schema of its own on a server."""
+    yield from _schema()
+
+
+def _schema() -> Iterator[str]:
     if not SERVER:
         pytest.skip("RGA_TEST_POSTGRES names no server")
     schema = f"rga_{uuid.uuid4().hex}"

@@ -17,6 +17,7 @@ from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.commands.command import AnyCommand, read_command
 from rga.twin.hardware.inbox import FILE as INBOX
 from rga.twin.hardware.inbox import Addressee, Inbox
+from rga.twin.hardware.interface import LIVE
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
@@ -188,7 +189,7 @@ class LiveTwin:
         Raises:
             InputError: it has not begun.
         """
-        return Twin.open(self._place)
+        return Twin.open(self._place, f"{LIVE}{self.name}")
 
     def _taken_up(self) -> Running:
         if self._running is None:

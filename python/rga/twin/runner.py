@@ -72,17 +72,18 @@ def taken_up(
 
 
 @contextmanager
-def reopened(place: str | Path) -> Iterator["Running"]:
+def reopened(place: str | Path, source: str | None = None) -> Iterator["Running"]:
     """The run last acted on in a repository, from what it holds alone, to be asked for something.
 
     Args:
         place: of the repository: a file, a directory that holds `twin.sqlite`, or a URL.
+        source: where its rows come from; None: from anywhere.
 
     Raises:
         InputError: nothing has run there, or the repository cannot be used.
     """
     with Repository.open(place, read_only=True) as repository:
-        identity = repository.latest().identity
+        identity = repository.latest(source).identity
     with threadpool_limits(1), Repository.open(place) as repository:
         kept = repository.run(identity)
         hardware, settings = Stored(kept), Settings.model_validate_json(identity.settings)

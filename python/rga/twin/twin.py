@@ -53,15 +53,19 @@ class Twin:
         self.state: TwinState = replay(view, self._station.channels)
 
     @classmethod
-    def open(cls, place: str | Path) -> Self:
+    def open(cls, place: str | Path, source: str | None = None) -> Self:
         """The twin of the run last acted on in a run's directory, its file, or a database by URL.
+
+        Args:
+            place: of the repository.
+            source: where the rows of that run come from, such as "live:NAME"; None: from anywhere.
 
         Raises:
             InputError: there is no repository, or nothing has run in it.
         """
         repository = Repository.open(place, read_only=True)
         try:
-            return cls(repository.latest(), place, repository)
+            return cls(repository.latest(source), place, repository)
         except BaseException:
             repository.close()
             raise
@@ -217,12 +221,13 @@ class Twin:
         return float(np.linalg.norm(steps, axis=1).min())
 
 
-def carry_out(place: str | Path, command: AnyCommand) -> str:
+def carry_out(place: str | Path, command: AnyCommand, source: str | None = None) -> str:
     """Do what somebody asks a twin for that nothing else is playing.
 
     Args:
         place: directory of a run, its file, or a database by URL.
         command: of `rga.twin`: Accept, Reject, Rollback, Exclude, Recalibrate or Note.
+        source: of the rows of the run, as of `Twin.open`.
 
     Returns:
         What came of it, in words.
@@ -230,7 +235,7 @@ def carry_out(place: str | Path, command: AnyCommand) -> str:
     Raises:
         InputError: it cannot be done, or the repository is in use.
     """
-    with reopened(place) as running:
+    with reopened(place, source) as running:
         return running.carry_out(command)
 
 

@@ -12,6 +12,9 @@ from live_streams import SETTINGS, sinking
 from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin import Settings
+from stored_runs import server
+
+__all__ = ["server"]
 
 Given = tuple[Model, Record]
 #: rows of a record whose diagnosis has proposed something, and of which some are still to come

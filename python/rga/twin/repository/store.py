@@ -147,15 +147,19 @@ class Repository:
             entries = connection.execute(select(tables.run).order_by(tables.run.c.id)).all()
         return tuple(RunView(Source(self._reading, entry.id), *_of(entry)) for entry in entries)
 
-    def latest(self) -> RunView:
+    def latest(self, source: str | None = None) -> RunView:
         """The run last acted on.
+
+        Args:
+            source: of its rows, as its identity has it; None: any.
 
         Raises:
             InputError: nothing has run here.
         """
-        runs = self.runs()
+        runs = [one for one in self.runs() if source in (None, one.identity.source)]
         if not runs:
-            raise InputError("nothing has run here", self._database.where, "begin with rga run")
+            what = "nothing" if source is None else f"no {source!r}"
+            raise InputError(f"{what} has run here", self._database.where, "begin with rga run")
         return max(runs, key=lambda view: view.acknowledged_at)
 
     def close(self) -> None:
