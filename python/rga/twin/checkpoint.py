@@ -10,7 +10,7 @@ from rga.twin.calibration.learning import read
 from rga.twin.calibration.learning import written as stored
 from rga.twin.calibration.states import State
 from rga.twin.digital_twin import DigitalTwin
-from rga.twin.repository import RunView
+from rga.twin.repository import Run
 from rga.twin.restore import replay, standing_of
 
 #: estimators that the calibration holds, by the names under which they are kept
@@ -67,11 +67,11 @@ class Checkpoint:
         for name in ESTIMATORS:
             estimator: ContextEstimator | None = getattr(calibration, name)
             if estimator is not None and estimator is not self._kept[name]:
-                self._archive.keep(name, stored(estimator), row)
+                self._archive.keep_state(name, stored(estimator))
                 self._kept[name] = estimator
         for number, state in enumerate(calibration.states):
             if state not in self._states[number : number + 1]:
-                self._archive.keep(STATE.format(number), state.to_bytes(), row)
+                self._archive.keep_state(STATE.format(number), state.to_bytes())
         self._states = calibration.states.copy()
 
     def take_up(self) -> bool:
@@ -109,14 +109,14 @@ class Checkpoint:
         learned_under = self._analysis.standing.learned_under
         self.stale = learned_under != self._twin.state.version
 
-    def _read_estimators(self, view: RunView) -> None:
+    def _read_estimators(self, view: Run) -> None:
         """Those that infer, and those of the states that were kept."""
         in_force = self._twin.state.version
         for name in ("given",) if self.stale else ESTIMATORS:
-            content, version = view.kept(name), 1 if name == "given" else in_force
+            content, version = view.state(name), 1 if name == "given" else in_force
             if content is not None:
                 self._kept[name] = read(content, self._twin.simulation(version))
-        while (content := view.kept(STATE.format(len(self._states)))) is not None:
+        while (content := view.state(STATE.format(len(self._states)))) is not None:
             self._states.append(State.from_bytes(content, self._twin.simulation))
         number = self._analysis.standing.state
         if number is not None and not self.stale:

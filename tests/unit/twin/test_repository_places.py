@@ -39,6 +39,8 @@ def test_an_older_repository_is_brought_up_to_date_with_a_copy_beside_it(
             with run.step() as step:
                 step.keep("synchrony", b"state %d" % number, number)
                 step.keep("standing", b"{}", number)
+                step.keep("learned", b"estimator %d" % number, number)
+                step.keep("state 0", b"doubted %d" % number, number)
     for later in ("state_page", "proposal", "command"):
         alter(place, f"DROP TABLE {later}")
     alter(place, "DROP INDEX ix_message_run_id_kind_step")
@@ -49,13 +51,15 @@ def test_an_older_repository_is_brought_up_to_date_with_a_copy_beside_it(
     with Repository.open(place) as repository:
         run = repository.run(IDENTITY)
         assert run.state("synchrony") == b"state 2"
+        assert run.state("learned") == b"estimator 2"
+        assert run.state("state 0") == b"doubted 2"
         assert run.state("standing") is None
         assert run.kept("standing") == b"{}"
     if "://" not in place:
         file = Path(place) / "twin.sqlite" if Path(place).is_dir() else Path(place)
         copy = file.with_name("twin.sqlite.revision-0001")
         with sqlite3.connect(copy) as held:
-            assert held.execute("SELECT count(*) FROM kept").fetchone() == (6,)
+            assert held.execute("SELECT count(*) FROM kept").fetchone() == (12,)
             assert held.execute("SELECT version_num FROM rga_repository").fetchone() == ("0001",)
         assert not list(file.parent.glob("*.draft"))
 

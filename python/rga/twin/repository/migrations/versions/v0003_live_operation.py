@@ -27,6 +27,13 @@ def upgrade() -> None:
         "SELECT run_id, name, 0, data FROM checkpoint"
     )
     op.drop_table("checkpoint")
+    # What infers contexts was kept anew whenever it changed: the last of each is taken over.
+    op.execute(
+        "INSERT INTO state_page (run_id, name, page, data) "
+        "SELECT run_id, name, 0, data FROM kept AS one "
+        "WHERE (name IN ('learned', 'sound', 'given') OR name LIKE 'state %') AND step = "
+        "(SELECT MAX(step) FROM kept WHERE name = one.name AND run_id = one.run_id)"
+    )
     _of_steps(
         "proposal",
         sa.Column("number", sa.Integer, nullable=False),
