@@ -4,14 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike
 
 from rga._core import OutputKind
-from rga.arrays import FloatArray, OutputArrays, by_name
+from rga.arrays import FloatArray, OutputArrays
 from rga.errors import InputError
 from rga.files import write_table
 from rga.model import as_model
@@ -22,6 +22,7 @@ from rga.notebook import short_html
 from rga.quantities import counted
 from rga.simulation.contexts import Contexts, contexts_by_name
 from rga.simulation.critical_places import ForcesAlong
+from rga.simulation.outputs import joined, node_outputs, section_outputs
 from rga.simulation.paths.response import respond
 from rga.simulation.simulator import Response, Simulator
 from rga.simulation.stresses import Stresses, section_stresses
@@ -237,7 +238,7 @@ def results(
 
     def wanted(structure: Structure) -> OutputArrays:
         at_held = [structure.nodes[node] for node in held]
-        return _joined(
+        return joined(
             node_outputs(
                 list(structure.nodes.values()), OutputKind.DISPLACEMENT, OutputKind.ROTATION
             ),
@@ -323,44 +324,12 @@ def held_nodes(model: Model) -> tuple[str, ...]:
     return tuple(node for node in model.nodes if node in supported)
 
 
-def node_outputs(nodes: Sequence[int], first: OutputKind, then: OutputKind) -> OutputArrays:
-    """Two vectors of each node, by its number: x, y, z of the first kind, then of the other."""
-    count = 6 * len(nodes)
-    return {
-        "kind": np.tile(np.repeat([int(first), int(then)], 3), len(nodes)).astype(np.int64),
-        "index": np.repeat(np.array(nodes, dtype=np.int64), 6),
-        "other": np.full(count, -1),
-        "vector": np.tile(np.eye(3), (count // 3, 1)),
-        "total": np.zeros(count, dtype=bool),
-    }
-
-
-def section_outputs(members: Sequence[int], places: FloatArray) -> OutputArrays:
-    """Six forces at each place along each member, by its number."""
-    count = 6 * len(members) * len(places)
-    vector = np.zeros((count, 3))
-    vector[:, 0] = np.tile(np.repeat(places, 6), len(members))
-    return {
-        "kind": np.full(count, int(OutputKind.SECTION_FORCE)),
-        "index": np.repeat(np.array(members, dtype=np.int64), 6 * len(places)),
-        "other": np.tile(np.arange(6), len(members) * len(places)),
-        "vector": vector,
-        "total": np.zeros(count, dtype=bool),
-    }
-
-
 def _places(stations: int) -> FloatArray:
     whole = isinstance(stations, (int, np.integer)) and not isinstance(stations, bool)
     if not whole or not 2 <= stations <= MOST_STATIONS:
         what = f"a member cannot have {stations!r} stations"
         raise InputError(what, "stations", f"give a whole number from 2 to {MOST_STATIONS}")
     return np.linspace(0.0, 1.0, stations)
-
-
-def _joined(*parts: OutputArrays) -> OutputArrays:
-    return cast(
-        OutputArrays, {key: np.concatenate([by_name(p)[key] for p in parts]) for key in parts[0]}
-    )
 
 
 def _respond(
