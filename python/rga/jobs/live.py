@@ -1,6 +1,5 @@
 """A twin of a structure whose readings go on arriving."""
 
-import json
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -12,9 +11,10 @@ from typing import Self
 from rga.errors import InputError
 from rga.given import as_record
 from rga.jobs.run import FILE, concluded, made
-from rga.model import Model, as_model, read_model
+from rga.model import Model, as_model, model_of_text
 from rga.records import Record, RecordMapping, RecordSource
-from rga.twin.commands.command import AnyCommand, read_command
+from rga.records.frames import is_frame, table_of_frame
+from rga.twin.commands.command import AnyCommand, Command, read_command
 from rga.twin.hardware.inbox import FILE as INBOX
 from rga.twin.hardware.inbox import Addressee, Inbox
 from rga.twin.hardware.interface import LIVE
@@ -35,11 +35,12 @@ class Fed:
 
     Attributes:
         new: rows that are kept.
-        known: rows that are no later than what was there: they were fed before, or come too late.
+        left_out: rows that are no later than what was there: they were fed before, or come too
+            late.
     """
 
     new: int
-    known: int
+    left_out: int
 
 
 class LiveTwin:
@@ -81,7 +82,7 @@ class LiveTwin:
             self._inbox.close()
             raise InputError("no live twin is here", str(directory), "begin with rga.live")
         self.name, self._seed = known.name, known.seed
-        self.model = read_model(json.loads(known.model), str(directory))
+        self.model = model_of_text(known.model, str(directory), known.model_sha256)
         self._settings = Settings.model_validate_json(known.settings)
         self._place = repository or self._directory / FILE
         self._progress, self._patience = progress, patience
@@ -118,7 +119,7 @@ class LiveTwin:
         Raises:
             InputError: the rows cannot be read or are not of this twin, or the disk is full.
         """
-        record = as_record(rows, self.model, mapping)
+        record = self._as_record(rows, mapping)
         if not len(record):
             return Fed(0, 0)
         new = None
@@ -129,12 +130,34 @@ class LiveTwin:
             new = self._inbox.put(station, *as_rows(station, record))
         return Fed(new, len(record) - new)
 
+    def _as_record(
+        self, rows: Record | RecordSource, mapping: str | Path | RecordMapping | None
+    ) -> Record:
+        station = self._inbox.station
+        if station is None or mapping is not None or not is_frame(rows):
+            return as_record(rows, self.model, mapping)
+        known = {*station.channels, *station.measured}
+        frame = table_of_frame(rows).frame
+        empty = [one for one in frame.columns if one in known and not frame[one].count()]
+        frame = frame.drop(empty)
+        lacking = [name for name in station.channels if name not in frame.columns]
+        unused = dict.fromkeys(lacking, "no reading in these rows")
+        return as_record(frame, self.model, RecordMapping(unused=unused))
+
     def ask(self, command: AnyCommand) -> int:
         """Keep a command (`rga.twin.Accept` and others); `play` carries it out.
 
         Returns:
             Its number.
+
+        Raises:
+            InputError: it is none.
         """
+        if not isinstance(command, Command):
+            what = f"a {type(command).__name__} is no command"
+            raise InputError(
+                what, "command", "give one of rga.twin, such as Note(who=..., why=...)"
+            )
         return self._inbox.ask(command.model_dump_json())
 
     def play(self, allowed: Callable[[Running], bool] = lambda running: True) -> list[Event]:
@@ -189,6 +212,8 @@ class LiveTwin:
         Raises:
             InputError: it has not begun.
         """
+        if isinstance(self._place, Path) and not self._place.exists():
+            raise InputError("it has not begun", f"twin {self.name!r}", "feed rows, and play")
         return Twin.open(self._place, f"{LIVE}{self.name}")
 
     def _taken_up(self) -> Running:
@@ -263,7 +288,10 @@ def live(
     given, chosen = as_model(model), as_settings(settings)
     check_lives(given)
     chosen.pace(None)
-    wanted = Addressee(name or given.name, written(given)[0], chosen.model_dump_json(), seed)
+    text, digest = written(given)
+    wanted = Addressee(
+        name or given.name, text, given.sha256 or digest, chosen.model_dump_json(), seed
+    )
     place = made(Path(directory))
     inbox = Inbox(place)
     try:

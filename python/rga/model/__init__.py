@@ -2,7 +2,14 @@
 
 from rga.model import effects as effects
 from rga.model.effect import Effect
-from rga.model.io import as_model, load_model, model_content, read_model, write_model
+from rga.model.io import (
+    as_model,
+    load_model,
+    model_content,
+    model_of_text,
+    read_model,
+    write_model,
+)
 from rga.model.schema import ContextVariable, Model, Sensor, model_schema, read_effect
 
 __all__ = [
@@ -13,6 +20,7 @@ __all__ = [
     "as_model",
     "load_model",
     "model_content",
+    "model_of_text",
     "model_schema",
     "read_effect",
     "read_model",

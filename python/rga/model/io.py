@@ -60,6 +60,22 @@ def load_model(path: str | Path) -> Model:
     return model
 
 
+def model_of_text(text: str, place: str, sha256: str) -> Model:
+    """A model from the text of its file.
+
+    Args:
+        text: JSON.
+        place: where it was kept, for errors.
+        sha256: hash of the file that it was read from first.
+
+    Raises:
+        InputError: it is no model.
+    """
+    model = read_model(json.loads(text), place)
+    model._sha256 = sha256
+    return model
+
+
 def as_model(given: Model | str | Path) -> Model:
     """A model, read where its file is given.
 

@@ -88,6 +88,12 @@ class Checkpoint:
             return False
         standing = self._analysis.standing = standing_of(view)
         self._check_learner()
+        if view.kept("station") != self._twin.station.to_json().encode():
+            raise InputError(
+                "its first row or its channels are not those that the run began with",
+                f"rows of {view.identity.source!r}",
+                "bring back what they came from, or begin another run",
+            )
         self._archive.excluded = standing.excluded
         self._twin.state = replay(view, channels)
         synchrony = view.state("synchrony")

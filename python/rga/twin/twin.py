@@ -17,7 +17,7 @@ from rga.twin.commands.command import AnyCommand, Rollback
 from rga.twin.digital_twin import TwinState
 from rga.twin.history import History
 from rga.twin.messages.log_text import retold
-from rga.twin.repository import Repository, RunView
+from rga.twin.repository import Proposal, Repository, RunView, StoredCommand
 from rga.twin.restore import (
     given_model,
     history_of,
@@ -174,6 +174,14 @@ class Twin:
             acknowledged_at=self._view.acknowledged_at,
             events=self._view.events()[-SHOWN:],
         )
+
+    def proposals(self) -> tuple[Proposal, ...]:
+        """Changes of the model that diagnoses proposed (setting `adopt = "ask"`)."""
+        return self._view.proposals()
+
+    def commands(self) -> tuple[StoredCommand, ...]:
+        """What people asked for, and what came of it."""
+        return self._view.commands()
 
     def history(self) -> History:
         """What it lived through."""

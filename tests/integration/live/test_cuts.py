@@ -77,7 +77,7 @@ def played_somehow(stream: Stream, place: Path, draw: Random) -> History:
             first = draw.choice([fed, fed, max(0, fed - 20), 0])
             end = min(len(record), fed + draw.randint(1, longest))
             said = twin.feed(record.rows(slice(first, end)))
-            assert (said.new, said.known) == (end - fed, fed - first)
+            assert (said.new, said.left_out) == (end - fed, fed - first)
             fed = end
             if draw.random() < 0.4:
                 twin.play()

@@ -46,6 +46,8 @@ COUNTED = {
 #: so many events of one kind in a row stand in the table by themselves
 MOST_IN_A_ROW = 3
 MOST_SENSORS = 8
+#: kinds of events that people read one by one
+DECIDED = ("command", "proposal", "version", "rollback")
 
 
 def run_page(history: History, findings: Findings) -> dict[str, Any]:
@@ -135,7 +137,7 @@ def events(history: History) -> list[dict[str, str]]:
     found = []
     for kind, series in groupby(history.events, key=lambda event: event.kind):
         several = list(series)
-        if len(several) <= MOST_IN_A_ROW:
+        if len(several) <= MOST_IN_A_ROW or kind in DECIDED:
             found += [_event(event) for event in several]
             continue
         first, last = several[0], several[-1]

@@ -1,5 +1,6 @@
 """Carries out what people ask a twin for, and writes it down."""
 
+from datetime import datetime
 from typing import Any
 
 from rga.errors import InputError
@@ -111,6 +112,13 @@ class CommandDesk:
         until = None if command.until is None else seconds(command.until)
         if until is not None and not until > since:
             raise InputError("it ends before it begins", PLACE, "give a later time to end it")
+        out = {
+            name
+            for name, begun, ended in standing.excluded
+            if begun <= since and (ended is None or ended > since)
+        }
+        if out | {command.sensor} >= set(self._station.channels):
+            raise InputError("no sensor would be left", PLACE, "leave one of them in use")
         standing.excluded = (*standing.excluded, (command.sensor, since, until))
         self._archive.excluded = standing.excluded
         self._calibration.read_again(standing)
@@ -132,6 +140,11 @@ class CommandDesk:
                 PLACE,
                 f"give {written} as in the rows",
             )
+        zoned = dated and datetime.fromisoformat(str(self._station.start)).tzinfo is not None
+        for one in moments:
+            if isinstance(one, str) and (datetime.fromisoformat(one).tzinfo is not None) != zoned:
+                has = "have a time zone" if zoned else "have no time zone"
+                raise InputError(f"the rows {has}, unlike {one!r}", PLACE, "write it as they do")
 
     def _open_proposal(self, number: int | None) -> Proposal:
         """The last proposal, if nobody has decided about it.

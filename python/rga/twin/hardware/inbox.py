@@ -29,6 +29,7 @@ from sqlalchemy import (
 )
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.twin.hardware.interface import Packet, Station
 from rga.twin.repository.faults import as_input_errors
 from rga.twin.repository.sqlite import SQLite
@@ -42,6 +43,7 @@ _twin = Table(
     _metadata,
     Column("name", Text, nullable=False),
     Column("model", Text, nullable=False),
+    Column("model_sha256", Text, nullable=False),
     Column("settings", Text, nullable=False),
     Column("seed", BigInteger, nullable=False),
 )
@@ -77,12 +79,14 @@ class Addressee:
     Attributes:
         name: of it.
         model: as it was given, the text of a model file.
+        model_sha256: hash of the file that it was read from.
         settings: of its run, as JSON text.
         seed: of everything random.
     """
 
     name: str
     model: str
+    model_sha256: str
     settings: str
     seed: int
 
@@ -191,11 +195,21 @@ class Inbox:
             connection.execute(update(_station).values(ended=True))
 
     def packet(self, station: Station, first: int, rows: int) -> Packet:
-        """At most so many rows from a row on."""
+        """At most so many rows from a row on.
+
+        Raises:
+            InputError: the first of them was taken out, and is asked for again.
+        """
         c = _row.c
         with self._reading() as connection:
             chosen = (c.number >= first) & (c.number < first + rows)
             found = connection.execute(select(_row).where(chosen).order_by(c.number)).all()
+        if first < self.rows and (not found or found[0].number != first):
+            raise InputError(
+                f"row {first} was taken in before, and the repository does not have it",
+                self._database.where,
+                "bring the repository back from a copy, or begin another twin",
+            )
         channels, measured = len(station.channels), len(station.measured)
         values = np.array([np.frombuffer(one.values, dtype="<f8") for one in found], dtype=float)
         values = values.reshape(len(found), channels + measured)

@@ -1,0 +1,101 @@
+"""A file of a twin that is lost is told of; rows that lack something are taken as they are."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rga
+from live_streams import SETTINGS, assert_same, history
+from rga import LiveTwin
+from rga.errors import InputError
+from rga.model import Model
+from rga.records import Record
+from rga.twin import Exclude
+
+Given = tuple[Model, Record]
+
+
+def test_a_repository_that_is_lost_is_told_of(sound: Given, taken_in: Callable[..., Path]) -> None:
+    place = taken_in(sound, 50)
+    for file in place.glob("twin.sqlite*"):
+        file.unlink()
+    with (
+        LiveTwin(place) as twin,
+        pytest.raises(InputError, match="row 0 was taken in before, and the repository does not"),
+    ):
+        twin.play()
+
+
+def test_an_inbox_that_is_lost_is_told_of(sound: Given, taken_in: Callable[..., Path]) -> None:
+    place = taken_in(sound, 50)
+    for file in place.glob("inbox.sqlite*"):
+        file.unlink()
+    with rga.live(sound[0], place, settings=SETTINGS) as twin:
+        assert twin.feed(sound[1].rows(slice(50, 100))).new == 50
+        with pytest.raises(InputError, match="not those that the run began with"):
+            twin.play()
+
+
+def test_all_rows_may_be_fed_again_into_a_new_inbox(
+    sound: Given, taken_in: Callable[..., Path], tmp_path: Path
+) -> None:
+    place = taken_in(sound, 50)
+    for file in place.glob("inbox.sqlite*"):
+        file.unlink()
+    with rga.live(sound[0], place, settings=SETTINGS) as twin:
+        twin.feed(sound[1])
+        twin.play()
+        with LiveTwin(taken_in(sound, 100)) as other:
+            assert_same(history(twin), history(other))
+
+
+def test_a_twin_that_has_not_begun_says_so(sound: Given, tmp_path: Path) -> None:
+    with (
+        rga.live(sound[0], tmp_path, settings=SETTINGS) as twin,
+        pytest.raises(InputError, match="it has not begun"),
+    ):
+        assert twin.twin
+
+
+@pytest.mark.parametrize("how", ["empty", "absent"])
+def test_a_channel_that_a_frame_lacks_is_missing(
+    how: str, sound: Given, taken_in: Callable[..., Path]
+) -> None:
+    _model, record = sound
+    frame = record.rows(slice(50, 60)).to_frame()
+    dead = record.sensors[2]
+    frame = frame.drop(dead) if how == "absent" else frame.with_columns(**{dead: None})
+    with LiveTwin(taken_in(sound, 50)) as twin:
+        for row in frame.iter_slices(1):
+            assert twin.feed(row).new == 1
+        twin.play()
+        found = twin.twin.record.readings
+    assert np.isnan(found[50:60, 2]).all()
+    others = [number for number in range(len(record.sensors)) if number != 2]
+    np.testing.assert_array_equal(found[50:60, others], record.readings[50:60, others])
+
+
+def test_the_last_sensor_cannot_be_excluded(sound: Given, taken_in: Callable[..., Path]) -> None:
+    with LiveTwin(taken_in(sound, 50)) as twin:
+        for name in sound[1].sensors:
+            twin.ask(Exclude(who="Ada", sensor=name))
+        twin.play()
+        outcomes = [one.outcome for one in twin.twin.commands()]
+    assert ["refused" in one for one in outcomes] == [False] * (len(outcomes) - 1) + [True]
+    assert "no sensor would be left" in outcomes[-1]
+
+
+def test_a_time_with_a_zone_is_no_time_of_rows_without(
+    sound: Given, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: dict[str, Any] = {**vars(sound[1]), "start": "2026-03-01T00:00:00"}
+    record = Record(**given | {"time_format": "iso"})
+    with rga.live(sound[0], tmp_path, settings=SETTINGS) as twin:
+        twin.feed(record)
+        twin.ask(Exclude(who="Ada", sensor="D1", since="2026-03-01T09:00:00+01:00"))
+        twin.play()
+        (command,) = twin.twin.commands()
+    assert "refused: the rows have no time zone" in command.outcome
