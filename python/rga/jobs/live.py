@@ -298,7 +298,8 @@ def live(
         known = inbox.name(wanted)
     finally:
         inbox.close()
-    if others := [one for one in vars(wanted) if getattr(known, one) != getattr(wanted, one)]:
+    compared = ("name", "model", "settings", "seed")
+    if others := [one for one in compared if getattr(known, one) != getattr(wanted, one)]:
         raise InputError(
             f"a live twin with another {' and '.join(others)} is here",
             str(directory),

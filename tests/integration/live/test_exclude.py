@@ -157,20 +157,3 @@ def test_it_stays_out_of_use_when_the_twin_is_taken_up_again(sound: Given, tmp_p
     assert kinds(found.events).count("recalibration") == 3
     assert "alarm" not in kinds(found.events)
     assert "diagnosis" not in kinds(found.events)
-
-
-def test_without_any_sensor_the_twin_goes_on(sound: Given, tmp_path: Path) -> None:
-    model, record = sound
-    with rga.live(model, tmp_path, settings=SETTINGS) as twin:
-        twin.feed(record.rows(slice(0, BROKEN)))
-        twin.play()
-        for name in record.sensors:
-            twin.ask(Exclude(who="Ada", sensor=name))
-        twin.feed(broken(record))
-        twin.play()
-        twin.ask(Recalibrate(who="Ada"))
-        twin.play()
-        found = history(twin)
-    assert np.isnan(found.gaps[BROKEN:]).all()
-    assert np.isfinite(found.simulated[BROKEN:]).all()
-    assert "alarm" not in kinds(found.events)

@@ -15,8 +15,6 @@ from rga.twin.settings import Pace
 
 PLACE = "command"
 DECISIONS = ("accept", "reject")
-#: how the outcome of a command begins that could not be carried out
-REFUSED = "refused: "
 
 
 class CommandDesk:
@@ -53,16 +51,13 @@ class CommandDesk:
         body = _body(command)
         if isinstance(command, Accept | Reject):
             body["proposal"] = self._open_proposal(command.proposal).number
-        self._tell(command, body)
         outcome = self._done(command)
-        self._archive.keep_command(command, body, self._row, outcome)
+        self._keep(command, body, outcome)
         return outcome
 
     def refuse(self, command: AnyCommand, why: str) -> None:
         """Keep that a command could not be carried out."""
-        outcome = f"{REFUSED}{why}"
-        self._tell(command, _body(command), f": {outcome}")
-        self._archive.keep_command(command, _body(command), self._row, outcome)
+        self._keep(command, _body(command) | {"refused": True}, f"refused: {why}")
 
     def _done(self, command: AnyCommand) -> str:
         if isinstance(command, Accept):
@@ -162,9 +157,7 @@ class CommandDesk:
         decided = [
             one
             for one in self._archive.run.commands()
-            if one.kind in DECISIONS
-            and one.body == {"proposal": last.number}
-            and not one.outcome.startswith(REFUSED)
+            if one.kind in DECISIONS and one.body == {"proposal": last.number}
         ]
         if decided:
             words = f"proposal {last.number} was decided by {decided[-1].who}: {decided[-1].kind}"
@@ -175,10 +168,10 @@ class CommandDesk:
     def _row(self) -> int:
         return max(0, self._analysis.standing.row - 1)
 
-    def _tell(self, command: AnyCommand, body: dict[str, Any], more: str = "") -> None:
-        about = "".join(f", {name} {value}" for name, value in body.items() if value is not None)
+    def _keep(self, command: AnyCommand, body: dict[str, Any], outcome: str) -> None:
+        self._archive.keep_command(command, body, self._row, outcome)
         why = f" ({command.why})" if command.why else ""
-        words = f"{command.who} asked to {command.kind}{about}{why}{more}"
+        words = f"{command.who} asked to {command.kind}{why}: {outcome}"
         self._analysis.event("command", self._row, words)
 
     def _check_calibrated(self) -> None:

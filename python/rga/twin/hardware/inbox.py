@@ -29,7 +29,6 @@ from sqlalchemy import (
 )
 
 from rga.arrays import FloatArray
-from rga.errors import InputError
 from rga.twin.hardware.interface import Packet, Station
 from rga.twin.repository.faults import as_input_errors
 from rga.twin.repository.sqlite import SQLite
@@ -195,26 +194,17 @@ class Inbox:
             connection.execute(update(_station).values(ended=True))
 
     def packet(self, station: Station, first: int, rows: int) -> Packet:
-        """At most so many rows from a row on.
-
-        Raises:
-            InputError: the first of them was taken out, and is asked for again.
-        """
+        """Of so many rows from a row on, those that are here."""
         c = _row.c
         with self._reading() as connection:
             chosen = (c.number >= first) & (c.number < first + rows)
             found = connection.execute(select(_row).where(chosen).order_by(c.number)).all()
-        if first < self.rows and (not found or found[0].number != first):
-            raise InputError(
-                f"row {first} was taken in before, and the repository does not have it",
-                self._database.where,
-                "bring the repository back from a copy, or begin another twin",
-            )
         channels, measured = len(station.channels), len(station.measured)
         values = np.array([np.frombuffer(one.values, dtype="<f8") for one in found], dtype=float)
         values = values.reshape(len(found), channels + measured)
         time = np.array([one.time for one in found], dtype=float)
-        return Packet(first, time, values[:, :channels], values[:, channels:])
+        begun = found[0].number if found else first
+        return Packet(begun, time, values[:, :channels], values[:, channels:])
 
     def drop(self, rows: int) -> None:
         """Forget the first so many rows that have ever arrived."""

@@ -42,8 +42,19 @@ class Live:
         return self._inbox.ended
 
     def packet(self, first: int, rows: int) -> Packet:
-        """At most so many rows from a row on."""
-        return self._inbox.packet(self.station, first, rows)
+        """At most so many rows from a row on.
+
+        Raises:
+            InputError: the first of them was taken in before, and is asked for again.
+        """
+        packet = self._inbox.packet(self.station, first, rows)
+        if first < self.rows and (packet.first != first or not len(packet.time)):
+            raise InputError(
+                f"row {first} was taken in before, and the repository does not have it",
+                f"twin {self.source!r}",
+                "bring the repository back from a copy, or begin another twin",
+            )
+        return packet
 
     def taken(self, rows: int) -> None:
         """So many rows are in the repository: the inbox need not keep them."""
