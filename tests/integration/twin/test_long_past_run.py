@@ -28,8 +28,10 @@ def test_a_run_taken_up_diagnoses_the_same_chosen_rows(tmp_path: Path, sinks: fl
             run.step()
         told, kinds = run.findings(), {event.kind for event in run.history().events}
     assert ({"alarm", "version"} <= kinds) == bool(told.causes) == bool(sinks)
-    assert f"diagnosed were {MOST} of {ROWS} rows, 4 on end: " in " ".join(told.warnings)
+    # Where nothing happened rows are taken evenly.
+    words = f"diagnosed were {MOST} of {ROWS} rows, 4 on end: "
+    assert (words in " ".join(told.warnings)) == bool(sinks)
     assert len(told.account.record) <= MOST < told.account.recorded == ROWS
-    assert told.account.record.time[-1] == STEP * (ROWS - 1)
+    assert told.account.record.time[-1] >= STEP * (ROWS - 2)
     with taken_up(model(), record, tmp_path, SETTINGS, 1) as again:
         assert again.findings().to_json() == again.stored_findings().to_json() == told.to_json()

@@ -72,8 +72,12 @@ def test_an_event_at_the_last_row_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize("law", ["linear", "smooth"])
-def test_what_shows_from_row_to_row_is_seen_in_whole_stretches(law: str) -> None:
+def test_what_shows_from_row_to_row_is_seen_in_whole_stretches(
+    law: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     loads = with_law(law)
+    assert len(chosen(past("temperature", "east load"), loads, LATE)[0]) == ROWS
+    monkeypatch.setattr("rga.twin.past.chosen_past.WHOLE", ROWS - 1)
     record, words = chosen(past("temperature", "east load"), loads, LATE)
     assert "whole stretches, as west load depends on the rows before" in words
     assert len(record) <= MOST
@@ -82,7 +86,10 @@ def test_what_shows_from_row_to_row_is_seen_in_whole_stretches(law: str) -> None
     assert "whole stretches" not in chosen(past(), loads, LATE)[1]
 
 
-def test_an_effect_that_remembers_is_seen_in_whole_stretches() -> None:
+def test_an_effect_that_remembers_is_seen_in_whole_stretches(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("rga.twin.past.chosen_past.WHOLE", ROWS - 1)
     told = content()
     told["effects"]["late warmth"] = {"kind": "clock_lag", "time": 600.0}
     words = chosen(past(), read_model(told, "site"), LATE)[1]

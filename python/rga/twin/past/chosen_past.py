@@ -30,8 +30,8 @@ def chosen_past(
 ) -> ChosenRows:
     """The rows of a past that a diagnosis is to see: all, or at most a number.
 
-    Nothing is chosen where nothing happened and the past is not very long: a diagnosis takes rows
-    evenly then.
+    Nothing is chosen of a past that is not very long where nothing happened, or where a row tells
+    only with those before it: a diagnosis takes rows evenly then.
 
     Args:
         model: as it was given.
@@ -49,9 +49,9 @@ def chosen_past(
     zeros = [rows_within(past.time, zero) for zero in zeros_of(model, past) if zero is not None]
     # What a diagnosis of the last row finds marks that row itself, and must not change its rows.
     marks = [one.row for one in events if one.kind in BEGINNINGS and one.row < rows - 1]
-    if rows <= most or (not marks and rows <= WHOLE):
-        return ChosenRows(np.arange(rows), "")
     together = _together(model, past)
+    if rows <= most or (rows <= WHOLE and (together or not marks)):
+        return ChosenRows(np.arange(rows), "")
     choice = chosen_rows(
         rows,
         np.column_stack([np.zeros((rows, 0)), *(past.contexts[name] for name in names)]),
