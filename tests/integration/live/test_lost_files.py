@@ -78,10 +78,14 @@ def test_a_channel_that_a_frame_lacks_is_missing(
     np.testing.assert_array_equal(found[50:60, others], record.readings[50:60, others])
 
 
-def test_the_last_sensor_cannot_be_excluded(sound: Given, taken_in: Callable[..., Path]) -> None:
+@pytest.mark.parametrize("first", [None, 1e6])
+def test_the_last_sensor_cannot_be_excluded(
+    first: float | None, sound: Given, taken_in: Callable[..., Path]
+) -> None:
+    """Neither now nor at a time at which all others are out of use."""
     with LiveTwin(taken_in(sound, 50)) as twin:
-        for name in sound[1].sensors:
-            twin.ask(Exclude(who="Ada", sensor=name))
+        for number, name in enumerate(sound[1].sensors):
+            twin.ask(Exclude(who="Ada", sensor=name, since=None if number else first))
         twin.play()
         outcomes = [one.outcome for one in twin.twin.commands()]
     assert ["refused" in one for one in outcomes] == [False] * (len(outcomes) - 1) + [True]

@@ -9,6 +9,7 @@ from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.commands.command import Accept, AnyCommand, Command, Exclude, Note, Reject, Rollback
+from rga.twin.commands.exclusion import leaves_none
 from rga.twin.hardware.interface import Station
 from rga.twin.repository import Proposal
 from rga.twin.settings import Pace
@@ -107,15 +108,10 @@ class CommandDesk:
         until = None if command.until is None else seconds(command.until)
         if until is not None and not until > since:
             raise InputError("it ends before it begins", PLACE, "give a later time to end it")
-        out = {
-            name
-            for name, begun, ended in standing.excluded
-            if begun <= since and (ended is None or ended > since)
-        }
-        if out | {command.sensor} >= set(self._station.channels):
+        excluded = (*standing.excluded, (command.sensor, since, until))
+        if leaves_none(self._station.channels, excluded):
             raise InputError("no sensor would be left", PLACE, "leave one of them in use")
-        standing.excluded = (*standing.excluded, (command.sensor, since, until))
-        self._archive.excluded = standing.excluded
+        standing.excluded = self._archive.excluded = excluded
         self._calibration.read_again(standing)
         begin = "now" if command.since is None else str(command.since)
         end = "on" if command.until is None else f"to {command.until}"

@@ -31,3 +31,22 @@ def without_excluded(
         out = (clock >= since) & (clock < (np.inf if until is None else until))
         used[out, channels.index(sensor)] = np.nan
     return used
+
+
+def leaves_none(channels: Sequence[str], excluded: Sequence[Excluded]) -> bool:
+    """Whether at some time no sensor is in use.
+
+    Args:
+        channels: names of the sensors.
+        excluded: what is out of use.
+
+    >>> late = [("D1", 100.0, None), ("D2", 50.0, 90.0)]
+    >>> leaves_none(["D1", "D2"], late), leaves_none(["D1", "D2"], [*late, ("D2", 95.0, None)])
+    (False, True)
+    """
+    # Where none is in use, it begins with one of the exclusions.
+    return any(
+        {name for name, begun, end in excluded if begun <= moment and (end is None or end > moment)}
+        >= set(channels)
+        for _, moment, _ in excluded
+    )
