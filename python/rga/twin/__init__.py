@@ -5,7 +5,15 @@ from rga.lazy import needing_extras
 with needing_extras():
     from rga.twin.calibration.estimator import ContextEstimator
     from rga.twin.calibration.lesson import Lesson
-    from rga.twin.commands.command import Accept, Exclude, Note, Recalibrate, Reject, Rollback
+    from rga.twin.commands.command import (
+        Accept,
+        Exclude,
+        Forget,
+        Note,
+        Recalibrate,
+        Reject,
+        Rollback,
+    )
     from rga.twin.history import Event, History, Version
     from rga.twin.outcome import Outcome
     from rga.twin.settings import Settings
@@ -16,6 +24,7 @@ __all__ = [
     "ContextEstimator",
     "Event",
     "Exclude",
+    "Forget",
     "History",
     "Lesson",
     "Note",

@@ -30,8 +30,8 @@ from rga.twin.versions import Effects, first_row_under
 WORSE = 1.25
 #: of the gap to expect, that may stay after a recalibration whatever the calibration left [-]
 LEAST_ALLOWED = 0.1
-#: rows that a new version learns from at the least
-LEAST_LEARNED = 10
+#: rows that a new version learns from, at the least and at the most
+LEAST_LEARNED, MOST_LEARNED = 10, 20_000
 
 
 class RealityGapAnalysis:
@@ -84,8 +84,9 @@ class RealityGapAnalysis:
                 near = spacing(stored[:, latent], width)
                 self.standing.distinct = self._settings.distinct or near
             if answer.blind:
-                unseen = ", ".join(answer.blind)
-                words = f"no channel sees {unseen}: held in the middle of the range"
+                words = (
+                    f"no channel sees {', '.join(answer.blind)}: held in the middle of the range"
+                )
                 self.event("calibration", 0, words)
             self.standing.stage = "gather"
         return answer
@@ -313,9 +314,8 @@ class RealityGapAnalysis:
     def _change_version(self, first: int | None, **change: Any) -> None:
         """Q1 with an update or a rollback; a gap that rises by a quarter takes an update back."""
         standing, calibration = self.standing, self._calibration
-        if first is None:
-            first = self._under_the_same(change.get("effects", {}))
-        recent = (first, standing.row)
+        first = self._under_the_same(change.get("effects", {})) if first is None else first
+        recent = (max(first, standing.forgotten, standing.row - MOST_LEARNED), standing.row)
         before, old = calibration.rows.gap(*recent), self._exchange.twin.state.version
         kept = calibration.learned, calibration.sound
         answer = self.ask_twin(**change)

@@ -40,6 +40,8 @@ class Standing(BaseModel):
         ended: whether no more rows will come.
         excluded: readings that are not used: a sensor, and the clock from and to which [s]; None:
             it goes on.
+        keep: latest rows whose readings are kept; None: all are.
+        forgotten: rows before which readings are forgotten, but for those of the calibration.
         commanded: number of the last command that was taken from the inbox.
         doubted: whether a recalibration did not bring the gap down and nothing has explained it.
     """
@@ -67,5 +69,7 @@ class Standing(BaseModel):
     about_change: bool = False
     ended: bool = False
     excluded: tuple[Excluded, ...] = ()
+    keep: int | None = None
+    forgotten: int = 0
     commanded: int = 0
     doubted: bool = False

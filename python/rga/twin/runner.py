@@ -27,6 +27,7 @@ from rga.twin.past.past_diagnosis import PastDiagnosis
 from rga.twin.repository import Identity, Repository, Run
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.restore import given_model, history_of
+from rga.twin.rows.retention import forget_what_is_old
 from rga.twin.settings import Settings
 from rga.twin.versions import beyond, with_ends, written
 
@@ -138,7 +139,7 @@ class Running:
             self._archive, self._twin, self.analysis, self.calibration, model, learn is not None
         )
         self._desk = CommandDesk(
-            self.analysis, self._archive, self.calibration, station, self._pace
+            self.analysis, self._archive, self.calibration, station, settings, self._pace
         )
         if self._checkpoint.take_up():
             self.resumed_at = self.row
@@ -219,6 +220,7 @@ class Running:
         else:
             with self._archive.step():
                 self._advance()
+                forget_what_is_old(self.analysis.standing, self._archive, self.calibration.ledger)
                 self._checkpoint.keep()
             self._hardware.taken(len(self.calibration.ledger))
             self._progress("stream", self.row / max(1, self.rows))
@@ -368,9 +370,7 @@ class Running:
     def _ask_diagnosis(self) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along."""
         analysis = self.analysis
-        return self._diagnosis.ask(
-            self.row, analysis.standing.calibrated, analysis.changed, self.calibration.given
-        )
+        return self._diagnosis.ask(analysis.standing, analysis.changed, self.calibration.given)
 
     def _label(self, row: int) -> str | float:
         if not len(self.calibration.ledger):

@@ -33,6 +33,7 @@ class Status:
         version: number of the model version in force.
         causes: effects that it has beyond the model as given, in words.
         out_of_sync: whether an alarm is being dealt with.
+        forgotten: first and last of the rows whose readings are forgotten; None: none are.
         acknowledged_at: wall clock at the last step, UTC, as ISO 8601 text.
         events: the latest, in the order in which they happened.
     """
@@ -44,6 +45,7 @@ class Status:
     version: int
     causes: tuple[str, ...]
     out_of_sync: bool
+    forgotten: tuple[int, int] | None
     acknowledged_at: str
     events: tuple[Event, ...]
 
@@ -52,10 +54,15 @@ class Status:
         last = "" if self.time is None else f", the last of {_moment(self.time)}"
         causes = f" with {', '.join(self.causes)}" if self.causes else ""
         state = "out of sync" if self.out_of_sync else "no alarm is open"
+        gone = []
+        if self.forgotten is not None:
+            first, end = self.forgotten
+            gone.append(f"Readings of rows {first} to {end} are forgotten.")
         return "\n".join(
             [
                 f"{self.structure}: {self.rows} rows{last}; {NEXT[self.stage]}.",
                 f"Model version {self.version} is in force{causes}; {state}.",
+                *gone,
                 *(f"row {one.row:>6}  {one.kind}: {one.words}" for one in self.events),
                 f"Last step: {self.acknowledged_at}.",
             ]

@@ -158,6 +158,14 @@ class Twin:
         """The rows that it has taken in."""
         return record_of(self._view)
 
+    @property
+    def forgotten(self) -> tuple[int, int] | None:
+        """First and last of the rows whose readings were forgotten as asked; None: none were."""
+        standing = standing_of(self._view)
+        if standing.forgotten <= standing.calibrated:
+            return None
+        return standing.calibrated, standing.forgotten - 1
+
     def status(self) -> Status:
         """Where the run stands."""
         standing, row = standing_of(self._view), self._view.row
@@ -171,6 +179,7 @@ class Twin:
             version=self.version,
             causes=tuple(effect_words(one) for one in effects.values()),
             out_of_sync=standing.alarm is not None,
+            forgotten=self.forgotten,
             acknowledged_at=self._view.acknowledged_at,
             events=self._view.events()[-SHOWN:],
         )

@@ -18,9 +18,12 @@ def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
     from rga.twin import Twin
 
     with Twin.open(place) as twin:
-        record = twin.record
+        record, gone = twin.record, twin.forgotten
     record.write(output)
     contexts = f" and {len(record.contexts)} contexts" if record.contexts else ""
+    if gone is not None:
+        words = f"warning: readings of rows {gone[0]} to {gone[1]} are forgotten, and empty there"
+        typer.echo(words, err=True)
     typer.echo(
         f"{counted(len(record), 'row')} of {len(record.sensors)} sensors{contexts} are in {output}."
     )

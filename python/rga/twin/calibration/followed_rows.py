@@ -21,6 +21,10 @@ from rga.twin.rows.recent import RecentRows
 from rga.twin.rows.summaries import RowSummaries
 from rga.twin.simulation_model import SimulationModel
 
+#: rows before a packet that tell of its contexts which keep their value or change slowly; they
+#: are in memory
+LEAD = 31 * BLOCK
+
 
 class FollowedRows:
     """The rows so far, with the contexts that were inferred and what was simulated there.
@@ -168,8 +172,10 @@ class FollowedRows:
         """All contexts of rows and their standard deviations, float[rows, contexts] each."""
         latent = self.latent
         laws = [self._laws[column] for column in latent]
-        remembers = estimator.remembers or any(one.law != "independent" for one in laws)
-        begin = 0 if remembers else first - first % BLOCK
+        begin = 0
+        if not estimator.remembers and all(one.law != "linear" for one in laws):
+            lead = 0 if all(one.law == "independent" for one in laws) else LEAD
+            begin = max(0, first - first % BLOCK - lead)
         contexts, spread = self._prior(first, end)
         contexts[:, latent], spread[:, latent] = estimator.infer(
             first - begin,

@@ -86,13 +86,27 @@ class Recalibrate(Command):
     kind: Literal["recalibrate"] = "recalibrate"
 
 
+class Forget(Command):
+    """Keep the readings of the latest rows alone from now on, beside those of the calibration.
+
+    Forgotten for good are readings, what was simulated for them, and gaps. Times, contexts, the
+    log, events, findings and versions stay, and so do rows that an alarm is about.
+
+    Attributes:
+        keep: rows whose readings stay; None: nothing more is forgotten.
+    """
+
+    kind: Literal["forget"] = "forget"
+    keep: Number | None
+
+
 class Note(Command):
     """Write something into the log."""
 
     kind: Literal["note"] = "note"
 
 
-AnyCommand = Accept | Reject | Rollback | Exclude | Recalibrate | Note
+AnyCommand = Accept | Reject | Rollback | Exclude | Recalibrate | Forget | Note
 
 _ADAPTER: TypeAdapter[AnyCommand] = TypeAdapter(Annotated[AnyCommand, Field(discriminator="kind")])
 

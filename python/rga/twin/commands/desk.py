@@ -5,14 +5,24 @@ from typing import Any
 
 from rga.errors import InputError
 from rga.model.effect import seconds
+from rga.quantities import counted
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
-from rga.twin.commands.command import Accept, AnyCommand, Command, Exclude, Note, Reject, Rollback
+from rga.twin.commands.command import (
+    Accept,
+    AnyCommand,
+    Command,
+    Exclude,
+    Forget,
+    Note,
+    Reject,
+    Rollback,
+)
 from rga.twin.commands.exclusion import leaves_none
 from rga.twin.hardware.interface import Station
 from rga.twin.repository import Proposal
-from rga.twin.settings import Pace
+from rga.twin.settings import Pace, Settings
 
 PLACE = "command"
 DECISIONS = ("accept", "reject")
@@ -26,6 +36,7 @@ class CommandDesk:
         archive: keeps proposals and commands.
         calibration: reads the rows.
         station: what is mounted on the structure.
+        settings: of the run.
         pace: how many rows a recalibration learns from.
     """
 
@@ -35,10 +46,14 @@ class CommandDesk:
         archive: Archive,
         calibration: ContextCapture,
         station: Station,
+        settings: Settings,
         pace: Pace,
     ) -> None:
         self._analysis, self._archive = analysis, archive
         self._calibration, self._station, self._pace = calibration, station, pace
+        # A diagnosis analyses so many, and a recalibration learns from them.
+        learned = pace.calibration_rows + pace.settle + pace.packet
+        self._least_kept = max(settings.criteria.record.most_rows, learned)
 
     def carry_out(self, command: AnyCommand) -> str:
         """Do what is asked, and keep it with what came of it.
@@ -69,6 +84,8 @@ class CommandDesk:
             return self._roll_back(command.version)
         if isinstance(command, Exclude):
             return self._exclude(command)
+        if isinstance(command, Forget):
+            return self._forget(command.keep)
         if isinstance(command, Note):
             return "noted"
         return self._recalibrate()
@@ -116,6 +133,24 @@ class CommandDesk:
         begin = "now" if command.since is None else str(command.since)
         end = "on" if command.until is None else f"to {command.until}"
         return f"{command.sensor} is not used from {begin} {end}"
+
+    def _forget(self, keep: int | None) -> str:
+        if keep is not None and keep < self._least_kept:
+            raise InputError(
+                f"{keep} rows are fewer than the {self._least_kept} that the twin learns from "
+                "and a diagnosis analyses",
+                PLACE,
+                "keep more",
+            )
+        learned = self._calibration.learned
+        if keep is not None and learned is not None and learned.remembers:
+            raise InputError("what infers contexts looks at all rows", PLACE, "keep all of them")
+        self._analysis.standing.keep = keep
+        return (
+            "all readings are kept from now on"
+            if keep is None
+            else f"readings are kept of the latest {counted(keep, 'row')} and of the calibration"
+        )
 
     def _check_moments(self, *moments: float | str | None) -> None:
         """Whether times are written as the rows write theirs.

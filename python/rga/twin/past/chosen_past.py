@@ -27,6 +27,7 @@ def chosen_past(
     calibrated: int,
     most: int,
     seed: int,
+    forgotten: int = 0,
 ) -> ChosenRows:
     """The rows of a past that a diagnosis is to see: all, or at most a number.
 
@@ -40,6 +41,7 @@ def chosen_past(
         calibrated: rows of the first calibration.
         most: rows that a diagnosis analyses.
         seed: of the choice.
+        forgotten: rows before which only those of the calibration still have readings.
 
     Raises:
         InputError: a channel was zeroed outside the times of the record.
@@ -50,8 +52,13 @@ def chosen_past(
     # What a diagnosis of the last row finds marks that row itself, and must not change its rows.
     marks = [one.row for one in events if one.kind in BEGINNINGS and one.row < rows - 1]
     together = _together(model, past)
-    if rows <= most or (rows <= WHOLE and (together or not marks)):
-        return ChosenRows(np.arange(rows), "")
+    gone = (np.arange(rows) >= calibrated) & (np.arange(rows) < forgotten)
+    told = []
+    if gone.any():
+        told.append(f"readings of rows {calibrated} to {forgotten - 1} are forgotten")
+    left = rows - int(gone.sum())
+    if left <= most or (left <= WHOLE and (together or not marks)):
+        return ChosenRows(np.flatnonzero(~gone), "; ".join(told))
     choice = chosen_rows(
         rows,
         np.column_stack([np.zeros((rows, 0)), *(past.contexts[name] for name in names)]),
@@ -61,12 +68,14 @@ def chosen_past(
         most,
         seed,
         zero=np.unique(np.concatenate(zeros)) if zeros else None,
+        gone=gone,
         on_end=max(ON_END, most // STRETCHES) if together else ON_END,
     )
-    words = f"diagnosed were {choice.words}"
+    told.insert(0, f"diagnosed were {choice.words}")
     if together:
-        words += f"; these are whole stretches, as {', '.join(together)} depends on the rows before"
-    return replace(choice, words=words)
+        looking_back = ", ".join(together)
+        told.insert(1, f"these are whole stretches, as {looking_back} depends on the rows before")
+    return replace(choice, words="; ".join(told))
 
 
 def with_choice(findings: Findings, words: str, rows: int) -> Findings:

@@ -43,6 +43,7 @@ def chosen_rows(
     seed: int,
     *,
     zero: IntArray | None = None,
+    gone: BoolArray | None = None,
     on_end: int = ON_END,
 ) -> ChosenRows:
     """Choose rows of a past: all, or at most a number.
@@ -60,6 +61,7 @@ def chosen_rows(
         most: rows that may be chosen.
         seed: of the choice among rows under the same conditions.
         zero: rows whose mean was taken off the channels, int[m]; None: there are none.
+        gone: rows that cannot be chosen, bool[rows]; None: none. The first can be.
         on_end: rows of a run.
 
     >>> warmth = np.linspace(0.0, 30.0, 1000)[:, None]
@@ -77,10 +79,11 @@ def chosen_rows(
     >>> chosen_rows(1000, warmth, np.array([[0.0, 30.0]]), [950], 100, 1000, seed=0).words
     ''
     """
-    if rows <= most:
-        return ChosenRows(np.arange(rows), "")
+    gone = np.zeros(rows, dtype=bool) if gone is None else gone
+    if np.count_nonzero(~gone) <= most:
+        return ChosenRows(np.flatnonzero(~gone), "")
     on_end = min(on_end, most)
-    runs = _Runs(-(-rows // on_end), most // on_end)
+    runs = _Runs(np.logical_or.reduceat(gone, np.arange(0, rows, on_end)), most // on_end)
     # What counts from the first row needs it.
     runs.take(np.zeros(1, dtype=np.int64), 1)
     told = []
@@ -120,13 +123,14 @@ class _Runs:
     """Runs of rows that follow one another, and which are taken.
 
     Args:
-        count: how many there are.
+        gone: those that cannot be taken, bool[runs].
         most: how many may be taken.
     """
 
-    def __init__(self, count: int, most: int) -> None:
-        self.count, self.most = count, most
-        self._taken: BoolArray = np.zeros(count, dtype=bool)
+    def __init__(self, gone: BoolArray, most: int) -> None:
+        self.count, self.most = len(gone), most
+        self._free: BoolArray = ~gone
+        self._taken: BoolArray = np.zeros(len(gone), dtype=bool)
 
     @property
     def left(self) -> int:
@@ -139,13 +143,13 @@ class _Runs:
 
     def take(self, wanted: IntArray, number: int) -> int:
         """Take the first of some that are not yet taken; how many these were."""
-        free = wanted[~self._taken[wanted]][: min(number, self.left)]
-        self._taken[free] = True
+        free = wanted[self._free[wanted]][: min(number, self.left)]
+        self._free[free], self._taken[free] = False, True
         return len(free)
 
     def take_evenly(self, wanted: IntArray, number: int) -> int:
         """Take some that are not yet taken, evenly; how many these were."""
-        free = wanted[~self._taken[wanted]]
+        free = wanted[self._free[wanted]]
         number = min(number, self.left, len(free))
         middle = (2 * np.arange(number) + 1) * len(free) // max(2 * number, 1)
         return self.take(free[middle], number)

@@ -15,6 +15,7 @@ from rga.twin.hardware.interface import HardwareInterface
 from rga.twin.hardware.recorded import Recorded
 from rga.twin.past.chosen_past import chosen_past, with_choice
 from rga.twin.restore import chosen_record, times_and_contexts
+from rga.twin.run_state import Standing
 
 
 class PastDiagnosis:
@@ -41,23 +42,21 @@ class PastDiagnosis:
         self._model, self._hardware, self._archive = model, hardware, archive
         self._criteria, self._seed, self._progress = criteria, seed, progress
 
-    def ask(
-        self, rows: int, calibrated: int, changed: bool, given: ContextEstimator | None
-    ) -> Findings:
+    def ask(self, standing: Standing, changed: bool, given: ContextEstimator | None) -> Findings:
         """What has changed since the calibration, if it has; else what was wrong all along.
 
         Args:
-            rows: of the past.
-            calibrated: rows of the first calibration.
+            standing: where the run stands.
             changed: whether something seems to have changed since.
             given: what the calibration learned about the model as it was given.
 
         Raises:
             InputError: the rows cannot be diagnosed.
         """
+        rows, calibrated = standing.row, standing.calibrated
         model, criteria, past = self._model, self._criteria, self._past(rows)
         events, most = self._archive.run.events(), criteria.record.most_rows
-        choice = chosen_past(model, past, events, calibrated, most, self._seed)
+        choice = chosen_past(model, past, events, calibrated, most, self._seed, standing.forgotten)
         record = self._archive.used(self._chosen(past, choice.rows))
         if changed and given is not None and given.found is not None:
             assert given.correction is not None

@@ -1,6 +1,6 @@
 """Rows of arrays as chunks of little-endian float64 bytes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -47,3 +47,17 @@ def unpack(packed: bytes, count: int) -> FloatArray:
     """
     values = np.frombuffer(packed, dtype="<f8").astype(np.float64)
     return values.reshape(count, len(values) // count)
+
+
+def one_after_another(parts: Sequence[FloatArray]) -> FloatArray:
+    """The rows of several arrays, float[n, width]; NaN where one has rows and no columns.
+
+    >>> one_after_another([np.ones((1, 2)), np.zeros((1, 0))])
+    array([[ 1.,  1.],
+           [nan, nan]])
+    """
+    width = max((part.shape[1] for part in parts), default=0)
+    missing = [np.full((len(part), width - part.shape[1]), np.nan) for part in parts]
+    return np.concatenate(
+        [np.zeros((0, width)), *(np.hstack(both) for both in zip(parts, missing, strict=True))]
+    )

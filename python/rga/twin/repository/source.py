@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, sele
 
 from rga.arrays import FloatArray
 from rga.twin.repository import tables
-from rga.twin.repository.chunks import LONGEST, unpack
+from rga.twin.repository.chunks import LONGEST, one_after_another, unpack
 from rga.twin.repository.entries import Rows
 
 #: chunks that are loaded at a time
@@ -116,7 +116,7 @@ class Source:
             return stored, [np.zeros((0, 0)) for _ in names]
         # Chunks came as they were stored, rows of a later one perhaps within an earlier one.
         order = np.argsort(np.concatenate([np.flatnonzero(owner == number) for number in wanted]))
-        return stored, [np.concatenate(part)[order] for part in parts]
+        return stored, [one_after_another(part)[order] for part in parts]
 
     def step_at(self, row: int) -> int:
         """Number of the last step about rows up to this one; 0 where there is none."""
@@ -148,6 +148,4 @@ class Source:
 
 def joined(chunks: Sequence[Row[Any]], name: str) -> FloatArray:
     """The rows of chunks one after another, float[n, width]; float[0, 0] without chunks."""
-    if not chunks:
-        return np.zeros((0, 0))
-    return np.concatenate([unpack(getattr(chunk, name), chunk.length) for chunk in chunks])
+    return one_after_another([unpack(getattr(chunk, name), chunk.length) for chunk in chunks])

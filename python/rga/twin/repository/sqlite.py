@@ -53,6 +53,8 @@ class SQLite:
             check_same_thread=False,
         )
         if not self.read_only:
+            # Of a new file: less of its last page is left empty by what a step stores.
+            connection.execute("PRAGMA page_size = 2048")
             connection.execute("PRAGMA journal_mode = WAL")
         # What is acknowledged survives a power cut; fullfsync is what that takes on macOS.
         connection.execute("PRAGMA synchronous = FULL")

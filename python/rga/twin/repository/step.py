@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from sqlalchemy import Connection, Table, delete, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Table, delete, insert, select, update
 
 from rga.twin.repository import tables
 from rga.twin.repository.chunks import chunks
@@ -171,6 +171,22 @@ class Transaction:
     def keep(self, name: str, data: bytes, row: int) -> None:
         """What is asked for as of a time (weights, the state of the loop) under a name."""
         self._store(tables.kept, row, name=name, row=row, data=data)
+
+    def forget(self, first_row: int, end_row: int) -> None:
+        """Leave out readings and gaps of rows from one to before another, where chunks end.
+
+        What is read of them then is missing; times and contexts stay.
+        """
+        self._check_open()
+
+        def old(table: Table) -> ColumnElement[bool]:
+            c = table.c
+            inside = (c.first_row >= first_row) & (c.first_row < end_row)
+            return (c.run_id == self._run_id) & inside
+
+        measured = tables.measured
+        self._connection.execute(update(measured).where(old(measured)).values(readings=b""))
+        self._connection.execute(delete(tables.gap).where(old(tables.gap)))
 
     def proposal(
         self,

@@ -13,6 +13,7 @@ from sqlalchemy import ColumnElement, Row, func
 from rga.arrays import FloatArray
 from rga.twin.history import Event
 from rga.twin.repository import tables
+from rga.twin.repository.chunks import LONGEST, unpack
 from rga.twin.repository.entries import (
     Identity,
     Inferred,
@@ -91,12 +92,19 @@ class RunView:
         c = tables.measured.c
         return self._source.scalar(tables.measured, func.max(c.first_row + c.length)) or 0
 
+    def packet_end(self, row: int) -> int:
+        """The row behind the last packet of those that end before a row; 0 where there is none."""
+        c = tables.measured.c
+        behind = c.first_row + c.length
+        near = c.first_row > row - 2 * LONGEST
+        return self._source.scalar(tables.measured, func.max(behind), near, behind <= row) or 0
+
     def measured(self, first: int = 0, end: int | None = None) -> StoredReadings:
         """Rows of the record."""
         names = ("time", "readings", "contexts")
         rows, arrays, _ = self._source.rows(tables.measured, names, first, end, None)
         time, readings, contexts = arrays
-        return StoredReadings(rows, time.reshape(-1), readings, contexts)
+        return StoredReadings(rows, time.reshape(-1), self._of_all(readings), contexts)
 
     def times_and_contexts(self, end: int) -> StoredReadings:
         """The rows before one without their readings, which are float[n, 0]."""
@@ -115,7 +123,17 @@ class RunView:
         found, (time, readings, contexts) = self._source.chosen(
             tables.measured, ("time", "readings", "contexts"), wanted
         )
-        return StoredReadings(found, time.reshape(-1), readings, contexts)
+        return StoredReadings(found, time.reshape(-1), self._of_all(readings), contexts)
+
+    def _of_all(self, readings: FloatArray) -> FloatArray:
+        """Readings of all sensors, NaN where none are kept any more."""
+        if readings.shape[1] or not len(readings):
+            return readings
+        first = self._source.last(tables.measured, tables.measured.c.first_row == 0)
+        if first is None:
+            return readings
+        width = unpack(first.readings, first.length).shape[1]
+        return np.full((len(readings), width), np.nan)
 
     def inferred(
         self,

@@ -133,6 +133,13 @@ class RecentRows:
             kept.spread[:] = spread[begin - first :]
             kept.simulated[:] = simulated[begin - first :]
 
+    def forget(self, first: int, end: int) -> None:
+        """Leave out readings of rows from one to before another, and what was simulated there."""
+        begin = max(first, self._first)
+        if begin < end:
+            old = self._inside(begin, end)
+            old.readings[:] = old.simulated[:] = np.nan
+
     def rows(self, first: int, end: int) -> Stretch:
         """Rows from one to before another; not to be written to."""
         if first >= self._first:
