@@ -15,8 +15,7 @@ from rga.model import Model, as_model, model_of_text
 from rga.records import Record, RecordMapping, RecordSource
 from rga.records.frames import is_frame, table_of_frame
 from rga.twin.commands.command import AnyCommand, Command, read_command
-from rga.twin.hardware.inbox import FILE as INBOX
-from rga.twin.hardware.inbox import Addressee, Inbox
+from rga.twin.hardware.inbox import INBOX, Addressee, Inbox
 from rga.twin.hardware.interface import LIVE
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
@@ -293,6 +292,10 @@ def live(
         name or given.name, text, given.sha256 or digest, chosen.model_dump_json(), seed
     )
     place = made(Path(directory))
+    if repository is None and (place / FILE).exists() and not (place / INBOX).exists():
+        raise InputError(
+            "a run of a finished record is here", str(directory), "take another directory"
+        )
     inbox = Inbox(place)
     try:
         known = inbox.name(wanted)

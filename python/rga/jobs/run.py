@@ -10,6 +10,7 @@ from rga.model import Model, as_model
 from rga.outputs import write_run
 from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.calibration.estimator import Learn
+from rga.twin.hardware.inbox import INBOX
 from rga.twin.outcome import Outcome
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings, as_settings
@@ -61,6 +62,10 @@ def run(
     record, settings = as_record(record, model, mapping), as_settings(settings)
     check_length(record, settings.criteria.record)
     directory = made(Path(directory))
+    if (directory / INBOX).exists():
+        raise InputError(
+            "a twin that goes on is here", str(directory), "give another directory for this run"
+        )
     if repository is not None and "://" not in repository:
         raise InputError(
             f"{repository!r} is no URL of a database",

@@ -13,6 +13,7 @@ from rga.findings import Findings
 from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
+from rga.twin.commands.proposals import Proposals
 from rga.twin.hardware.interface import Station
 from rga.twin.history import Event, Kind
 from rga.twin.integration import Integration
@@ -62,16 +63,15 @@ class RealityGapAnalysis:
         self._exchange, self._archive, self._station = exchange, archive, station
         self._calibration, self._settings = calibration, settings
         self._pace, self._label = pace, label
-        self._policy = Policy.of(settings, pace)
+        self._policy, self._proposals = Policy.of(settings, pace), Proposals(archive)
         self._integration = Integration(exchange, archive, calibration, settings, self.event)
 
     @property
     def changed(self) -> bool:
         """Whether something seems to have changed since the calibration; at the end, had seemed."""
-        standing, state = self.standing, self._exchange.twin.state
-        if standing.stage in ("report", "done"):
-            return standing.about_change
-        return standing.doubted or bool(state.versions[state.version])
+        if self.standing.stage in ("report", "done"):
+            return self.standing.about_change
+        return self.standing.doubted or bool(self._exchange.twin.effects)
 
     def initialise(self) -> R1:
         """Q1: can the twin represent what a calibration needs? Then the design phase is filled."""
@@ -212,11 +212,11 @@ class RealityGapAnalysis:
             effects: what the extended model has beyond it.
             closing: no more rows will come.
         """
-        standing, state = self.standing, self._exchange.twin.state
+        standing = self.standing
         standing.about_change = self.changed
         self._archive.keep_findings(standing.row - 1, findings.to_json())
         self.event("diagnosis", standing.row - 1, findings.sentence())
-        held, in_force = findings.gap.held_out, state.versions[state.version]
+        held, in_force = findings.gap.held_out, self._exchange.twin.effects
         change = self._propose if self._settings.adopt == "ask" else self.adopt
         # What is named leaves a doubt until a version stands that has it.
         standing.diagnosed, standing.doubted = standing.row, not effects or effects != in_force
@@ -224,6 +224,8 @@ class RealityGapAnalysis:
             change(effects, held.gain, held.gain_ci90)
         elif in_force and not effects:
             change({}, None, None)
+        elif words := self._proposals.withdraw(standing.row - 1):
+            self.event("proposal", standing.row - 1, words)
         self._go_on()
         if closing:
             standing.stage = "report"
@@ -250,11 +252,9 @@ class RealityGapAnalysis:
     def _propose(
         self, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
     ) -> None:
-        row, causes = self.standing.row - 1, [effect_words(one) for one in effects.values()]
-        words = f"a model with {', '.join(causes)}" if causes else "the model as it was given"
-        number = self._archive.propose(row, words, effects, gain, gain_ci90)
+        row = self.standing.row - 1
         self.standing.proposed = self._under_the_same(effects)
-        self.event("proposal", row, f"proposal {number}: {words}")
+        self.event("proposal", row, self._proposals.add(row, effects, gain, gain_ci90))
 
     def _detect(self, first: int, end: int) -> None:
         alarm = self.synchrony.alarm(first, end, self._calibration.ledger.residuals)
@@ -297,9 +297,8 @@ class RealityGapAnalysis:
         calibration = self._calibration
         if calibration.learned is None:
             return
-        stored = self._archive.run.simulated(
-            version=self._exchange.twin.state.version, origin="novel"
-        ).contexts
+        version = self._exchange.twin.state.version
+        stored = self._archive.run.simulated(version=version, origin="novel").contexts
         if len(stored):
             around = np.stack([stored.min(axis=0), stored.max(axis=0)], axis=1)
             wanted = self._settings.design_rows // 8

@@ -87,6 +87,11 @@ class DigitalTwin:
         simulation = self.simulation(query.version)
         return simulation.draw(query) if isinstance(query, Q3) else simulation.follow(query)
 
+    @property
+    def effects(self) -> Effects:
+        """What the version in force has beyond the model as given."""
+        return self.state.versions[self.state.version]
+
     def model(self, version: int | None = None) -> Model:
         """The model of a version, of the one in force by default, without its correction."""
         return extended(self.given, self.state.versions[version or self.state.version])

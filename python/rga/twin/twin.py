@@ -15,9 +15,11 @@ from rga.records import Record
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.commands.command import AnyCommand, Rollback
 from rga.twin.digital_twin import TwinState
+from rga.twin.hardware.inbox import INBOX
 from rga.twin.history import History
 from rga.twin.messages.log_text import retold
 from rga.twin.repository import Proposal, Repository, RunView, StoredCommand
+from rga.twin.repository.faults import InUse
 from rga.twin.restore import (
     given_model,
     history_of,
@@ -243,7 +245,7 @@ def carry_out(place: str | Path, command: AnyCommand, source: str | None = None)
 
     Args:
         place: directory of a run, its file, or a database by URL.
-        command: of `rga.twin`: Accept, Reject, Rollback, Exclude, Recalibrate or Note.
+        command: of `rga.twin`: Accept, Reject, Rollback, Exclude, Recalibrate, Forget or Note.
         source: of the rows of the run, as of `Twin.open`.
 
     Returns:
@@ -252,8 +254,14 @@ def carry_out(place: str | Path, command: AnyCommand, source: str | None = None)
     Raises:
         InputError: it cannot be done, or the repository is in use.
     """
-    with reopened(place, source) as running:
-        return running.carry_out(command)
+    try:
+        with reopened(place, source) as running:
+            return running.carry_out(command)
+    except InUse as error:
+        if not (Path(place) / INBOX).is_file():
+            raise
+        remedy = "ask it by LiveTwin(...).ask, and whoever plays it carries it out"
+        raise InUse(error.what, error.where, remedy) from None
 
 
 def rollback(place: str | Path, version: int, who: str | None = None, why: str = "") -> Twin:

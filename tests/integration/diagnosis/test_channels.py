@@ -4,10 +4,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rga import Findings, Simulator, load_model, load_record
 from rga.diagnosis.preparation.prepare import prepare
+from rga.errors import InputError
 from rga.model import read_effect, read_model
 from rga.report import write_report
 from rga_bench.diagnosis.design import Draw
@@ -93,3 +95,34 @@ def test_a_swap_has_a_report(healthy: Case, diagnosed: Diagnosed, tmp_path: Path
     assert kinds(findings) == ["sensor_swap"]
     write_report(findings, tmp_path / "report.html")
     assert "w2" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def silenced(case: Case, silent: list[str]) -> Case:
+    """The case with channels that end with their first readings."""
+    dead = {name: case.channels[name].copy() for name in silent}
+    for column in dead.values():
+        column[5:] = np.nan
+    return replace(case, channels={**case.channels, **dead})
+
+
+def test_few_channels_without_a_reading_are_told_of(
+    healthy: Case, diagnosed: Diagnosed, tmp_path: Path
+) -> None:
+    silent = list(healthy.model["sensors"])[:2]
+    findings = diagnosed(silenced(healthy, silent))
+    assert findings.verdict == "nothing_wrong"
+    assert any(f"or hardly any: {', '.join(silent)}; " in one for one in findings.warnings)
+    assert not set(silent) & set(findings.gap.by_sensor)
+    write_report(findings, tmp_path / "report.html")
+    assert "have no reading" in (tmp_path / "report.html").read_text("utf-8")
+
+
+def test_where_most_have_none_nothing_is_called_right(
+    healthy: Case, diagnosed: Diagnosed, tmp_path: Path
+) -> None:
+    names = list(healthy.model["sensors"])
+    findings = diagnosed(silenced(healthy, names[: len(names) * 2 // 3]))
+    assert findings.verdict == "unknown"
+    assert "have no reading" in findings.unexplained.looks_like
+    with pytest.raises(InputError, match="no channel has a reading"):
+        diagnosed(silenced(healthy, names))

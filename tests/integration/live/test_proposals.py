@@ -158,3 +158,32 @@ def test_the_null_twin_is_proposed_nothing(sound: Given, taken_in: TakenIn) -> N
     assert found == ["calibration", "diagnosis"]
     with pytest.raises(InputError, match="nothing is proposed"):
         carry_out(place, Accept(who="Ada"))
+
+
+def test_what_a_later_diagnosis_does_not_name_is_withdrawn(
+    sinks: Given, sound: Given, taken_in: TakenIn, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = taken_in(sinks, 90, adopt="ask")
+    nothing = rga.diagnose(*sound)
+    assert nothing.causes == []
+    monkeypatch.setattr("rga.twin.runner.PastDiagnosis.ask", lambda *_: nothing)
+    with rga.LiveTwin(place) as twin:
+        twin.feed(sinks[1])
+        twin.end()
+        words = [one.words for one in history(twin).events if one.kind == "proposal"]
+    assert words[1:] == ["proposal 1 is withdrawn: a later diagnosis does not propose it again"]
+    (kept,) = commands(place)
+    assert (kept.kind, kept.who, kept.outcome) == ("reject", "rga", "withdrawn")
+    with pytest.raises(InputError, match="proposal 1 was decided by rga: reject"):
+        carry_out(place, Accept(who="Ada"))
+
+
+def test_a_version_that_makes_the_gap_larger_does_not_come_into_force(
+    sinks: Given, taken_in: TakenIn, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = taken_in(sinks, 90, adopt="ask")
+    monkeypatch.setattr("rga.twin.analysis.WORSE", 0.0)
+    outcome = carry_out(place, Accept(who="Ada"))
+    assert outcome.endswith("but did not come into force")
+    with rga.Twin.open(place) as stored:
+        assert stored.version == 1

@@ -15,7 +15,7 @@ from rga.errors import InputError
 from rga.jobs.live import Fed
 from rga.model import Model, read_model
 from rga.records import Record
-from rga.twin import Note, Settings
+from rga.twin import Note, Settings, carry_out
 from rga.twin.repository.sqlite import SQLite
 
 Given = tuple[Model, Record]
@@ -159,6 +159,17 @@ def test_another_twin_in_the_directory_is_refused(
     rga.live(model, tmp_path, settings=SETTINGS).close()
 
 
+def test_a_run_of_a_record_and_a_twin_that_goes_on_do_not_share_a_directory(
+    sound: Given, ended: Path, tmp_path: Path
+) -> None:
+    model, record = sound
+    with pytest.raises(InputError, match="a twin that goes on is here"):
+        rga.run(model, record, ended, settings=SETTINGS)
+    (tmp_path / "twin.sqlite").touch()
+    with pytest.raises(InputError, match="a run of a finished record is here"):
+        rga.live(model, tmp_path, settings=SETTINGS)
+
+
 def replace_area(model: Model) -> Model:
     """The same bridge of thicker bars."""
     content = model.model_dump(mode="json", exclude_none=True, by_alias=True)
@@ -192,6 +203,8 @@ def test_one_process_plays_at_a_time(sound: Given, tmp_path: Path) -> None:
             assert other.ask(Note(who="Ada")) == 1
             with pytest.raises(InputError, match="another process writes this repository"):
                 other.play()
+            with pytest.raises(InputError, match="ask it by LiveTwin"):
+                carry_out(tmp_path, Note(who="Ada"))
             twin.play()
             assert len(history(other).record) == 100
             twin.close()

@@ -78,6 +78,28 @@ def without_repeated(record: Record, criteria: RecordCriteria) -> tuple[Record, 
     return replace(record, readings=readings), {words: float(again.mean())}
 
 
+def without_silent(record: Record, criteria: RecordCriteria) -> tuple[Record, dict[str, float]]:
+    """The record without readings of channels that have hardly any.
+
+    Args:
+        record: as it was measured.
+        criteria: fewer than the rows of the shortest record are hardly any.
+
+    Returns:
+        The record, and what there is of this in words, with the share of channels.
+    """
+    silent = np.isfinite(record.readings).sum(axis=0) < criteria.least_rows
+    if not silent.any():
+        return record, {}
+    names = _listed([name for name, one in zip(record.sensors, silent, strict=True) if one])
+    words = (
+        f"{silent.sum()} of {len(silent)} channels have no reading, or hardly any: {names}; what "
+        "shows in these alone is not seen"
+    )
+    readings = np.where(silent, np.nan, record.readings)
+    return replace(record, readings=readings), {words: float(silent.mean())}
+
+
 def ended_channels(record: Record, criteria: RecordCriteria) -> dict[str, float]:
     """Channels without a reading in the last rows, where others have some.
 
@@ -94,10 +116,14 @@ def ended_channels(record: Record, criteria: RecordCriteria) -> dict[str, float]
     if not early.any():
         return {}
     ended = [name for name, one in zip(record.sensors, early, strict=True) if one]
-    names, more = ", ".join(ended[:MOST_NAMED]), len(ended) - MOST_NAMED
     words = (
         f"{len(ended)} of {len(early)} channels have no reading from some row on, the first from "
-        f"row {ends[early].min()}: {names}{f' and {more} more' * (more > 0)}; what has happened "
-        "since may have shown in these alone"
+        f"row {ends[early].min()}: {_listed(ended)}; what has happened since may have shown in "
+        "these alone"
     )
     return {words: float(early.mean())}
+
+
+def _listed(names: list[str]) -> str:
+    more = len(names) - MOST_NAMED
+    return ", ".join(names[:MOST_NAMED]) + f" and {more} more" * (more > 0)

@@ -14,7 +14,7 @@ from rga.diagnosis.preparation.bad_contexts import (
     without_limits,
 )
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
-from rga.diagnosis.preparation.logger_faults import ended_channels, without_repeated
+from rga.diagnosis.preparation.logger_faults import ended_channels, without_repeated, without_silent
 from rga.diagnosis.preparation.missing_codes import missing_codes
 from rga.diagnosis.preparation.sensor_faults.beside_other_channels import (
     broken_channels,
@@ -97,16 +97,18 @@ def prepare(
     check_length(record, criteria.record)
     record, limits = without_limits(record, criteria.record)
     record, impossible = without_impossible(model, record, criteria.record)
+    record, silent = without_silent(record, criteria.record)
     ended = ended_channels(record, criteria.record)
     record, repeated = without_repeated(record, criteria.record)
     faults_of_rows = {**impossible, **ended, **repeated}
     serious = [w for w, share in faults_of_rows.items() if share >= criteria.record.faulty_share]
+    serious += [w for w, share in silent.items() if share >= criteria.record.silent_share]
     as_measured = record
     simulator = Simulator(model.without_zeros())
     given = data_of(model, record, criteria)
     zeros = with_own_zeros(model, simulator, record, given)
     record = zeros.record
-    data = data_of(model, record, criteria)
+    data = _that_read(data_of(model, record, criteria))
     faults = stuck_channels(data.sensors, data.readings, data.observed, criteria.channels)
     found = {fault.sensor: fault for fault in faults}
     data = _without(data, faults)
@@ -139,7 +141,7 @@ def prepare(
         )
     basis = load_basis(simulator, data)
     spikes = lone_spikes(data.readings, data.observed, basis, criteria.channels)
-    slight = [words for words in faults_of_rows if words not in serious]
+    slight = [words for words in {**silent, **faults_of_rows} if words not in serious]
     warnings = [*record.warnings, *limits, *slight, *zeros.warnings, *suspicious]
     if chosen.sum() < criteria.record.few_rows:
         warnings.append(
@@ -150,9 +152,9 @@ def prepare(
             f"onsets were not looked for: {', '.join(passing)} passes once, and what depends on it "
             "cannot be told from what begins on the way"
         )
-    silent = int((~data.observed.any(1)).sum())
-    if silent:
-        warnings.append(f"{silent} rows without a context or without any reading were left aside")
+    empty = int((~data.observed.any(1)).sum())
+    if empty:
+        warnings.append(f"{empty} rows without a context or without any reading were left aside")
     denied = denied_rows(spikes, data.observed, criteria.record)
     if denied.any():
         warnings.append(
@@ -286,6 +288,22 @@ def _without(data: Data, faults: list[BrokenChannel]) -> Data:
             observed[row:, number] = False
     kept = [k for k, name in enumerate(data.sensors) if begun.get(name, 0) is not None]
     return _of_channels(replace(data, observed=observed), kept)
+
+
+def _that_read(data: Data) -> Data:
+    """The data without channels that have no reading.
+
+    Raises:
+        InputError: none has one.
+    """
+    kept = np.flatnonzero(data.observed.any(axis=0))
+    if not len(kept):
+        raise InputError(
+            "no channel has a reading in a row whose contexts are known",
+            "record",
+            "check the record and the mapping",
+        )
+    return _of_channels(data, kept.tolist())
 
 
 def _of_channels(data: Data, kept: list[int]) -> Data:

@@ -99,6 +99,13 @@ class RecordCriteria(CriteriaGroup):
         "judgement: what happened in a tenth of it could hide",
     )
 
+    silent_share: Share = criterion(
+        0.5,
+        "-",
+        "share of channels without any reading from which on a record is not called explained",
+        "judgement: less than half of what was mounted to see it sees too little",
+    )
+
     @model_validator(mode="after")
     def _least_below_most(self) -> "RecordCriteria":
         if self.least_rows > self.most_rows:

@@ -7,6 +7,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, field_validator
 
 from rga.model.effect import check_moment
 
+#: where an error about one is
+PLACE = "command"
 Moment = float | str
 Number = Annotated[int, Field(ge=1, strict=True)]
 
@@ -25,8 +27,8 @@ class Command(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
-    who: Annotated[str, Field(min_length=1)]
-    why: str = ""
+    who: Annotated[str, Field(min_length=1, max_length=200)]
+    why: Annotated[str, Field(max_length=2000)] = ""
     given_at: str = Field(default_factory=_now)
 
 

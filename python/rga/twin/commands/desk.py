@@ -10,6 +10,7 @@ from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
 from rga.twin.calibration.capture import ContextCapture
 from rga.twin.commands.command import (
+    PLACE,
     Accept,
     AnyCommand,
     Command,
@@ -20,12 +21,10 @@ from rga.twin.commands.command import (
     Rollback,
 )
 from rga.twin.commands.exclusion import leaves_none
+from rga.twin.commands.proposals import Proposals
 from rga.twin.hardware.interface import Station
 from rga.twin.repository import Proposal
 from rga.twin.settings import Pace, Settings
-
-PLACE = "command"
-DECISIONS = ("accept", "reject")
 
 
 class CommandDesk:
@@ -50,6 +49,7 @@ class CommandDesk:
         pace: Pace,
     ) -> None:
         self._analysis, self._archive = analysis, archive
+        self._proposals = Proposals(archive)
         self._calibration, self._station, self._pace = calibration, station, pace
         # A diagnosis analyses so many, and a recalibration learns from them.
         learned = pace.calibration_rows + pace.settle + pace.packet
@@ -66,7 +66,7 @@ class CommandDesk:
         """
         body = _body(command)
         if isinstance(command, Accept | Reject):
-            body["proposal"] = self._open_proposal(command.proposal).number
+            body["proposal"] = self._proposals.open(command.proposal).number
         outcome = self._done(command)
         self._keep(command, body, outcome)
         return outcome
@@ -77,9 +77,9 @@ class CommandDesk:
 
     def _done(self, command: AnyCommand) -> str:
         if isinstance(command, Accept):
-            return self._accept(self._open_proposal(command.proposal))
+            return self._accept(self._proposals.open(command.proposal))
         if isinstance(command, Reject):
-            return f"proposal {self._open_proposal(command.proposal).number} is rejected"
+            return f"proposal {self._proposals.open(command.proposal).number} is rejected"
         if isinstance(command, Rollback):
             return self._roll_back(command.version)
         if isinstance(command, Exclude):
@@ -92,16 +92,21 @@ class CommandDesk:
 
     def _accept(self, proposal: Proposal) -> str:
         self._check_calibrated()
-        first = self._analysis.standing.proposed
+        first, before = self._analysis.standing.proposed, self._archive.run.version_in_force()
         self._analysis.adopt(proposal.effects, proposal.gain, proposal.gain_ci90, first)
-        return f"proposal {proposal.number} is accepted: {proposal.words}"
+        outcome = f"proposal {proposal.number} is accepted: {proposal.words}"
+        if self._archive.run.version_in_force() == before:
+            outcome += ", but did not come into force"
+        return outcome
 
     def _roll_back(self, version: int) -> str:
         """Put an earlier version in force again; what it needs is learned in a step of its own."""
+        before = self._archive.run.version_in_force()
         answer = self._analysis.ask_twin(restore=version)
         if not answer.adequate:
             raise InputError("; ".join(answer.missing), PLACE, "rga replay lists the versions")
-        words = f"version {version} is in force again, as asked"
+        stays = before is not None and before.number == version
+        words = f"version {version} {'stays in force' if stays else 'is in force again'}, as asked"
         self._analysis.event("rollback", self._row, words)
         return words
 
@@ -171,29 +176,6 @@ class CommandDesk:
             if isinstance(one, str) and (datetime.fromisoformat(one).tzinfo is not None) != zoned:
                 has = "have a time zone" if zoned else "have no time zone"
                 raise InputError(f"the rows {has}, unlike {one!r}", PLACE, "write it as they do")
-
-    def _open_proposal(self, number: int | None) -> Proposal:
-        """The last proposal, if nobody has decided about it.
-
-        Raises:
-            InputError: there is none, another is asked for, or it was decided.
-        """
-        proposals = self._archive.run.proposals()
-        if not proposals:
-            raise InputError("nothing is proposed", PLACE, "wait for a diagnosis")
-        last = proposals[-1]
-        if number is not None and number != last.number:
-            words = f"proposal {number} is not the last, which is {last.number}"
-            raise InputError(words, PLACE, "decide about the last")
-        decided = [
-            one
-            for one in self._archive.run.commands()
-            if one.kind in DECISIONS and one.body == {"proposal": last.number}
-        ]
-        if decided:
-            words = f"proposal {last.number} was decided by {decided[-1].who}: {decided[-1].kind}"
-            raise InputError(words, PLACE, "wait for another")
-        return last
 
     @property
     def _row(self) -> int:

@@ -33,7 +33,8 @@ from rga.twin.hardware.interface import Packet, Station
 from rga.twin.repository.faults import as_input_errors
 from rga.twin.repository.sqlite import SQLite
 
-FILE = "inbox.sqlite"
+#: name of the file
+INBOX = "inbox.sqlite"
 
 _metadata = MetaData()
 # One line: the twin that rows are for.
@@ -104,7 +105,7 @@ class Inbox:
     """
 
     def __init__(self, directory: Path) -> None:
-        self._database = SQLite(directory / FILE, read_only=False)
+        self._database = SQLite(directory / INBOX, read_only=False)
         with self._writing() as connection:
             _metadata.create_all(connection)
 

@@ -1,0 +1,73 @@
+"""What diagnoses propose, and what was decided about it."""
+
+from rga.errors import InputError
+from rga.findings.phrases import effect_words
+from rga.twin.archive import Archive
+from rga.twin.commands.command import PLACE, Reject
+from rga.twin.repository import Proposal
+from rga.twin.versions import Effects
+
+DECISIONS = ("accept", "reject")
+#: in whose name a proposal is withdrawn that a later diagnosis does not make again
+WITHDRAWS = "rga"
+
+
+class Proposals:
+    """The proposals of a run.
+
+    Args:
+        archive: keeps them.
+    """
+
+    def __init__(self, archive: Archive) -> None:
+        self._archive = archive
+
+    def add(
+        self, row: int, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
+    ) -> str:
+        """Propose effects beyond the model as it was given, and say so in words."""
+        causes = [effect_words(one) for one in effects.values()]
+        words = f"a model with {', '.join(causes)}" if causes else "the model as it was given"
+        number = self._archive.propose(row, words, effects, gain, gain_ci90)
+        return f"proposal {number}: {words}"
+
+    def withdraw(self, row: int) -> str | None:
+        """Withdraw the one that is open, and say so in words; None: none is."""
+        last = self._last
+        if last is None or self._decided(last) is not None:
+            return None
+        why = "a later diagnosis does not propose it again"
+        command, outcome = Reject(who=WITHDRAWS, why=why, proposal=last.number), "withdrawn"
+        self._archive.keep_command(command, {"proposal": last.number}, row, outcome)
+        return f"proposal {last.number} is withdrawn: {why}"
+
+    def open(self, number: int | None) -> Proposal:
+        """The last one, if nobody has decided about it.
+
+        Args:
+            number: that it must have; None: any.
+
+        Raises:
+            InputError: there is none, another is asked for, or it was decided.
+        """
+        last = self._last
+        if last is None:
+            raise InputError("nothing is proposed", PLACE, "wait for a diagnosis")
+        if number is not None and number != last.number:
+            words = f"proposal {number} is not the last, which is {last.number}"
+            raise InputError(words, PLACE, "decide about the last")
+        if (decided := self._decided(last)) is not None:
+            raise InputError(f"proposal {last.number} was {decided}", PLACE, "wait for another")
+        return last
+
+    @property
+    def _last(self) -> Proposal | None:
+        proposals = self._archive.run.proposals()
+        return proposals[-1] if proposals else None
+
+    def _decided(self, proposal: Proposal) -> str | None:
+        """What was decided about a proposal, in words; None: nothing was."""
+        for one in self._archive.run.commands():
+            if one.kind in DECISIONS and one.body == {"proposal": proposal.number}:
+                return f"decided by {one.who}: {one.kind}"
+        return None
