@@ -20,6 +20,7 @@ from rga.twin.hardware.interface import LIVE
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
+from rga.twin.repository import Repository
 from rga.twin.repository.faults import RepositoryFault
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.runner import Progress, Running, taken_up
@@ -258,6 +259,21 @@ class LiveTwin:
                 self._act(partial(self._taken_up().refuse, command, number, str(error)), happened)
 
 
+def _check_holds_no_record(place: Path) -> None:
+    """Whether no record was played in a directory.
+
+    Raises:
+        InputError: one was.
+    """
+    if not (place / FILE).exists():
+        return
+    with Repository.open(place, read_only=True) as repository:
+        if any(not one.identity.source.startswith(LIVE) for one in repository.runs()):
+            raise InputError(
+                "a run of a finished record is here", str(place), "take another directory"
+            )
+
+
 def live(
     model: Model | str | Path,
     directory: str | Path,
@@ -292,10 +308,7 @@ def live(
         name or given.name, text, given.sha256 or digest, chosen.model_dump_json(), seed
     )
     place = made(Path(directory))
-    if repository is None and (place / FILE).exists() and not (place / INBOX).exists():
-        raise InputError(
-            "a run of a finished record is here", str(directory), "take another directory"
-        )
+    _check_holds_no_record(place)
     inbox = Inbox(place)
     try:
         known = inbox.name(wanted)

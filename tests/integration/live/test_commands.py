@@ -19,7 +19,7 @@ BY: dict[str, str] = {"who": "Ada", "why": "as said", "given_at": "2026-11-26T12
 #: commands, the body that is kept of each, and what comes of it
 DONE: list[tuple[Any, dict[str, Any], str]] = [
     (Note(**BY), {}, "noted"),
-    (Rollback(version=1, **BY), {"version": 1}, "version 1 is in force again, as asked"),
+    (Rollback(version=1, **BY), {"version": 1}, "version 1 stays in force, as asked"),
     (
         Exclude(sensor="D1", **BY),
         {"sensor": "D1", "since": None, "until": None},
@@ -143,7 +143,7 @@ def test_a_recalibration_is_made_when_it_is_asked_for(
     [
         (Note(**BY), "noted"),
         (Recalibrate(**BY), "refused: "),
-        (Rollback(version=1, **BY), "version 1 is in force again"),
+        (Rollback(version=1, **BY), "version 1 stays in force"),
         (Exclude(sensor="D1", **BY), "D1 is not used from now on"),
     ],
 )

@@ -16,6 +16,7 @@ from rga.jobs.live import Fed
 from rga.model import Model, read_model
 from rga.records import Record
 from rga.twin import Note, Settings, carry_out
+from rga.twin.repository import Identity, Repository
 from rga.twin.repository.sqlite import SQLite
 
 Given = tuple[Model, Record]
@@ -165,7 +166,8 @@ def test_a_run_of_a_record_and_a_twin_that_goes_on_do_not_share_a_directory(
     model, record = sound
     with pytest.raises(InputError, match="a twin that goes on is here"):
         rga.run(model, record, ended, settings=SETTINGS)
-    (tmp_path / "twin.sqlite").touch()
+    with Repository.open(tmp_path) as repository:
+        repository.run(Identity("model", "record", 1, "{}"))
     with pytest.raises(InputError, match="a run of a finished record is here"):
         rga.live(model, tmp_path, settings=SETTINGS)
 

@@ -28,7 +28,7 @@ class Command(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     who: Annotated[str, Field(min_length=1, max_length=200)]
-    why: Annotated[str, Field(max_length=2000)] = ""
+    why: Annotated[str, Field(max_length=20_000)] = ""
     given_at: str = Field(default_factory=_now)
 
 
