@@ -62,7 +62,8 @@ def imported_files(module: str, root: Path = ROOT) -> set[Path]:
             waiting += imports
             if is_package and WALK in imports:
                 waiting += _within(name, path.parent)
-            homes |= {f"{name}.{own}": home for own, home in _homes(tree) if is_package}
+            if is_package:
+                homes |= {f"{name}.{own}": home for own, home in _homes(tree)}
     return set(found.values())
 
 

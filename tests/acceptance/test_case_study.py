@@ -12,6 +12,7 @@ from rga_bench.synthetic import draw_stream
 
 ROWS = 180
 SETTINGS = Settings(
+    packet=20,
     arl0=2000.0,
     design_rows=1024,
     training=TrainingSettings(steps=500, fine_steps=60, reduced_steps=300),

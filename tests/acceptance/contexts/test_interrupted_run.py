@@ -18,14 +18,14 @@ from rga_bench.ledger import NAME
 
 SETTING = ContextsSetting(
     seed=11,
-    splits=1,
+    splits=6,
     gaps=("all",),
     manners=("same",),
-    drifts=("none",),
+    drifts=(),
     rows=("noise", "prior mean"),
-    sizes=Sizes(source=128, unlabelled=32, stream=24, test=12),
+    sizes=Sizes(source=128, unlabelled=32, test=12),
 )
-TASKS = 2 * 2
+TASKS = 6 * 2
 #: `RGA_TEST_KILLS=50` kills more often
 KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 

@@ -8,6 +8,7 @@ import pytest
 
 from context_tasks import SIZES, nearest, task
 from rga.twin.calibration.joint_posterior import JointEstimator
+from rga.twin.settings import Settings
 from rga_bench.contexts.data import DriftStream, calibration_of, stream_of
 from rga_bench.contexts.setting import ContextsTask
 from rga_bench.contexts.stream_results import StreamResult, results_of_streams
@@ -18,6 +19,13 @@ FEW = replace(SIZES, stream=60)
 RIGHT = task(gap="noise only", drifts=("sensor",), sizes=FEW)
 
 
+@pytest.fixture
+def quick_monitor(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Thresholds of short streams: what is asked is what follows an alarm."""
+    monkeypatch.setattr("rga_bench.contexts.twin_run.Settings", partial(Settings, arl0=2000.0))
+
+
+@pytest.mark.usefixtures("quick_monitor")
 def test_a_method_lives_through_drifts() -> None:
     little = task(drifts=("none", "recurring"), sizes=replace(FEW, test=40))
     played = results_of_streams(little, calibration_of(little), nearest)
@@ -65,6 +73,7 @@ def test_recalibration_helps_and_c_goes_back_to_what_was_before() -> None:
     assert c.ordinary.rg < b.ordinary.rg
 
 
+@pytest.mark.usefixtures("quick_monitor")
 def test_no_level_looks_at_labels(monkeypatch: pytest.MonkeyPatch) -> None:
     """Other true contexts change Errors, and nothing that was decided."""
     monkeypatch.setattr("rga_bench.contexts.stream_results.LEVELS", ("C",))

@@ -121,7 +121,7 @@ def test_real_rows_are_used_where_they_may_be(unlike: PhysicalTwin) -> None:
     """The null of the test above: other rows give another network, but to the source alone."""
     lessons = given(unlike), with_rows(given(unlike), drawn(12, 60, unlike).readings)
     # Long enough for the network that does best to have learned from them.
-    longer = {**FEW, "steps": 400, "width": 48}
+    longer = {**FEW, "steps": 200, "width": 48}
     for name in NETWORKS:
         learn = trained(short(name, **longer))
         one, two = (learn(rows).to_bytes() for rows in lessons)
