@@ -60,9 +60,10 @@ def imported_files(module: str, root: Path = ROOT) -> set[Path]:
             tree, is_package = ast.parse(path.read_bytes()), path.stem == "__init__"
             imports = list(_imports(tree, name if is_package else parent))
             waiting += imports
-            if is_package and WALK in imports:
-                waiting += _within(name, path.parent)
-            homes |= {f"{name}.{own}": home for own, home in _homes(tree) if is_package}
+            if is_package:
+                if WALK in imports:
+                    waiting += _within(name, path.parent)
+                homes |= {f"{name}.{own}": home for own, home in _homes(tree)}
     return set(found.values())
 
 
