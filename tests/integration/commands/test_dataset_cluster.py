@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ distributed = pytest.importorskip("distributed", reason="needs rga[dask]")
 Rga = Callable[..., Any]
 ROWS, PARTS = 4096, 32
 GIVEN = {"seed": 3, "noise": True}
+Cluster = tuple[Any, dict[str, subprocess.Popen[bytes]]]
 
 
 @pytest.fixture
@@ -27,14 +29,19 @@ def short_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rga.simulation.dataset.CHUNK", ROWS // PARTS)
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[Any, dict[str, subprocess.Popen[bytes]]]]:
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A cluster whose workers live."""
+    with started(tmp_path_factory.mktemp("elsewhere")) as cluster:
+        yield cluster
+
+
+@contextmanager
+def started(folder: Path) -> Iterator[Cluster]:
     """A scheduler, and two worker processes that nobody starts again."""
     with distributed.LocalCluster(n_workers=0, dashboard_address=None) as running:
         command = [sys.executable, "-m", "distributed.cli.dask_worker", running.scheduler_address]
         options = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--name"]
-        folder = tmp_path / "elsewhere"
-        folder.mkdir()
         workers = {
             name: subprocess.Popen(
                 [*command, *options, name],
@@ -55,10 +62,22 @@ def cluster(tmp_path: Path) -> Iterator[tuple[Any, dict[str, subprocess.Popen[by
 
 
 @pytest.mark.usefixtures("short_parts")
-@pytest.mark.parametrize("killed", [False, True])
 def test_the_bytes_are_those_of_one_process(
-    tmp_path: Path, model_file: Path, cluster: Any, killed: bool
+    tmp_path: Path, model_file: Path, cluster: Cluster
 ) -> None:
+    assert_same_bytes(tmp_path, model_file, cluster, killed=False)
+
+
+@pytest.mark.usefixtures("short_parts")
+def test_they_are_where_a_worker_is_killed(tmp_path: Path, model_file: Path) -> None:
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    with started(folder) as cluster:
+        assert_same_bytes(tmp_path, model_file, cluster, killed=True)
+
+
+def assert_same_bytes(tmp_path: Path, model_file: Path, cluster: Cluster, *, killed: bool) -> None:
+    """A cluster writes what one process does, a worker of it killed on the way or none."""
     running, workers = cluster
     model = load_model(model_file)
     write_dataset(model, ROWS, tmp_path / "alone.parquet", **GIVEN)
@@ -88,7 +107,7 @@ def test_the_bytes_are_those_of_one_process(
 
 @pytest.mark.usefixtures("short_parts")
 def test_it_goes_on_where_it_was_interrupted(
-    tmp_path: Path, model_file: Path, cluster: Any, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, model_file: Path, cluster: Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     running, _ = cluster
     model = load_model(model_file)
@@ -119,7 +138,7 @@ def test_it_goes_on_where_it_was_interrupted(
     assert not [task for task in sent if os.fsencode(tmp_path) in task]
 
 
-def test_the_command(tmp_path: Path, model_file: Path, rga: Rga, cluster: Any) -> None:
+def test_the_command(tmp_path: Path, model_file: Path, rga: Rga, cluster: Cluster) -> None:
     address = cluster[0].scheduler_address
     for name, where in (("here", ()), ("there", ("--dask", address))):
         ran = rga("dataset", model_file, "-n", 40_000, "-o", tmp_path / f"{name}.parquet", *where)
@@ -142,7 +161,7 @@ def test_an_address_that_does_not_answer(
 
 
 def test_an_error_of_a_worker_is_that_of_one_process(
-    tmp_path: Path, two_bars: dict[str, Any], rga: Rga, cluster: Any
+    tmp_path: Path, two_bars: dict[str, Any], rga: Rga, cluster: Cluster
 ) -> None:
     two_bars["context"]["loss"] = {"unit": "-", "range": [-1, 1]}
     lost = {"kind": "member_stiffness", "member": "west", "factor": {"context": "loss"}}

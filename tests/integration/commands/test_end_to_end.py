@@ -102,18 +102,12 @@ def test_a_calibration_longer_than_the_record_is_refused(
     assert "the calibration wants 161 rows, and the record has 160" in done.err
 
 
-def test_same_seed_same_bytes(case: Path) -> None:
-    model = load_model(case / "model.json")
-    record = load_record(case / "record.csv", model)
-    assert diagnose(model, record, seed=5).to_json() == diagnose(model, record, seed=5).to_json()
-
-
 def test_a_context_outside_its_range_is_reported(case: Path) -> None:
     content = json.loads((case / "model.json").read_text(encoding="utf-8"))
     content["context"]["air"]["range"] = [0.0, 1.0]
     (case / "model.json").write_text(json.dumps(content), encoding="utf-8")
     model = load_model(case / "model.json")
-    findings = diagnose(model, load_record(case / "record.csv", model))
+    findings = diagnose(model, load_record(case / "record.csv", model).rows(slice(60)))
     assert any("air" in warning for warning in findings.warnings)
     assert any("air" in line for line in findings.write(case / "out").read_text().splitlines())
 

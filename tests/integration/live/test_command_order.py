@@ -72,7 +72,7 @@ def assert_order_is_all(
     assert_same(ends[1][1], ends[0][1])
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(1, 4))
 def test_reopening_between_commands_changes_nothing(
     seed: int, sinks: Given, taken_in: Callable[..., Path]
 ) -> None:

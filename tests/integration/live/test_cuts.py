@@ -20,7 +20,7 @@ from rga.twin import Settings
 from rga.twin.history import History
 
 #: `RGA_TEST_CUTS=100` draws as many ways to feed and play
-CUTS = int(os.environ.get("RGA_TEST_CUTS", "12"))
+CUTS = int(os.environ.get("RGA_TEST_CUTS", "6"))
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def test_cuts_and_restarts_change_nothing(seed: int, measured: Stream, tmp_path:
     assert_same(played_somehow(measured, tmp_path, Random(seed)), measured.expected)
 
 
-@pytest.mark.parametrize("seed", range(max(2, CUTS // 10)))
+@pytest.mark.parametrize("seed", range(max(1, CUTS // 10)))
 def test_nor_do_they_where_contexts_are_inferred(seed: int, latent: Stream, tmp_path: Path) -> None:
     assert_same(played_somehow(latent, tmp_path, Random(seed)), latent.expected)
 

@@ -77,12 +77,12 @@ def test_nor_where_contexts_are_inferred_from_the_others(
     model = rga.load_model(folder / "model.json")
     record = load_record(folder / "record.csv", model)
     kept = Settings.model_validate_json((folder / "settings.json").read_text("utf-8"))
-    wanted = kept.model_dump() | {"inference": "joint"} | BY_THE_CLOCK
+    wanted = kept.model_dump() | {"inference": "joint"} | BY_THE_CLOCK | {"interval": 30}
     command = Exclude(who="Ada", sensor=SENSOR, since=600.0 * BROKEN, given_at="now")
     found = excluded(model, broken(record), tmp_path / "off", command, **wanted)
     expected = excluded(model, record, tmp_path / "sound", command, **wanted)
     used = excluded(model, record, tmp_path / "used", None, **wanted)
-    assert kinds(found.events).count("recalibration") == 3
+    assert kinds(found.events).count("recalibration") == 2
     assert found.events == expected.events
     for name in ("inferred", "spread", "simulated"):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), name)

@@ -27,7 +27,7 @@ from rga_bench.synthetic import draw_case
 HOSTILE = "<script>alert('x')</script> $\\frac{a_b}$ & \"q\""
 SPRING = {"kind": "support_spring", "support": "rocker", "dof": "ux", "stiffness": 2.4e7}
 #: what a full report says somewhere
-SAID = """120 rows | the gap left its band | w1, w2, w3 | 8.31 → 1.13 | version 2 | 130 [121, 138]
+SAID = """120 rows | the gap left its band | w1, w4, w7 | 8.31 → 1.13 | version 2 | 130 [121, 138]
 in force | 90 % interval | people on 1 row | What happened | The closing diagnosis
 Provenance | grew to 2400 | 1 alarm | 2024-03-03 12:00:00 | beyond the model as given"""
 FIGURES = {"Gap over time", "The structure and the gap", "Gap of", "Contexts", "Stored simulations"}
@@ -35,8 +35,9 @@ FIGURES = {"Gap over time", "The structure and the gap", "Gap of", "Contexts", "
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    """A footbridge with gauges, displacements and tilts."""
-    return read_model(draw_case(1, bridge="footbridge", kind="null", rows=4).model, "case")
+    """A footbridge with some of its displacements, tilts and gauges."""
+    given = read_model(draw_case(1, bridge="footbridge", kind="null", rows=4).model, "case")
+    return given.model_copy(update={"sensors": dict(list(given.sensors.items())[::3])})
 
 
 def made_history(
@@ -214,7 +215,7 @@ def test_hostile_names_stay_text(model: Model, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("rows", "start"),
-    [(1, "2024-03-01T00:00:00+01:00"), (1, 0.0), (2, 1.7e9), (7, 0.0), (9000, "2024-03-01")],
+    [(1, "2024-03-01T00:00:00+01:00"), (2, 0.0), (9000, "2024-03-01")],
 )
 def test_any_number_of_rows(model: Model, tmp_path: Path, rows: int, start: str | float) -> None:
     reader, html = read(made_history(model, rows, start), tmp_path)

@@ -68,12 +68,20 @@ def step(running: Running) -> None:
         running.step()
 
 
+@pytest.fixture(scope="module")
+def whole(
+    sound: tuple[Model, Record, dict[str, object]], tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Event, ...]:
+    """What a twin of level C lives through where the gauge is off."""
+    model, record, settings = sound
+    return played((model, off(model, record), settings), tmp_path_factory.mktemp("whole"), "C")
+
+
 def test_c_takes_up_what_b_learns_anew(
-    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+    sound: tuple[Model, Record, dict[str, object]], whole: tuple[Event, ...], tmp_path: Path
 ) -> None:
     model, record, settings = sound
-    given = model, off(model, record), settings
-    found = {level: played(given, tmp_path / level, level) for level in "BC"}
+    found = {"B": played((model, off(model, record), settings), tmp_path, "B"), "C": whole}
     recalls = {
         level: [one for one in events if one.kind == "recall"] for level, events in found.items()
     }
@@ -102,14 +110,13 @@ def test_nothing_is_recalled_where_nothing_happened(
 
 
 def test_states_outlive_an_interruption(
-    sound: tuple[Model, Record, dict[str, object]], tmp_path: Path
+    sound: tuple[Model, Record, dict[str, object]], whole: tuple[Event, ...], tmp_path: Path
 ) -> None:
     model, record, settings = sound
     given = model, off(model, record), settings
-    whole = played(given, tmp_path / "whole", "C")
     for stop in (90, 130, 140, 175):
-        played(given, tmp_path / "cut", "C", stop)
-    assert played(given, tmp_path / "cut", "C") == whole
+        played(given, tmp_path, "C", stop)
+    assert played(given, tmp_path, "C") == whole
 
 
 def test_a_run_by_an_estimator_of_ones_own_is_not_resumed(

@@ -1,7 +1,8 @@
 """How readings go with the ones before them."""
 
 import numpy as np
-from scipy.stats import norm, rankdata
+from scipy.special import ndtri
+from scipy.stats import rankdata
 
 from rga.arrays import FloatArray
 
@@ -28,7 +29,7 @@ def predictors(deviations: FloatArray) -> FloatArray:
     rows, sensors = deviations.shape
     missing = ~np.isfinite(deviations)
     ranks = rankdata(deviations, axis=0, nan_policy="omit")
-    scores = norm.ppf((ranks - 0.5) / np.maximum(1, (~missing).sum(axis=0)))
+    scores = ndtri((ranks - 0.5) / np.maximum(1, (~missing).sum(axis=0)), order="C")
     scores[missing] = 0.0
     there = (~missing).astype(float)
     most = min(ORDER, rows // ROWS)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtri
 from scipy.stats import norm
 
 from rga import _core
@@ -17,6 +18,11 @@ MOST = 1e60
 #: scores between which the distribution of a reading is followed, and knots there
 FOLLOWED = 2.5
 KNOTS = 9
+#: scores at the knots, and the shares of a normal variable below them
+SCORES = np.linspace(-FOLLOWED, FOLLOWED, KNOTS)
+SHARES = norm.cdf(SCORES)
+#: mean of a normal variable beyond the outer knot, less the knot
+BEYOND = norm.pdf(FOLLOWED) / norm.sf(FOLLOWED) - FOLLOWED
 #: readings beyond the outer knots that weigh as much as what all sensors have in common
 TAIL = 20.0
 #: readings that differ by less are alike
@@ -70,7 +76,7 @@ class Reference:
         Args:
             baseline: float[rows, sensors], NaN where missing; none of the sensors `unwatched`.
         """
-        level = np.nanmedian(baseline, axis=0)
+        level = medians(baseline)
         deviations = baseline - level
         weights = predictors(deviations)
         innovations = after_prediction(deviations, weights)
@@ -122,6 +128,12 @@ class Reference:
         return _core.ChangeStatistics(arrays, self.largest, thresholds.tolist(), rows_kept)
 
 
+def medians(readings: FloatArray) -> FloatArray:
+    """Of each column, without what is missing: `nanmedian` takes its time."""
+    missing = np.isnan(readings).any()
+    return np.asarray(np.nanmedian(readings, axis=0) if missing else np.median(readings, axis=0))
+
+
 def after_prediction(deviations: FloatArray, weights: FloatArray) -> FloatArray:
     """What deviations differ by from what the ones before them let expect; NaN where unknown."""
     found = deviations.copy()
@@ -149,23 +161,22 @@ def fit_normal_scores(
     """
     ordered = np.sort(innovations, axis=0)  # NaN last
     count = np.isfinite(innovations).sum(axis=0)
-    low, high = (at_rank(ordered, count, share) for share in (0.25, 0.75))
-    spread = (high - low) / (2.0 * norm.ppf(0.75))
+    low, high = at_ranks(ordered, count, np.array([0.25, 0.75]))
+    spread = (high - low) / (2.0 * ndtri(0.75))
     spread = np.where(spread > 0, spread, np.nanstd(innovations, axis=0))
     units = 1.0 / spread
-    scores = np.linspace(-FOLLOWED, FOLLOWED, KNOTS)
-    knots = np.stack([at_rank(ordered, count, share) for share in norm.cdf(scores)]) * units
+    knots = at_ranks(ordered, count, SHARES) * units
     # Readings of few digits repeat: knots stay apart.
     least = 1e-3 * np.arange(KNOTS)[:, None]
     knots = np.maximum.accumulate(knots - least, axis=0) + least
-    inner = np.diff(scores)[:, None] / np.diff(knots, axis=0)
+    inner = np.diff(SCORES)[:, None] / np.diff(knots, axis=0)
     below = outer_slope(-innovations * units, -knots[0], count)
     above = outer_slope(innovations * units, knots[-1], count)
     slopes = np.concatenate([below[None], inner, above[None]])
     bends = np.diff(slopes, axis=0)
     # At the first knot the score is the first of the scores; max(units, knot) is the knot below it.
-    offset = scores[0] - slopes[0] * knots[0] - (bends * knots).sum(axis=0)
-    largest = min(LARGEST, float(norm.ppf(1.0 - 0.5 / np.median(count))))
+    offset = SCORES[0] - slopes[0] * knots[0] - (bends * knots).sum(axis=0)
+    largest = min(LARGEST, float(ndtri(1.0 - 0.5 / np.median(count))))
     found = normal_scores(innovations * units, offset, slopes[0], knots, bends, largest)
     mean, rms = np.nanmean(found, axis=0), np.nanstd(found, axis=0)
     return units, (offset - mean) / rms, slopes[0] / rms, knots, bends / rms, largest
@@ -186,9 +197,9 @@ def normal_scores(
     return np.asarray(np.clip(found, -largest, largest))
 
 
-def at_rank(ordered: FloatArray, count: FloatArray, share: float) -> FloatArray:
-    """Quantile of each column by linear interpolation of ranks (Hazen)."""
-    place = np.clip(count * share - 0.5, 0.0, count - 1.0)
+def at_ranks(ordered: FloatArray, count: FloatArray, shares: FloatArray) -> FloatArray:
+    """Quantiles of each column by linear interpolation of ranks (Hazen), float[shares, sensors]."""
+    place = np.clip(count * shares[:, None] - 0.5, 0.0, count - 1.0)
     low = np.floor(place).astype(int)
     high = np.minimum(low + 1, count - 1)
     columns = np.arange(ordered.shape[1])
@@ -201,9 +212,7 @@ def outer_slope(units: FloatArray, knot: FloatArray, count: FloatArray) -> Float
     beyond = np.where(units > knot, units - knot, np.nan)
     number = np.isfinite(beyond).sum(axis=0)
     excess = np.where(number > 0, np.nansum(beyond, axis=0) / np.maximum(number, 1), np.nan)
-    # Mean of a normal variable beyond the knot, less the knot.
-    normal = norm.pdf(FOLLOWED) / norm.sf(FOLLOWED) - FOLLOWED
-    own = normal / excess
+    own = BEYOND / excess
     common = float(np.nanmedian(own)) if np.isfinite(own).any() else 1.0
     weight = number / (number + TAIL)
     return np.asarray(common + weight * (np.where(np.isfinite(own), own, common) - common))
