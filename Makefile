@@ -5,10 +5,10 @@ DEV := .venv-dev/bin
 INSTALL := -m pip install --quiet --no-compile
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick docs test crates lint tests clean wheel installed
+.PHONY: help run dev quick docs test thorough crates lint tests clean wheel installed
 
 # Every core has its process of the tests: products in several threads would wait for each other.
-quick tests: export OMP_NUM_THREADS = 1
+quick tests thorough: export OMP_NUM_THREADS = 1
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 8
@@ -28,6 +28,9 @@ quick:  ## lint, types and unit tests in the environment of `make dev`, within a
 	$(DEV)/mypy --strict python tests/typing
 	$(DEV)/lint-imports
 	$(DEV)/python -m pytest tests/unit --quiet --numprocesses auto --dist worksteal
+
+thorough:  ## all tests, those at full length as well, in the environment of `make dev`: about half an hour
+	$(DEV)/python -m pytest tests --pyargs rga rga_bench -m "" --numprocesses auto --dist worksteal
 
 docs:  ## the pages of docs as a site that needs no network: site/index.html
 	$(DEV)/sphinx-build -W --keep-going --quiet -b html docs site

@@ -12,7 +12,6 @@ from rga_bench.synthetic import draw_stream
 
 ROWS = 180
 SETTINGS = Settings(
-    packet=20,
     arl0=2000.0,
     design_rows=1024,
     training=TrainingSettings(steps=500, fine_steps=60, reduced_steps=300),
@@ -27,6 +26,7 @@ def run(folder: Path, **what: Any) -> tuple[Outcome, dict[str, Any]]:
     return rga.run(model, record, folder / "twin", settings=SETTINGS), stream.truth
 
 
+@pytest.mark.thorough
 def test_what_was_hidden_is_found_and_added(tmp_path: Path) -> None:
     outcome, truth = run(tmp_path)
     events = outcome.history.events

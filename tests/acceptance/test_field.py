@@ -235,6 +235,7 @@ def test_its_physics_shares_nothing_with_the_simulator() -> None:
                 ), f"{path.name} imports {name}"
 
 
+@pytest.mark.thorough
 def test_draws_of_the_challenge_are_balanced_and_named() -> None:
     order = draws(3, 105, FieldDraw)
     hidden = order[::2]

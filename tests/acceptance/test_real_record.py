@@ -110,6 +110,7 @@ def test_the_gain_holds_on_unseen_rows(findings: rga.Findings) -> None:
     assert abs(chord.after_percent) < 5
 
 
+@pytest.mark.thorough
 def test_every_second_sample_gives_the_same_verdict(findings: rga.Findings) -> None:
     model = rga.load_model(EXAMPLE / "model.json")
     record = rga.load_record(RECORD, model)
@@ -117,6 +118,7 @@ def test_every_second_sample_gives_the_same_verdict(findings: rga.Findings) -> N
     assert gist(rga.diagnose(model, half)) == gist(findings)
 
 
+@pytest.mark.thorough
 def test_names_and_order_do_not_matter(findings: rga.Findings, tmp_path: Path) -> None:
     content = json.loads((EXAMPLE / "model.json").read_text(encoding="utf-8"))
     mapping = tomllib.loads((EXAMPLE / "import.toml").read_text(encoding="utf-8"))

@@ -15,6 +15,7 @@ THINNED = 6
 LITTLE = TrainingSettings(steps=450, fine_steps=60, reduced_steps=350)
 
 
+@pytest.mark.thorough
 def test_the_crossing_ends_in_the_verdict_of_the_diagnosis(tmp_path: Path) -> None:
     if not RECORD.exists():
         pytest.skip("the measured record is not part of this project")

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from rga_bench.contexts.experiment import ContextsExperiment
 from rga_bench.contexts.setting import ContextsSetting, Sizes
@@ -18,14 +19,14 @@ from rga_bench.ledger import NAME
 
 SETTING = ContextsSetting(
     seed=11,
-    splits=6,
+    splits=1,
     gaps=("all",),
     manners=("same",),
-    drifts=(),
+    drifts=("none",),
     rows=("noise", "prior mean"),
-    sizes=Sizes(source=128, unlabelled=32, test=12),
+    sizes=Sizes(source=128, unlabelled=32, stream=24, test=12),
 )
-TASKS = 6 * 2
+TASKS = 2 * 2
 #: `RGA_TEST_KILLS=50` kills more often
 KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 
@@ -43,6 +44,7 @@ def lines(folder: Path) -> int:
     return len(path.read_bytes().splitlines()) if path.exists() else 0
 
 
+@pytest.mark.thorough
 def test_a_run_killed_at_random_has_the_same_results(tmp_path: Path) -> None:
     generator = np.random.default_rng(7)
     folder = tmp_path / "killed"

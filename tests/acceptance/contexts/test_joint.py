@@ -32,6 +32,7 @@ def full() -> CalibrationData:
     return known("all")
 
 
+@pytest.mark.thorough
 def test_the_joint_posterior_comes_near_the_floor(full: CalibrationData) -> None:
     floor = error_of(METHODS["knows the frame"].calibrated(full), full)
     blind = error_of(METHODS["MAP"].calibrated(full), full)
@@ -48,6 +49,7 @@ def test_the_joint_posterior_comes_near_the_floor(full: CalibrationData) -> None
     assert error_of(again, replace(full, test=lying)) < 1.2 * found
 
 
+@pytest.mark.thorough
 def test_networks_on_the_corrected_twin_gain_by_it() -> None:
     data = known("all", replace(LITTLE, source=1000))
     amortised, alone = (METHODS[name].calibrated(data) for name in ("amortised", "source only"))

@@ -61,6 +61,7 @@ def test_the_same_calibration_is_learned_once() -> None:
     assert len(asked) == 1
 
 
+@pytest.mark.thorough
 def test_recalibration_helps_and_c_goes_back_to_what_was_before() -> None:
     a, b, c = results_of_streams(RIGHT, calibration_of(RIGHT), JointEstimator.learn)
     assert b.delays == c.delays

@@ -117,11 +117,12 @@ def test_no_label_of_the_target_is_used(unlike: PhysicalTwin, name: str) -> None
     assert tuned[0] == tuned[1]
 
 
+@pytest.mark.thorough
 def test_real_rows_are_used_where_they_may_be(unlike: PhysicalTwin) -> None:
     """The null of the test above: other rows give another network, but to the source alone."""
     lessons = given(unlike), with_rows(given(unlike), drawn(12, 60, unlike).readings)
     # Long enough for the network that does best to have learned from them.
-    longer = {**FEW, "steps": 200, "width": 48}
+    longer = {**FEW, "steps": 400, "width": 48}
     for name in NETWORKS:
         learn = trained(short(name, **longer))
         one, two = (learn(rows).to_bytes() for rows in lessons)

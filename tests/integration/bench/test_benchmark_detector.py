@@ -30,6 +30,7 @@ LITTLE = DetectionSetting(
 )  # fmt: skip
 
 
+@pytest.mark.thorough
 def test_any_number_of_processes_finds_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "rga_bench.detection.experiment.ready", lambda sensors, arl0: ()

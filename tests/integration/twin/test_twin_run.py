@@ -201,6 +201,7 @@ def test_another_model_in_the_same_directory_is_another_run(
         assert area == (0.004 if folder == stream else 0.005)
 
 
+@pytest.mark.thorough
 def test_killed_at_random_it_loses_nothing_and_ends_the_same(
     stream: Path,
     finished: tuple[Path, Outcome],

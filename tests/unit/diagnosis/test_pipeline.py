@@ -49,6 +49,7 @@ def test_where_nothing_is_hidden_nothing_is_found(
     assert null.gap.held_out.gain == 0.0
 
 
+@pytest.mark.thorough
 def test_the_scatter_is_that_of_rows_in_which_nothing_acts(
     model: Model, measured_record: Callable[..., Record]
 ) -> None:
