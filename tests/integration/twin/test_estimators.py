@@ -15,6 +15,7 @@ from rga.inference import TrainingSettings
 from rga.model import Model, read_effect, read_model
 from rga.records import Record
 from rga.twin import Settings
+from rga.twin.calibration.blocks import BLOCK
 from rga.twin.calibration.choice import choose
 from rga.twin.calibration.expectation import usual_bound
 from rga.twin.calibration.joint_posterior import JointEstimator, changes, why_not
@@ -350,3 +351,25 @@ def test_a_model_that_cannot_be_calibrated_says_so_each_time(
     for _ in range(2):
         with pytest.raises(InputError, match="cannot represent what a calibration needs"):
             rga.run(model, record, tmp_path)
+
+
+@pytest.mark.parametrize("law", ["smooth", "constant"])
+def test_few_rows_before_a_packet_tell_of_contexts_that_change_slowly(
+    law: str, small_stream: Stream, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All of the past would be more with every row."""
+    monkeypatch.setattr("rga.twin.calibration.followed_rows.LEAD", BLOCK)
+    folder = small_stream(drifts=False, sinks=False)
+    content = json.loads((folder / "model.json").read_text("utf-8"))
+    content["context"]["west load"]["law"] = law
+    seen, infer = [], JointEstimator.infer
+
+    def watched(self: JointEstimator, first: int, readings: Any, *rest: Any) -> Any:
+        seen.append(len(readings))
+        return infer(self, first, readings, *rest)
+
+    monkeypatch.setattr(JointEstimator, "infer", watched)
+    kept = json.loads((folder / "settings.json").read_text("utf-8"))
+    settings = Settings.model_validate(kept | {"inference": "joint", "level": "A"})
+    rga.run(read_model(content, "slow"), folder / "record.csv", tmp_path, settings=settings)
+    assert max(seen) <= 3 * BLOCK
