@@ -7,9 +7,12 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from rga.bounded_files import bytes_of
 from rga.errors import InputError
 
 T = TypeVar("T", bound=BaseModel)
+#: bytes of a file of settings
+LARGEST_SETTINGS = 2**20
 
 
 def read_table(path: Path, what: str) -> dict[str, object]:
@@ -22,14 +25,10 @@ def read_table(path: Path, what: str) -> dict[str, object]:
     Raises:
         InputError: the file cannot be read, or holds no table.
     """
+    raw = bytes_of(path, what, LARGEST_SETTINGS)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = raw.decode("utf-8-sig")
         content = tomllib.loads(text) if path.suffix == ".toml" else json.loads(text)
-    except OSError as error:
-        reason = (error.strerror or "unreadable").lower()
-        raise InputError(
-            f"the {what} cannot be read, {reason}", str(path), "check the path"
-        ) from None
     except (ValueError, RecursionError) as error:
         problem = " ".join(str(error).split())
         raise InputError(f"these are no {what}: {problem}", str(path), "mend the syntax") from None

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from rga.bounded_files import bytes_of
 from rga.errors import InputError, kind_of
 from rga.findings.schema import Findings
 
@@ -36,15 +37,10 @@ def load_findings(path: str | Path) -> Findings:
     path = Path(path)
     if path.is_dir():
         path = path / "findings.json"
+    remedy = "give findings.json of `rga diagnose` or `rga run`, or its directory"
+    raw = bytes_of(path, "findings", remedy=remedy)
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        reason = (error.strerror or "unreadable").lower()
-        raise InputError(
-            f"the findings cannot be read, {reason}",
-            str(path),
-            "give findings.json of `rga diagnose` or `rga run`, or its directory",
-        ) from None
+        content = json.loads(raw.decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise InputError(f"this is no JSON: {error}", str(path), "mend the syntax") from None
     if not isinstance(content, dict) or "rga_findings" not in content:

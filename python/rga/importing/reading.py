@@ -2,10 +2,8 @@
 
 from pathlib import Path
 
+from rga.bounded_files import bytes_of
 from rga.errors import InputError
-
-#: bytes of the largest text that is read
-LARGEST = 64 * 2**20
 
 
 def read_bytes(path: Path) -> bytes:
@@ -14,22 +12,9 @@ def read_bytes(path: Path) -> bytes:
     Raises:
         InputError: it is missing, empty, a folder, or larger than any model of a structure.
     """
-    try:
-        size = path.stat().st_size
-        if path.is_dir():
-            raise InputError("this is a folder", str(path), "name a file")
-        if size > LARGEST:
-            raise InputError(
-                f"the file has {size / 2**20:.0f} MiB, more than {LARGEST // 2**20} MiB",
-                str(path),
-                "give the part that describes the structure",
-            )
-        data = path.read_bytes()
-    except OSError as error:
-        reason = (error.strerror or "unreadable").lower()
-        raise InputError(
-            f"the file cannot be read, {reason}", str(path), "check the path"
-        ) from None
+    if path.is_dir():
+        raise InputError("this is a folder", str(path), "name a file")
+    data = bytes_of(path)
     if not data.strip():
         raise InputError("the file is empty", str(path), "give the whole file")
     return data

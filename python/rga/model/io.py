@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
+from rga.bounded_files import LARGEST, bytes_of
 from rga.errors import InputError, kind_of
 from rga.files import write_whole
 from rga.model.mistakes import REMEDY, refusal
@@ -16,6 +17,10 @@ from rga.model.schema import Model
 
 #: of a model file, by its ending; JSON by any other
 LANGUAGES = {".toml": "TOML", ".yaml": "YAML", ".yml": "YAML"}
+#: bytes of a file in one of these, which take seconds a megabyte
+SLOWLY_READ = 8 * 2**20
+#: values of a YAML file, when what it refers to stands in every place
+MOST_VALUES = 10**6
 
 
 def load_model(path: str | Path) -> Model:
@@ -35,12 +40,7 @@ def load_model(path: str | Path) -> Model:
         what = f"{kind_of(path)} is no path of a model file"
         raise InputError(what, "model", "give the path of a JSON, TOML or YAML file")
     path = Path(path)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise InputError(
-            "the model file cannot be read", str(path), error.strerror or "check it"
-        ) from None
+    raw = bytes_of(path, "model file", SLOWLY_READ if path.suffix.lower() in LANGUAGES else LARGEST)
     try:
         content = _parse(raw, path.suffix.lower())
     except UnicodeDecodeError:
@@ -140,8 +140,28 @@ def _parse(raw: bytes, suffix: str) -> Any:
     if language == "TOML":
         return tomllib.loads(text)
     if language == "YAML":
-        return yaml.safe_load(text)
+        content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        if _values(content, {}) > MOST_VALUES:
+            raise ValueError(f"its aliases make more than {MOST_VALUES} values of it")
+        return content
     return json.loads(text, object_pairs_hook=_unique)
+
+
+def _values(content: Any, counted: dict[int, float]) -> float:
+    """How many values there are, those that aliases repeat as often as they stand.
+
+    >>> several = [1, 2]
+    >>> _values([several, several], {})
+    7
+    """
+    if not isinstance(content, dict | list):
+        return 1
+    if id(content) not in counted:
+        # One that holds itself has no end.
+        counted[id(content)] = float("inf")
+        parts = content.values() if isinstance(content, dict) else content
+        counted[id(content)] = 1 + sum(_values(part, counted) for part in parts)
+    return counted[id(content)]
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

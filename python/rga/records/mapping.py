@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from rga.bounded_files import bytes_of
 from rga.errors import InputError, kind_of
 from rga.no_booleans import NO_BOOLEAN
 
@@ -251,13 +252,8 @@ def read_mapping(path: str | Path) -> RecordMapping:
         raise InputError(what, "mapping", "give a RecordMapping, or the path of its file")
     path = Path(path)
     try:
-        content = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        reason = error.strerror or "unreadable"
-        raise InputError(
-            f"the mapping cannot be read, {reason.lower()}", str(path), "check the path"
-        ) from None
-    except ValueError:
+        content = bytes_of(path, "mapping").decode("utf-8-sig")
+    except UnicodeDecodeError:
         raise InputError("the mapping is no UTF-8", str(path), "save it as UTF-8") from None
     return mapping_of(content, path)
 

@@ -5,6 +5,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
+from rga.bounded_files import bytes_of
 from rga.errors import InputError
 from rga.records.formats import read_format
 from rga.records.mapping import FileMapping
@@ -30,20 +31,13 @@ def read_table(
             repeats a column, or has lines of unequal length.
     """
     path = Path(path)
-    try:
-        size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise InputError(
-                f"the file has {size / 1e9:.1f} GB, and at most {LARGEST_FILE / 1e9:.1f} are read",
-                str(path),
-                "part it in time, and give the parts as files of one record",
-            )
-        data = path.read_bytes()
-    except OSError as error:
-        reason = error.strerror or "unreadable"
+    if path.is_file() and (size := path.stat().st_size) > LARGEST_FILE:
         raise InputError(
-            f"the file cannot be read, {reason.lower()}", str(path), "check the path"
-        ) from None
+            f"the file has {size / 1e9:.1f} GB, and at most {LARGEST_FILE / 1e9:.1f} are read",
+            str(path),
+            "part it in time, and give the parts as files of one record",
+        )
+    data = bytes_of(path, largest=LARGEST_FILE)
     if not data:
         raise InputError("the file is empty", str(path), "give a file with a header and rows")
     table = read_format(data, path, mapping or FileMapping(), known)
