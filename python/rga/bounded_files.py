@@ -43,6 +43,17 @@ def bytes_of(
     return content
 
 
+def fault_of(error: Exception) -> str:
+    """What is wrong with the text of a file, in words, by the error of its reader.
+
+    >>> fault_of(RecursionError()), fault_of(ValueError("no  table"))
+    ('lists or tables stand too deep in one another', 'no table')
+    """
+    if isinstance(error, RecursionError):
+        return "lists or tables stand too deep in one another"
+    return " ".join(str(error).split())
+
+
 def _first(path: Path, count: int) -> bytes:
     with path.open("rb") as file:
         return file.read(count)

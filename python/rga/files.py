@@ -1,5 +1,6 @@
 """Files that are written whole or not at all."""
 
+import shutil
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from errno import EISDIR
@@ -45,6 +46,22 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         reason = (error.strerror or "refused").lower()
         what = f"the output cannot be written, {reason}"
         raise InputError(what, str(path), "give another place") from None
+
+
+def check_room(path: Path, wanted: float) -> None:
+    """Whether a disk has room for what is to be written.
+
+    Args:
+        path: of the file; the directory that it is to lie in, or one above, is there.
+        wanted: bytes.
+
+    Raises:
+        InputError: it has less.
+    """
+    place = next((one for one in path.absolute().parents if one.exists()), Path("/"))
+    if wanted > (free := shutil.disk_usage(place).free):
+        words = f"it would take {wanted / 1e9:.3g} GB, and the disk has {free / 1e9:.3g}"
+        raise InputError(words, str(path), "ask for less, or name another disk")
 
 
 def wrong_ending(path: Path, what: str, endings: Sequence[str]) -> InputError:

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from rga.bounded_files import bytes_of
+from rga.bounded_files import bytes_of, fault_of
 from rga.errors import InputError
 
 T = TypeVar("T", bound=BaseModel)
@@ -30,7 +30,7 @@ def read_table(path: Path, what: str) -> dict[str, object]:
         text = raw.decode("utf-8-sig")
         content = tomllib.loads(text) if path.suffix == ".toml" else json.loads(text)
     except (ValueError, RecursionError) as error:
-        problem = " ".join(str(error).split())
+        problem = fault_of(error)
         raise InputError(f"these are no {what}: {problem}", str(path), "mend the syntax") from None
     if not isinstance(content, dict):
         raise InputError(

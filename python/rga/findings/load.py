@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from rga.bounded_files import bytes_of
+from rga.bounded_files import bytes_of, fault_of
 from rga.errors import InputError, kind_of
 from rga.findings.schema import Findings
 
@@ -42,7 +42,9 @@ def load_findings(path: str | Path) -> Findings:
     try:
         content = json.loads(raw.decode("utf-8"))
     except (ValueError, RecursionError) as error:
-        raise InputError(f"this is no JSON: {error}", str(path), "mend the syntax") from None
+        raise InputError(
+            f"this is no JSON: {fault_of(error)}", str(path), "mend the syntax"
+        ) from None
     if not isinstance(content, dict) or "rga_findings" not in content:
         raise InputError(
             "these are no findings: there is no key 'rga_findings'",

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from rga.bounded_files import LARGEST, bytes_of
+from rga.bounded_files import LARGEST, bytes_of, fault_of
 from rga.errors import InputError, kind_of
 from rga.files import write_whole
 from rga.model.mistakes import REMEDY, refusal
@@ -45,14 +45,12 @@ def load_model(path: str | Path) -> Model:
         content = _parse(raw, path.suffix.lower())
     except UnicodeDecodeError:
         raise InputError("this is no UTF-8 text", str(path), "save it as UTF-8") from None
-    except RecursionError:
-        what = "lists or tables stand too deep in one another"
-        raise InputError(what, str(path), REMEDY) from None
+    except RecursionError as error:
+        raise InputError(fault_of(error), str(path), REMEDY) from None
     except (ValueError, yaml.YAMLError) as error:
-        problem = " ".join(str(error).split())
         language = LANGUAGES.get(path.suffix.lower(), "JSON")
         raise InputError(
-            f"this is no {language} text: {problem}", str(path), "mend the syntax"
+            f"this is no {language} text: {fault_of(error)}", str(path), "mend the syntax"
         ) from None
     model = read_model(content, str(path))
     model._sha256 = hashlib.sha256(raw).hexdigest()

@@ -15,7 +15,7 @@ from pydantic import (
     model_validator,
 )
 
-from rga.bounded_files import bytes_of
+from rga.bounded_files import bytes_of, fault_of
 from rga.errors import InputError, kind_of
 from rga.no_booleans import NO_BOOLEAN
 
@@ -274,7 +274,7 @@ def mapping_of(content: str, path: Path) -> RecordMapping:
         raise _explained(error, str(path)) from None
     except (ValueError, RecursionError) as error:
         raise InputError(
-            f"the mapping is no TOML: {' '.join(str(error).split())}", str(path), "mend the syntax"
+            f"the mapping is no TOML: {fault_of(error)}", str(path), "mend the syntax"
         ) from None
     mapping._folder = path.parent
     return mapping

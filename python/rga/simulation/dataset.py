@@ -16,6 +16,7 @@ from scipy.stats import qmc
 from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
+from rga.files import check_room
 from rga.model import Model
 from rga.parallel import finished
 from rga.simulation.simulator import Simulator
@@ -56,7 +57,7 @@ def write_dataset(
 
     Raises:
         InputError: the model has no context variable or sensor, rows is not positive, the place
-            cannot be written to, or there is no cluster.
+            cannot be written to or has no room for it, or there is no cluster.
     """
     if rows < 1:
         raise InputError(f"{rows} rows are no dataset", "rows", "ask for at least one")
@@ -80,6 +81,9 @@ def write_dataset(
         **{f"version_{name}": version(name) for name in ("rga", "numpy", "scipy")},
     }
     parts = path.with_name(f"{path.name}.parts")
+    if not parts.exists():
+        # The parts and the whole, of numbers that hardly compress.
+        check_room(path, 2.0 * rows * 8 * (len(model.context) + len(model.sensors)))
     content = [repr(model), metadata, rows, CHUNK]
     _begin(parts, sha256(json.dumps(content).encode()).hexdigest())
     tasks = [

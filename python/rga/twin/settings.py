@@ -72,9 +72,9 @@ class Settings(BaseModel):
     usual: Annotated[float, Field(gt=0.5, lt=1), NO_BOOLEAN] = 0.99
     growth: Annotated[float, Field(gt=1, allow_inf_nan=False), NO_BOOLEAN] = 2.0
     adopt: Literal["ask", "auto"] = "auto"
-    design_rows: Annotated[int, Field(ge=128, le=10_000_000), NO_BOOLEAN] = 4096
+    design_rows: Annotated[int, Field(ge=128, le=1_000_000), NO_BOOLEAN] = 4096
     repository_z: Annotated[float, Field(gt=0, le=1e6), NO_BOOLEAN] = 4.0
-    distinct: Annotated[float, Field(gt=0), NO_BOOLEAN] | None = None
+    distinct: Annotated[float, Field(gt=0, allow_inf_nan=False), NO_BOOLEAN] | None = None
     training: TrainingSettings = TrainingSettings()
     criteria: Criteria = Criteria()
 

@@ -9,6 +9,10 @@ from rga.no_booleans import NO_BOOLEAN
 Weight = Annotated[float, Field(ge=0, allow_inf_nan=False), NO_BOOLEAN]
 Rate = Annotated[float, Field(gt=0, lt=1), NO_BOOLEAN]
 Count = Annotated[int, Field(ge=1, le=1_000_000), NO_BOOLEAN]
+#: units of a layer: a network of more has more weights than a machine holds
+Width = Annotated[int, Field(ge=1, le=4096), NO_BOOLEAN]
+Modes = Annotated[int, Field(ge=1, le=64), NO_BOOLEAN]
+Batch = Annotated[int, Field(ge=1, le=65_536), NO_BOOLEAN]
 Share = Annotated[float, Field(ge=0, lt=1), NO_BOOLEAN]
 
 
@@ -49,12 +53,12 @@ class TrainingSettings(BaseModel):
     fine_steps: Count = 120
     fine_learning_rate: Rate = 2e-3
     reduced_steps: Count = 2000
-    reduced_width: Count = 96
-    batch: Count = 128
-    target_batch: Count = 48
-    width: Count = 96
-    features: Count = 32
-    modes: Count = 6
+    reduced_width: Width = 96
+    batch: Batch = 128
+    target_batch: Batch = 48
+    width: Width = 96
+    features: Width = 32
+    modes: Modes = 6
     dropout: Share = 0.02
     faults: Share = 0.002
     gain: Share = 0.03
