@@ -40,6 +40,13 @@ class Unread:
 #: type of a mistake that shows beside other parts of the file only
 REFERENCE: LiteralString = "reference"
 EVERYTHING_READ = Unread()
+#: letters of a name
+LONGEST_NAME = 200
+#: parts of a model whose entries have names
+NAMED = (
+    "materials", "sections", "nodes", "members", "supports", "masses", "context", "effects",
+    "sensors",
+)  # fmt: skip
 
 
 def refuse(title: str, mistakes: Iterator[Mistake], of: LiteralString = REFERENCE) -> None:
@@ -67,6 +74,7 @@ def mistakes(model: "Model", unread: Unread = EVERYTHING_READ) -> Iterator[Mista
         model: of which every part is valid by itself.
         unread: what its file has besides.
     """
+    yield from _unwritable(model)
     names = _Names(model, unread)
     for name, member in model.members.items():
         place = ("members", name)
@@ -90,6 +98,18 @@ def mistakes(model: "Model", unread: Unread = EVERYTHING_READ) -> Iterator[Mista
         yield from names.missing("nodes", places, ("sensors", name))
     for name, effect in model.effects.items():
         yield from effect_mistakes(model, effect, ("effects", name), unread)
+
+
+def _unwritable(model: "Model") -> Iterator[Mistake]:
+    """Names that no file, page or message can hold."""
+    named = {"name": [model.name], "groups": list(model.groups)}
+    named |= {part: list(getattr(model, part)) for part in NAMED}
+    for part, names in named.items():
+        for name in names:
+            if len(name) > LONGEST_NAME or not name.isprintable():
+                shown = ascii(name[:40]) + "..." * (len(name) > 40)
+                what = f"{shown} is no name: write at most {LONGEST_NAME} letters and signs"
+                yield (part,), what
 
 
 def effect_mistakes(
