@@ -20,7 +20,9 @@ class Shown:
 
     def describe(self, stage: str, words: str) -> None:
         """Put words in the place of the name of a stage."""
-        self._bars.update(self._task(stage), description=words)
+        from rich.markup import escape
+
+        self._bars.update(self._task(stage), description=escape(words))
 
     def _task(self, stage: str) -> "TaskID":
         if stage not in self._stages:

@@ -1,5 +1,6 @@
 """Bad input: exit code 2, one line that says what, where and how to mend it, nothing written."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -286,3 +287,16 @@ def test_contexts_that_do_not_fit(
         assert outcome.code == 2
         assert part in one_line(outcome.err)
     assert not (tmp_path / "o.csv").exists()
+
+
+def test_a_name_that_looks_like_markup_is_shown_as_it_is(
+    tmp_path: Path, model_file: Path, rga: Callable[..., Any]
+) -> None:
+    content = json.loads(model_file.read_text(encoding="utf-8"))
+    name = "[/bold]"
+    content["sensors"][name] = content["sensors"].pop("D1")
+    path = tmp_path / "marked.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    outcome = rga("whatif", path, "--set", "load=1")
+    assert outcome.code == 0
+    assert name in outcome.out

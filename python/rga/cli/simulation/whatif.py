@@ -112,6 +112,7 @@ def _contexts(result: "WhatIf") -> str:
 def _show(result: "WhatIf") -> None:
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text
 
     table = Table("sensor", "unit")
     unsure = result.change_ci90
@@ -127,7 +128,7 @@ def _show(result: "WhatIf") -> None:
             low, high = unsure[row]
             known = isclose(low, high, rel_tol=WIDTH)
             cells.append("-" if known else f"{low:+.3g} to {high:+.3g}")
-        table.add_row(name, result.units[row], *cells)
+        table.add_row(Text(name), Text(result.units[row]), *cells)
     Console().print(table)
     if unsure is not None:
         typer.echo(
