@@ -14,6 +14,8 @@ from rga.jobs.run import FILE, concluded, made
 from rga.model import Model, as_model, model_of_text
 from rga.records import Record, RecordMapping, RecordSource
 from rga.records.frames import is_frame, table_of_frame
+from rga.records.mapping import read_mapping
+from rga.records.sources import find_sources, named_files
 from rga.twin.commands.command import AnyCommand, Command, read_command
 from rga.twin.hardware.inbox import INBOX, Addressee, Inbox
 from rga.twin.hardware.interface import LIVE
@@ -133,16 +135,27 @@ class LiveTwin:
     def _as_record(
         self, rows: Record | RecordSource, mapping: str | Path | RecordMapping | None
     ) -> Record:
+        """Rows as a record; a channel without a reading in them is missing."""
         station = self._inbox.station
-        if station is None or mapping is not None or not is_frame(rows):
+        if isinstance(rows, Record) or station is None:
             return as_record(rows, self.model, mapping)
-        known = {*station.channels, *station.measured}
-        frame = table_of_frame(rows).frame
-        empty = [one for one in frame.columns if one in known and not frame[one].count()]
-        frame = frame.drop(empty)
-        lacking = [name for name in station.channels if name not in frame.columns]
-        unused = dict.fromkeys(lacking, "no reading in these rows")
-        return as_record(frame, self.model, RecordMapping(unused=unused))
+        if not is_frame(rows):
+            paths, chosen = find_sources(named_files(rows), None, mapping)
+            return as_record(paths, self.model, chosen.model_copy(update={"empty": "missing"}))
+        frame, chosen = table_of_frame(rows).frame, RecordMapping()
+        if isinstance(mapping, RecordMapping):
+            chosen = mapping
+        elif mapping is not None:
+            chosen = read_mapping(mapping)
+        known = {channel.column for channel in chosen.channels.values()} | {*frame.columns}
+        lacking = [
+            name
+            for name in station.channels
+            if name not in known and name not in chosen.channels and name not in chosen.unused
+        ]
+        unused = chosen.unused | dict.fromkeys(lacking, "no reading in these rows")
+        missing = chosen.model_copy(update={"empty": "missing", "unused": unused})
+        return as_record(frame, self.model, missing)
 
     def ask(self, command: AnyCommand) -> int:
         """Keep a command (`rga.twin.Accept` and others); `play` carries it out.
@@ -317,7 +330,7 @@ def live(
     compared = ("name", "model", "settings", "seed")
     if others := [one for one in compared if getattr(known, one) != getattr(wanted, one)]:
         raise InputError(
-            f"a live twin with another {' and '.join(others)} is here",
+            f"a live twin of other {' and '.join(others)} is here",
             str(directory),
             "take another directory, or go on with LiveTwin(directory)",
         )

@@ -87,11 +87,12 @@ def values_of(
     """
     where = f"{table.path}, column {source.column!r}"
     values = table.numbers(source.column, (*mapping.missing, *source.channel.missing))
-    if np.isnan(values).all():
+    if mapping.empty == "refused" and np.isnan(values).all():
         raise InputError(
             f"column {source.column!r} holds no value",
             str(table.path),
-            "list the channel under [unused] in import.toml, with the reason",
+            "list the channel under [unused] in import.toml, with the reason, or state "
+            'empty = "missing"',
         )
     if source.unit is None:
         return values * source.channel.sign

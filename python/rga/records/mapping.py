@@ -99,6 +99,7 @@ class FileMapping(_Table):
         data_line: line of the first row; None: below names and units.
         block: which of several tables of a file, counted from 1.
         missing: what stands for a missing value, such as "-9999".
+        empty: what a channel is whose column holds no value: "refused", or "missing".
         header: pattern of the column names, such as "{channel} ({unit})"; None: channel names, or
             names with the unit in brackets behind them.
         time: where the time stands.
@@ -119,6 +120,7 @@ class FileMapping(_Table):
     data_line: _Line | None = None
     block: _Line | None = None
     missing: list[str] = []
+    empty: Literal["refused", "missing"] = "refused"
     header: str | None = None
     time: TimeColumns = TimeColumns()
     channels: dict[str, Channel] = {}

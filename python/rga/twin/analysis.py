@@ -92,9 +92,16 @@ class RealityGapAnalysis:
         return answer
 
     def take_up_version(self) -> None:
-        """Learn about a version that was put in force by hand, from the calibration's rows."""
+        """Learn about a version that was put in force by hand, from the calibration's rows.
+
+        The latest rows are followed by it, so that what is asked of them next is asked of it.
+        """
+        standing = self.standing
         self._design()
-        self._calibration.learn_version((0, self.standing.calibrated))
+        self._calibration.learn_version((0, standing.calibrated))
+        if standing.row > standing.calibrated:
+            first = standing.row - self._pace.settle if standing.since is None else standing.since
+            self._calibration.follow(max(first, standing.calibrated), standing.row)
 
     def gather(self) -> None:
         """Wait until enough rows are there for the first calibration."""
@@ -167,17 +174,10 @@ class RealityGapAnalysis:
         known = calibration.learned
         self._refine(recent)
         after, left = gap(*recent), gap(*recent, standing.share)
-        changes, novel = calibration.changes(known), calibration.novel(*recent)
-        rows = f"rows {recent[0]} to {recent[1] - 1}"
-        doubted, words = judged(
-            rows,
-            expected,
-            left,
-            usual,
-            changes if calibration.corrects else None,
-            novel,
-            inferred=bool(calibration.latent),
-        )
+        changes = calibration.changes(known) if calibration.corrects else None
+        rows, novel = f"rows {recent[0]} to {recent[1] - 1}", calibration.novel(*recent)
+        inferred = bool(calibration.latent)
+        doubted, words = judged(rows, expected, left, usual, changes, novel, inferred=inferred)
         interval = self._policy.next_interval(
             standing.interval, expected - left, max(usual - 1.0, LEAST_ALLOWED)
         )

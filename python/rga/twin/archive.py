@@ -138,15 +138,9 @@ class Archive:
         self._open.inferred(first, contexts, spread, version)
         self._open.gaps(first, simulated, gaps, version)
 
-    def forget(self, first: int, end: int) -> int:
-        """Forget readings, simulations and gaps of packets from a row on that end before another.
-
-        Returns:
-            The row behind the last of them.
-        """
-        last = self.run.packet_end(end)
-        self._open.forget(first, last)
-        return last
+    def forget(self, first: int, end: int) -> None:
+        """Forget readings, simulations and gaps of rows from one to before another."""
+        self._open.forget(first, end)
 
     def rows(self, first: int, end: int) -> Stretch:
         """Rows as they are stored, with what was inferred and simulated last."""

@@ -41,7 +41,8 @@ class Standing(BaseModel):
         excluded: readings that are not used: a sensor, and the clock from and to which [s]; None:
             it goes on.
         keep: latest rows whose readings are kept; None: all are.
-        forgotten: rows before which readings are forgotten, but for those of the calibration.
+        forgotten: row up to which readings were looked through for what can be forgotten.
+        gaps: first row of, and row behind, stretches whose readings are forgotten.
         commanded: number of the last command that was taken from the inbox.
         doubted: whether a recalibration did not bring the gap down and nothing has explained it.
     """
@@ -71,5 +72,6 @@ class Standing(BaseModel):
     excluded: tuple[Excluded, ...] = ()
     keep: int | None = None
     forgotten: int = 0
+    gaps: tuple[tuple[int, int], ...] = ()
     commanded: int = 0
     doubted: bool = False

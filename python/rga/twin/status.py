@@ -33,7 +33,7 @@ class Status:
         version: number of the model version in force.
         causes: effects that it has beyond the model as given, in words.
         out_of_sync: whether an alarm is being dealt with.
-        forgotten: first and last of the rows whose readings are forgotten; None: none are.
+        forgotten: first and last row of stretches whose readings are forgotten.
         acknowledged_at: wall clock at the last step, UTC, as ISO 8601 text.
         events: the latest, in the order in which they happened.
     """
@@ -45,7 +45,7 @@ class Status:
     version: int
     causes: tuple[str, ...]
     out_of_sync: bool
-    forgotten: tuple[int, int] | None
+    forgotten: tuple[tuple[int, int], ...]
     acknowledged_at: str
     events: tuple[Event, ...]
 
@@ -55,9 +55,10 @@ class Status:
         causes = f" with {', '.join(self.causes)}" if self.causes else ""
         state = "out of sync" if self.out_of_sync else "no alarm is open"
         gone = []
-        if self.forgotten is not None:
-            first, end = self.forgotten
-            gone.append(f"Readings of rows {first} to {end} are forgotten.")
+        if self.forgotten:
+            count = sum(end + 1 - first for first, end in self.forgotten)
+            begin, end = self.forgotten[0][0], self.forgotten[-1][1]
+            gone.append(f"Readings of {count} rows from {begin} to {end} are forgotten.")
         return "\n".join(
             [
                 f"{self.structure}: {self.rows} rows{last}; {NEXT[self.stage]}.",

@@ -161,12 +161,9 @@ class Twin:
         return record_of(self._view)
 
     @property
-    def forgotten(self) -> tuple[int, int] | None:
-        """First and last of the rows whose readings were forgotten as asked; None: none were."""
-        standing = standing_of(self._view)
-        if standing.forgotten <= standing.calibrated:
-            return None
-        return standing.calibrated, standing.forgotten - 1
+    def forgotten(self) -> tuple[tuple[int, int], ...]:
+        """First and last row of stretches whose readings were forgotten as asked."""
+        return tuple((first, behind - 1) for first, behind in standing_of(self._view).gaps)
 
     def status(self) -> Status:
         """Where the run stands."""

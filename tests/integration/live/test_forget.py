@@ -8,15 +8,17 @@ import numpy as np
 import pytest
 
 import rga
-from live_streams import SETTINGS, assert_same, history, kinds, play_step_by_step, sinking
+from live_streams import SETTINGS, SINKS_AT, assert_same, history, kinds, play_step_by_step, sinking
 from rga.errors import InputError
 from rga.model import Model
 from rga.records import Record, load_record
 from rga.twin import Event, Forget, Settings, carry_out
 from rga.twin.history import History
+from rga.twin.past.chosen_past import BEGINNINGS
+from rga.twin.rows.retention import ABOUT
 
 Given = tuple[Model, Record]
-ROWS, KEPT, ASKED_AT = 240, 64, 60
+ROWS, KEPT, ASKED_AT = 320, 64, 60
 CALIBRATED = SETTINGS.calibration_rows or 0
 #: a diagnosis of few rows, of which few need to be kept
 FEW = SETTINGS.model_copy(
@@ -54,24 +56,42 @@ def but_commands(events: tuple[Event, ...]) -> list[Event]:
 def test_old_readings_are_gone_and_the_rest_is_as_it_was(stream: Given, tmp_path: Path) -> None:
     found, whole = (played(stream, tmp_path / str(keep), keep) for keep in (KEPT, None))
     with rga.Twin.open(tmp_path / str(KEPT)) as twin:
-        assert twin.forgotten is not None
-        first, last = twin.forgotten
-        assert f"rows {first} to {last} are forgotten" in twin.status().words()
-    assert first == CALIBRATED
-    assert ROWS - KEPT - 2 * 32 < last < ROWS - KEPT
-    gone = slice(first, last + 1)
+        stretches = twin.forgotten
+        assert "are forgotten" in twin.status().words()
+    gone = np.zeros(ROWS, dtype=bool)
+    for first, last in stretches:
+        gone[first : last + 1] = True
+    assert not gone[:CALIBRATED].any()
+    assert not gone[ROWS - KEPT :].any()
+    marks = [one.row for one in found.events if one.kind in BEGINNINGS]
+    assert not any(gone[max(0, mark - ABOUT) : mark + ABOUT].any() for mark in marks)
+    # What is not about a mark is gone but for the last few packets.
+    near = [abs(np.arange(ROWS) - mark) < ABOUT + 10 for mark in marks]
+    free = ~np.any([np.zeros(ROWS, dtype=bool), *near], axis=0)
+    assert gone[CALIBRATED : ROWS - KEPT - 42][free[CALIBRATED : ROWS - KEPT - 42]].all()
+    assert gone.any()
     for name in ("gaps", "simulated"):
         rows = getattr(found, name)
         assert np.isnan(rows[gone]).all()
-        np.testing.assert_array_equal(rows[:first], getattr(whole, name)[:first])
-        np.testing.assert_array_equal(rows[last + 1 :], getattr(whole, name)[last + 1 :])
+        np.testing.assert_array_equal(rows[~gone], getattr(whole, name)[~gone])
     assert np.isnan(found.record.readings[gone]).all()
-    assert np.isfinite(found.record.readings[:first]).all()
-    assert np.isfinite(found.record.readings[last + 1 :]).all()
+    assert np.isfinite(found.record.readings[~gone]).all()
     np.testing.assert_array_equal(found.record.time, whole.record.time)
     for name, column in whole.record.contexts.items():
         np.testing.assert_array_equal(found.record.contexts[name], column)
     assert but_commands(found.events) == but_commands(whole.events)
+
+
+def test_the_past_can_be_asked_all_the_same(stream: Given, tmp_path: Path) -> None:
+    played(stream, tmp_path / "kept", None)
+    played(stream, tmp_path / "forgotten", KEPT)
+    kept, forgotten = (rga.Twin.open(tmp_path / name) for name in ("kept", "forgotten"))
+    for row in (50, 120, ROWS - 1):
+        one, other = kept.as_of(row=row), forgotten.as_of(row=row)
+        assert one.version == other.version
+        assert one.context == other.context
+        assert one.status().time == other.status().time
+        assert [e.kind for e in one.history().events] == [e.kind for e in other.history().events]
 
 
 def test_step_by_step_it_comes_to_the_same(stream: Given, tmp_path: Path) -> None:
@@ -93,7 +113,11 @@ def test_the_diagnosis_says_what_it_did_not_see(stream: Given, tmp_path: Path) -
         happened = kinds(history(twin).events)
     assert any("are forgotten" in warning for warning in findings.warnings)
     if "alarm" in happened:
-        assert [one.effect["kind"] for one in findings.causes] == ["support_settlement"]
+        (cause,) = findings.causes
+        assert cause.effect["kind"] == "support_settlement"
+        assert cause.onset == pytest.approx(600.0 * SINKS_AT, abs=600.0 * 10)
+        assert cause.onset_ci90 is not None
+        assert cause.onset_ci90[0] <= 600.0 * SINKS_AT <= cause.onset_ci90[1]
     else:
         assert findings.verdict == "nothing_wrong"
     assert (tmp_path / "report.html").exists()
@@ -107,7 +131,7 @@ def test_a_record_of_them_is_empty_there_and_says_so(
     played((model, record), tmp_path / "twin", KEPT)
     said = rga("export", tmp_path / "twin", "-o", tmp_path / "out.csv")
     assert said.code == 0
-    assert f"rows {CALIBRATED} to " in said.err
+    assert f"rows from {CALIBRATED} to " in said.err
     back = load_record(tmp_path / "out.csv", model)
     assert len(back) == ROWS
     gone = np.isnan(back.readings).all(axis=1)
@@ -122,7 +146,7 @@ def test_no_more_is_forgotten_when_all_are_to_be_kept(sound: Given, tmp_path: Pa
         twin.feed(sound[1])
         twin.play()
     with rga.Twin.open(tmp_path) as kept:
-        assert kept.forgotten is None
+        assert kept.forgotten == ()
 
 
 def test_what_a_diagnosis_needs_is_not_forgotten(sound: Given, tmp_path: Path) -> None:

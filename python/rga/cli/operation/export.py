@@ -21,8 +21,9 @@ def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
         record, gone = twin.record, twin.forgotten
     record.write(output)
     contexts = f" and {len(record.contexts)} contexts" if record.contexts else ""
-    if gone is not None:
-        words = f"warning: readings of rows {gone[0]} to {gone[1]} are forgotten, and empty there"
+    if gone:
+        count, last = sum(end + 1 - first for first, end in gone), gone[-1][1]
+        words = f"warning: readings of {count} rows from {gone[0][0]} to {last} are forgotten"
         typer.echo(words, err=True)
     typer.echo(
         f"{counted(len(record), 'row')} of {len(record.sensors)} sensors{contexts} are in {output}."

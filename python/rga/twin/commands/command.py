@@ -31,6 +31,11 @@ class Command(BaseModel):
     why: Annotated[str, Field(max_length=20_000)] = ""
     given_at: str = Field(default_factory=_now)
 
+    @field_validator("who", "why")
+    @classmethod
+    def _in_one_line(cls, words: str) -> str:
+        return "".join(sign for sign in " ".join(words.split()) if sign.isprintable())
+
 
 class Accept(Command):
     """Let what a diagnosis proposed become a version of the twin.

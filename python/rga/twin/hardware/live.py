@@ -12,6 +12,9 @@ from rga.simulation import Simulator
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.hardware.interface import LIVE, Packet, Station
 
+#: beyond this size a number is no reading
+LARGEST = 1e30
+
 
 class Live:
     """The rows that wait for a twin.
@@ -121,6 +124,7 @@ def as_rows(station: Station, rows: Record) -> tuple[FloatArray, FloatArray, Flo
         )
     if rows.time_format != station.time_format:
         raise InputError("they write time otherwise than the first did", place, "feed one clock")
+    _check_numbers(rows)
     if rows.zero is not None:
         raise InputError("a zero was taken off them", place, "feed readings without it")
     count = len(rows)
@@ -131,6 +135,31 @@ def as_rows(station: Station, rows: Record) -> tuple[FloatArray, FloatArray, Flo
         contexts[:, station.measured.index(name)] = values
     labels = [rows.time_label(one) for one in rows.time.tolist()]
     return elapsed_since(station.start, labels), readings, contexts
+
+
+def _check_numbers(rows: Record) -> None:
+    """Whether rows are of one length, in the order of their times, and of numbers that can be.
+
+    Raises:
+        InputError: they are not; none of them is kept.
+    """
+    place = "rows of a live twin"
+    count, time = len(rows.time), rows.time
+    columns = {name: np.asarray(values) for name, values in rows.contexts.items()}
+    if rows.readings.shape != (count, len(rows.sensors)) or any(
+        one.shape != (count,) for one in columns.values()
+    ):
+        raise InputError("its columns differ in length", place, "give every row all columns")
+    if not np.isfinite(time).all() or (np.diff(time) <= 0).any():
+        raise InputError("the times do not rise", place, "sort the rows, and give each its time")
+    columns |= dict(zip(rows.sensors, rows.readings.T, strict=True))
+    for name, values in columns.items():
+        if (wrong := np.flatnonzero(np.abs(values) > LARGEST)).size:
+            raise InputError(
+                f"{name} is {values[wrong[0]]:g} in row {wrong[0]} of them",
+                place,
+                "leave the value empty where none was read",
+            )
 
 
 def elapsed_since(start: str | float, labels: list[str | float]) -> FloatArray:

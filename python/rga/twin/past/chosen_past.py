@@ -27,7 +27,7 @@ def chosen_past(
     calibrated: int,
     most: int,
     seed: int,
-    forgotten: int = 0,
+    forgotten: Sequence[tuple[int, int]] = (),
 ) -> ChosenRows:
     """The rows of a past that a diagnosis is to see: all, or at most a number.
 
@@ -41,7 +41,7 @@ def chosen_past(
         calibrated: rows of the first calibration.
         most: rows that a diagnosis analyses.
         seed: of the choice.
-        forgotten: rows before which only those of the calibration still have readings.
+        forgotten: first row of, and row behind, stretches whose readings are forgotten.
 
     Raises:
         InputError: a channel was zeroed outside the times of the record.
@@ -52,10 +52,13 @@ def chosen_past(
     # What a diagnosis of the last row finds marks that row itself, and must not change its rows.
     marks = [one.row for one in events if one.kind in BEGINNINGS and one.row < rows - 1]
     together = _together(model, past)
-    gone = (np.arange(rows) >= calibrated) & (np.arange(rows) < forgotten)
+    gone = np.zeros(rows, dtype=bool)
+    for first, behind in forgotten:
+        gone[first:behind] = True
     told = []
     if gone.any():
-        told.append(f"readings of rows {calibrated} to {forgotten - 1} are forgotten")
+        first, last = np.flatnonzero(gone)[[0, -1]]
+        told.append(f"readings of {gone.sum()} rows from {first} to {last} are forgotten")
     left = rows - int(gone.sum())
     if left <= most or (left <= WHOLE and (together or not marks)):
         return ChosenRows(np.flatnonzero(~gone), "; ".join(told))

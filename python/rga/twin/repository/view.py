@@ -92,12 +92,19 @@ class RunView:
         c = tables.measured.c
         return self._source.scalar(tables.measured, func.max(c.first_row + c.length)) or 0
 
-    def packet_end(self, row: int) -> int:
-        """The row behind the last packet of those that end before a row; 0 where there is none."""
+    def packets(self, first: int, end: int) -> list[tuple[int, int]]:
+        """First row of, and row behind, the packets from a row on that end by another."""
         c = tables.measured.c
-        behind = c.first_row + c.length
-        near = c.first_row > row - 2 * LONGEST
-        return self._source.scalar(tables.measured, func.max(behind), near, behind <= row) or 0
+        where = [c.first_row >= first, c.first_row + c.length <= end]
+        found = self._source.entries(tables.measured, c.first_row, c.length, where=where)
+        return [(one.first_row, one.first_row + one.length) for one in found]
+
+    def is_forgotten(self, row: int) -> bool:
+        """Whether the readings of a row that was taken in are kept no more."""
+        c = tables.measured.c
+        near = c.first_row > row - LONGEST, c.first_row <= row
+        packets = self._source.entries(tables.measured, c.first_row, c.readings, where=near)
+        return bool(packets) and not max(packets, key=lambda one: one.first_row).readings
 
     def measured(self, first: int = 0, end: int | None = None) -> StoredReadings:
         """Rows of the record."""

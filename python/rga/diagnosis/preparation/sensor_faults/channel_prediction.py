@@ -25,6 +25,8 @@ ALIKE = 3
 WIDTH, SLOWLY = 8, 1.2
 #: share of what channels have in common that the prediction of one by the others misses
 SHARED = 0.12
+#: share of the channels below which a row does not predict one by the others
+FEW_BESIDE = 0.3
 #: share of the readings of a working channel that may lie anywhere
 SPIKES = 0.01
 #: of two like channels the one may be so much noisier than the other
@@ -151,22 +153,36 @@ def slow_part(columns: FloatArray) -> FloatArray:
 def beyond_others(left: FloatArray, observed: BoolArray) -> FloatArray:
     """What each channel shows beyond what the others predict of it, float[rows, sensors].
 
-    A ridge regression of each on all others, by one inverse; the ridge is what as many columns of
-    chance correlate with each other.
+    A ridge regression of each on all others, by one inverse, or one for each channel that lacks
+    readings: rows without them would make it resemble the others less. Rows in which most channels
+    are silent predict nothing.
     """
-    rows, sensors = left.shape
+    sensors = left.shape[1]
+    beside = observed.sum(axis=1) > FEW_BESIDE * observed.any(axis=0).sum()
     scale = np.array(
         [robust_deviation(left[observed[:, number], number]) for number in range(sensors)]
     )
     scale = np.where(scale > 0, scale, 1.0)
     scaled = np.clip(left / scale, -DRAWN_IN, DRAWN_IN)
     scaled /= np.maximum(root_mean_square(scaled), 1e-12)
-    correlation = scaled.T @ scaled / rows
-    precision = np.linalg.inv(correlation + np.eye(sensors) * sensors / rows)
-    alone = (scaled @ precision) / np.diag(precision)
+    alone = _unpredicted(scaled)
+    for number in np.flatnonzero(~observed.all(axis=0) & observed.any(axis=0)):
+        seen = observed[:, number]
+        alone[seen, number] = _unpredicted(scaled[seen])[:, number]
     spread = np.maximum(root_mean_square(np.clip(left / scale, -DRAWN_IN, DRAWN_IN)), 1e-12)
     predicted = (scaled - alone) * scale * spread
-    return np.where(observed, left - predicted, 0.0)
+    return np.where(observed & beside[:, None], left - predicted, 0.0)
+
+
+def _unpredicted(scaled: FloatArray) -> FloatArray:
+    """What ridge regressions of each column on the others leave, float[rows, columns].
+
+    The ridge is what as many columns of chance correlate with each other.
+    """
+    rows, columns = scaled.shape
+    correlation = scaled.T @ scaled / rows
+    precision = np.linalg.inv(correlation + np.eye(columns) * columns / rows)
+    return np.asarray((scaled @ precision) / np.diag(precision))
 
 
 def _usual(
