@@ -25,6 +25,7 @@ from rga.twin.outcome import Outcome
 from rga.twin.repository import Repository
 from rga.twin.repository.faults import RepositoryFault
 from rga.twin.repository.sqlite import PATIENCE
+from rga.twin.restore import standing_of
 from rga.twin.runner import Progress, Running, taken_up
 from rga.twin.settings import Settings, as_settings
 from rga.twin.twin import Twin
@@ -219,6 +220,20 @@ class LiveTwin:
             return concluded(self._taken_up(), self._directory)
 
     @property
+    def waiting(self) -> tuple[int, int]:
+        """Rows, and commands, that `play` has not taken yet."""
+        if isinstance(self._place, Path) and not self._place.exists():
+            return self._inbox.rows, len(self._inbox.commands(0))
+        with Repository.open(self._place, read_only=True) as repository:
+            runs = [one for one in repository.runs() if one.identity.source == self._source]
+            rows, commanded = (runs[-1].rows, standing_of(runs[-1]).commanded) if runs else (0, 0)
+        return self._inbox.rows - rows, len(self._inbox.commands(commanded))
+
+    @property
+    def _source(self) -> str:
+        return f"{LIVE}{self.name}"
+
+    @property
     def twin(self) -> Twin:
         """The twin as its repository holds it.
 
@@ -227,7 +242,7 @@ class LiveTwin:
         """
         if isinstance(self._place, Path) and not self._place.exists():
             raise InputError("it has not begun", f"twin {self.name!r}", "feed rows, and play")
-        return Twin.open(self._place, f"{LIVE}{self.name}")
+        return Twin.open(self._place, self._source)
 
     def _taken_up(self) -> Running:
         if self._running is None:

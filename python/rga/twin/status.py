@@ -33,6 +33,7 @@ class Status:
         version: number of the model version in force.
         causes: effects that it has beyond the model as given, in words.
         out_of_sync: whether an alarm is being dealt with.
+        undecided: the proposal that nobody has decided about, in words; None: there is none.
         forgotten: first and last row of stretches whose readings are forgotten.
         acknowledged_at: wall clock at the last step, UTC, as ISO 8601 text.
         events: the latest, in the order in which they happened.
@@ -45,6 +46,7 @@ class Status:
     version: int
     causes: tuple[str, ...]
     out_of_sync: bool
+    undecided: str | None
     forgotten: tuple[tuple[int, int], ...]
     acknowledged_at: str
     events: tuple[Event, ...]
@@ -54,16 +56,18 @@ class Status:
         last = "" if self.time is None else f", the last of {_moment(self.time)}"
         causes = f" with {', '.join(self.causes)}" if self.causes else ""
         state = "out of sync" if self.out_of_sync else "no alarm is open"
-        gone = []
+        told = []
+        if self.undecided is not None:
+            told.append(f"To be decided: {self.undecided}.")
         if self.forgotten:
             count = sum(end + 1 - first for first, end in self.forgotten)
             begin, end = self.forgotten[0][0], self.forgotten[-1][1]
-            gone.append(f"Readings of {count} rows from {begin} to {end} are forgotten.")
+            told.append(f"Readings of {count} rows from {begin} to {end} are forgotten.")
         return "\n".join(
             [
                 f"{self.structure}: {self.rows} rows{last}; {NEXT[self.stage]}.",
                 f"Model version {self.version} is in force{causes}; {state}.",
-                *gone,
+                *told,
                 *(f"row {one.row:>6}  {one.kind}: {one.words}" for one in self.events),
                 f"Last step: {self.acknowledged_at}.",
             ]

@@ -14,6 +14,7 @@ from rga.model.effect import seconds
 from rga.records import Record
 from rga.simulation.whatif import WhatIf, whatif
 from rga.twin.commands.command import AnyCommand, Rollback
+from rga.twin.commands.proposals import decision
 from rga.twin.digital_twin import TwinState
 from rga.twin.hardware.inbox import INBOX
 from rga.twin.history import History
@@ -165,6 +166,13 @@ class Twin:
         """First and last row of stretches whose readings were forgotten as asked."""
         return tuple((first, behind - 1) for first, behind in standing_of(self._view).gaps)
 
+    @property
+    def _undecided(self) -> str | None:
+        proposals = self._view.proposals()
+        if not proposals or decision(self._view, proposals[-1]) is not None:
+            return None
+        return f"proposal {proposals[-1].number}, {proposals[-1].words}"
+
     def status(self) -> Status:
         """Where the run stands."""
         standing, row = standing_of(self._view), self._view.row
@@ -178,6 +186,7 @@ class Twin:
             version=self.version,
             causes=tuple(effect_words(one) for one in effects.values()),
             out_of_sync=standing.alarm is not None,
+            undecided=self._undecided,
             forgotten=self.forgotten,
             acknowledged_at=self._view.acknowledged_at,
             events=self._view.events()[-SHOWN:],

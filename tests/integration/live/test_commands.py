@@ -226,3 +226,17 @@ def test_rollback_says_who_asked(ended: Path, tmp_path: Path) -> None:
     with rollback(place, 1, who="Ada", why="to see") as stored:
         assert stored.version == 1
     assert [(one.who, one.why) for one in commands(place)] == [("Ada", "to see")]
+
+
+def test_a_recalibration_behind_a_rollback_is_about_the_version_in_force(
+    sinks: Given, taken_in: Callable[..., Path]
+) -> None:
+    place = taken_in(sinks, 100)
+    with rga.LiveTwin(place) as twin:
+        assert twin.twin.version == 2
+        twin.ask(Rollback(who="Ada", version=1))
+        twin.ask(Recalibrate(who="Ada"))
+        (recalibration,) = [one for one in twin.play() if one.kind == "recalibration"]
+    assert recalibration.gap_before is not None
+    assert recalibration.gap_before > 5.0
+    assert "do not explain" in recalibration.words

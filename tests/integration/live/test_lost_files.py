@@ -1,6 +1,7 @@
 """A file of a twin that is lost is told of; rows that lack something are taken as they are."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -103,3 +104,25 @@ def test_a_time_with_a_zone_is_no_time_of_rows_without(
         twin.play()
         (command,) = twin.twin.commands()
     assert "refused: the rows have no time zone" in command.outcome
+
+
+@pytest.mark.parametrize("dead", [slice(2, 3), slice(None)], ids=["one", "all"])
+@pytest.mark.parametrize("how", ["csv", "parquet", "frame", "record"])
+def test_a_channel_without_a_reading_is_missing_however_it_is_fed(
+    how: str, dead: slice, sound: Given, taken_in: Callable[..., Path], tmp_path: Path
+) -> None:
+    row = sound[1].rows(slice(50, 51))
+    readings = row.readings.copy()
+    readings[:, dead] = np.nan
+    given: Any = replace(row, readings=readings)
+    if how == "frame":
+        given = given.to_frame()
+    elif how != "record":
+        given.write(tmp_path / f"row.{how}")
+        given = tmp_path / f"row.{how}"
+    with LiveTwin(taken_in(sound, 50)) as twin:
+        assert twin.feed(given).new == 1
+        twin.feed(sound[1].rows(slice(51, 60)))
+        twin.play()
+        found = twin.twin.record.readings[50:51]
+    np.testing.assert_array_equal(found, readings)

@@ -114,6 +114,50 @@ def test_the_first_rows_are_of_the_model(sound: Given, tmp_path: Path) -> None:
         assert twin.feed(record).new == 100
 
 
+def with_value(record: Record, name: str, value: float) -> Record:
+    """The record with another value of a sensor or a context in its third row."""
+    if name in record.contexts:
+        column = record.contexts[name].copy()
+        column[2] = value
+        return replace(record, contexts={**record.contexts, name: column})
+    readings = record.readings.copy()
+    readings[2, record.sensors.index(name)] = value
+    return replace(record, readings=readings)
+
+
+def with_time(record: Record, value: float) -> Record:
+    """The record with another time of its third row."""
+    time = record.time.copy()
+    time[2] = value
+    return replace(record, time=time)
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda r: with_value(r, "D2", np.inf), "D2 is inf in row 2 of them"),
+        (lambda r: with_value(r, "D2", -1e100), "D2 is -1e.100 in row 2 of them"),
+        (lambda r: with_value(r, "west load", -np.inf), "west load is -inf in row 2"),
+        (lambda r: with_time(r, r.time[1]), "the times do not rise"),
+        (lambda r: with_time(r, r.time[0] - 1.0), "the times do not rise"),
+        (lambda r: with_time(r, np.nan), "the times do not rise"),
+        (lambda r: replace(r, readings=r.readings[:-1]), "differ in length"),
+        (lambda r: replace(r, readings=r.readings[:, :-1]), "differ in length"),
+    ],
+)
+def test_a_record_that_would_spoil_the_twin_is_not_taken(
+    made: Callable[[Record], Record], words: str, sound: Given, tmp_path: Path
+) -> None:
+    model, record = sound
+    with rga.live(model, tmp_path, settings=SETTINGS) as twin:
+        twin.feed(record.rows(slice(0, 50)))
+        with pytest.raises(InputError, match=words):
+            twin.feed(made(record.rows(slice(50, 100))))
+        assert arrived_in(tmp_path) == 50
+        assert twin.feed(record).new == 50
+        twin.play()
+
+
 def test_after_the_end_nothing_is_fed(ended: Path, sound: Given) -> None:
     with rga.LiveTwin(ended) as twin:
         before = history(twin)

@@ -1,6 +1,7 @@
 """`rga status`: where a run stands."""
 
 from dataclasses import asdict
+from pathlib import Path
 
 import typer
 
@@ -11,8 +12,13 @@ from rga.cli.options import JsonTarget
 def status(place: Place, json: JsonTarget = None) -> None:
     """Show where a run stands: its rows, what it does next, its model version, what happened."""
     from rga.cli.output import write_json
+    from rga.jobs.run import FILE
     from rga.twin import Twin
 
+    waiting = _waiting(place)
+    if waiting and not Path(place, FILE).exists():
+        typer.echo(f"It has not begun. {waiting}")
+        return
     with Twin.open(place) as twin:
         found = twin.status()
     if json is not None:
@@ -20,3 +26,20 @@ def status(place: Place, json: JsonTarget = None) -> None:
     if json == "-":
         return
     typer.echo(found.words())
+    if waiting:
+        typer.echo(waiting)
+
+
+def _waiting(place: str) -> str:
+    """What waits for a twin that goes on, in words; nothing does elsewhere."""
+    from rga.jobs.live import LiveTwin
+    from rga.quantities import counted
+    from rga.twin.hardware.inbox import INBOX
+
+    if not Path(place, INBOX).is_file():
+        return ""
+    with LiveTwin(place) as twin:
+        rows, commands = twin.waiting
+    if not rows and not commands:
+        return ""
+    return f"{counted(rows, 'row')} and {counted(commands, 'command')} wait to be played."

@@ -4,7 +4,7 @@ from rga.errors import InputError
 from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.commands.command import PLACE, Reject
-from rga.twin.repository import Proposal
+from rga.twin.repository import Proposal, RunView
 from rga.twin.versions import Effects
 
 DECISIONS = ("accept", "reject")
@@ -66,8 +66,12 @@ class Proposals:
         return proposals[-1] if proposals else None
 
     def _decided(self, proposal: Proposal) -> str | None:
-        """What was decided about a proposal, in words; None: nothing was."""
-        for one in self._archive.run.commands():
-            if one.kind in DECISIONS and one.body == {"proposal": proposal.number}:
-                return f"decided by {one.who}: {one.kind}"
-        return None
+        return decision(self._archive.run, proposal)
+
+
+def decision(run: RunView, proposal: Proposal) -> str | None:
+    """What was decided about a proposal of a run, in words; None: nothing was."""
+    for one in run.commands():
+        if one.kind in DECISIONS and one.body == {"proposal": proposal.number}:
+            return f"decided by {one.who}: {one.kind}"
+    return None

@@ -78,3 +78,28 @@ def test_a_channel_of_its_own_ways_is_large_among_sound_ones(
     readings[:, 1] = simulated[:, 1] + noise[1] * np.sin(0.02 * np.arange(ROWS)) * 4
     slow = own_parts(model, SENSORS, readings, observed, basis, simulated)
     assert np.argmax(slow.size) == 1
+
+
+@pytest.mark.parametrize("seen", [slice(0, 50), slice(150, 200), slice(0, None, 4)])
+def test_a_channel_that_lacks_readings_is_judged_by_those_it_has(
+    seen: slice, draw: np.random.Generator
+) -> None:
+    common = draw.standard_normal(ROWS)
+    left = np.outer(common, [1.0, 2.0, -1.0, 0.5, 1.0, 1.5])
+    left += 0.05 * draw.standard_normal(left.shape)
+    observed = np.ones(left.shape, dtype=bool)
+    whole = root_mean_square(beyond_others(left, observed)[seen])
+    observed[:, 1] = False
+    observed[seen, 1] = True
+    rest = beyond_others(np.where(observed, left, 0.0), observed)
+    assert (rest[~observed] == 0.0).all()
+    assert root_mean_square(rest)[1] < 1.5 * whole[1]
+
+
+def test_rows_in_which_most_channels_are_silent_judge_none(draw: np.random.Generator) -> None:
+    left = np.outer(draw.standard_normal(ROWS), [1.0, 2.0, -1.0, 0.5, 1.0, 1.5])
+    observed = np.ones(left.shape, dtype=bool)
+    observed[60:, 1:] = False
+    rest = beyond_others(np.where(observed, left, 0.0), observed)
+    assert (rest[60:] == 0.0).all()
+    assert rest[:60, 0].any()
