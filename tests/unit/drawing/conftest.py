@@ -47,12 +47,12 @@ def hostile(beam: Callable[..., Model]) -> Model:
     node = "桁" * 40
     member = {"nodes": ["<b>", node], "groups": ["</script>", "$\\frac{1}{2}$"]}
     return beam(
-        name="</script><script>alert(1)</script> \"'& " + "x" * 300,
+        name="</script><script>alert(1)</script> \"'& " + "x" * 150,
         nodes={"<b>": [0, 0, 0], node: [SPAN, 0, 0]},
         members={"<img src=x onerror=alert(1)>": {**member, "section": "s", "material": "m",
                                                   "kind": "frame"}},
         supports={"<s>": {"node": "<b>", "fixed": ["ux", "uz", "ry"]}},
         effects={"<load>": {"kind": "nodal_load", "forces": {node: [0, 0, -1e3]}}},
-        sensors={"<i>\u2028": {"kind": "displacement", "node": node, "direction": [0, 0, 1],
+        sensors={"<i>": {"kind": "displacement", "node": node, "direction": [0, 0, 1],
                                "unit": "mm"}},
     )  # fmt: skip

@@ -14,7 +14,9 @@ def renamed(content: dict[str, Any], sensor: str, **more: Any) -> dict[str, Any]
     return {**content, "sensors": {sensor: first[1], **dict(others)}, **more}
 
 
-@pytest.mark.parametrize("name", ["\ud800", "two\nlines", "bell\x07", "x" * 201, "right\u202eleft"])
+@pytest.mark.parametrize(
+    "name", ["\ud800", "two\nlines", "line\u2028", "bell\x07", "x" * 201, "right\u202eleft"]
+)
 def test_names_that_nothing_can_hold_are_refused(small_bridge: dict[str, Any], name: str) -> None:
     for content in (renamed(small_bridge, name), renamed(small_bridge, "D1", name=name)):
         with pytest.raises(InputError, match="is no name: write at most 200") as refused:
