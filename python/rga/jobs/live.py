@@ -345,7 +345,7 @@ def live(
     compared = ("name", "model", "settings", "seed")
     if others := [one for one in compared if getattr(known, one) != getattr(wanted, one)]:
         raise InputError(
-            f"a live twin of other {' and '.join(others)} is here",
+            f"a live twin that differs in {' and '.join(others)} is here",
             str(directory),
             "take another directory, or go on with LiveTwin(directory)",
         )

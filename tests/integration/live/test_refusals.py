@@ -196,10 +196,10 @@ def test_another_twin_in_the_directory_is_refused(
 ) -> None:
     model = sound[0]
     rga.live(model, tmp_path, settings=SETTINGS).close()
-    with pytest.raises(InputError, match=f"a live twin with another {what} is here"):
+    with pytest.raises(InputError, match=f"a live twin that differs in {what} is here"):
         rga.live(model, tmp_path, **{"settings": SETTINGS} | more)
     stiffer = replace_area(model)
-    with pytest.raises(InputError, match="a live twin with another model is here"):
+    with pytest.raises(InputError, match="a live twin that differs in model is here"):
         rga.live(stiffer, tmp_path, settings=SETTINGS)
     rga.live(model, tmp_path, settings=SETTINGS).close()
 
