@@ -36,7 +36,7 @@ docs:  ## the pages of docs as a site that needs no network: site/index.html
 	$(DEV)/sphinx-build -W --keep-going --quiet -b html docs site
 
 test: fresh = .venv-test
-test:  ## build and install rga in a fresh environment, and run every check
+test:  ## build and install rga in a fresh environment, and run every check but those at full length
 	$(MAKE) --jobs 2 fresh=$(fresh) crates installed
 	$(MAKE) --jobs 2 fresh=$(fresh) tests lint
 

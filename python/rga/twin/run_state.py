@@ -42,7 +42,7 @@ class Standing(BaseModel):
             it goes on.
         keep: latest rows whose readings are kept; None: all are.
         forgotten: row up to which readings were looked through for what can be forgotten.
-        gaps: first row of, and row behind, stretches whose readings are forgotten.
+        forgotten_rows: first row of, and row behind, stretches whose readings are forgotten.
         commanded: number of the last command that was taken from the inbox.
         doubted: whether a recalibration did not bring the gap down and nothing has explained it.
     """
@@ -72,6 +72,6 @@ class Standing(BaseModel):
     excluded: tuple[Excluded, ...] = ()
     keep: int | None = None
     forgotten: int = 0
-    gaps: tuple[tuple[int, int], ...] = ()
+    forgotten_rows: tuple[tuple[int, int], ...] = ()
     commanded: int = 0
     doubted: bool = False

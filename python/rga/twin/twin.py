@@ -164,7 +164,9 @@ class Twin:
     @property
     def forgotten(self) -> tuple[tuple[int, int], ...]:
         """First and last row of stretches whose readings were forgotten as asked."""
-        return tuple((first, behind - 1) for first, behind in standing_of(self._view).gaps)
+        return tuple(
+            (first, behind - 1) for first, behind in standing_of(self._view).forgotten_rows
+        )
 
     @property
     def _undecided(self) -> str | None:

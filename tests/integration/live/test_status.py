@@ -18,9 +18,10 @@ def test_it_says_what_waits(sound: Given, tmp_path: Path, rga: Callable[..., Any
     with rga_package.live(model, tmp_path, settings=SETTINGS) as twin:
         twin.feed(record.rows(slice(0, 5)))
         twin.ask(Note(who="Ada"))
-        assert rga("status", tmp_path).out == (
-            "It has not begun. 5 rows and 1 command wait to be played.\n"
-        )
+        assert twin.waiting == (5, 1)
+        said = rga("status", tmp_path, "--json")
+        assert (said.code, said.out) == (2, "")
+        assert "no twin has been played here" in said.err
         twin.feed(record.rows(slice(0, 44)))
         twin.play()
         twin.ask(Note(who="Ada"))

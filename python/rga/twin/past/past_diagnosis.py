@@ -56,7 +56,9 @@ class PastDiagnosis:
         rows, calibrated = standing.row, standing.calibrated
         model, criteria, past = self._model, self._criteria, self._past(rows)
         events, most = self._archive.run.events(), criteria.record.most_rows
-        choice = chosen_past(model, past, events, calibrated, most, self._seed, standing.gaps)
+        choice = chosen_past(
+            model, past, events, calibrated, most, self._seed, standing.forgotten_rows
+        )
         record = self._archive.used(self._chosen(past, choice.rows))
         if changed and given is not None and given.found is not None:
             assert given.correction is not None

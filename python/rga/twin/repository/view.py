@@ -103,8 +103,9 @@ class RunView:
         """Whether the readings of a row that was taken in are kept no more."""
         c = tables.measured.c
         near = c.first_row > row - LONGEST, c.first_row <= row
-        packets = self._source.entries(tables.measured, c.first_row, c.readings, where=near)
-        return bool(packets) and not max(packets, key=lambda one: one.first_row).readings
+        size = func.length(c.readings).label("size")
+        packets = self._source.entries(tables.measured, c.first_row, size, where=near)
+        return bool(packets) and not max(packets, key=lambda one: one.first_row).size
 
     def measured(self, first: int = 0, end: int | None = None) -> StoredReadings:
         """Rows of the record."""

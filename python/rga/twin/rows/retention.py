@@ -38,10 +38,10 @@ def forget_what_is_old(standing: Standing, archive: Archive, rows: RecentRows) -
     for first, behind in _on_end(packets, marks):
         archive.forget(first, behind)
         rows.forget(first, behind)
-        standing.gaps += ((first, behind),)
+        standing.forgotten_rows += ((first, behind),)
     if packets:
         standing.forgotten = packets[-1][1]
-    standing.gaps = joined(standing.gaps)
+    standing.forgotten_rows = joined(standing.forgotten_rows)
 
 
 def _on_end(packets: Sequence[tuple[int, int]], marks: Sequence[int]) -> list[tuple[int, int]]:
