@@ -66,7 +66,7 @@ def of_chosen_rows(seed: int, factor: float, begun: int) -> Findings:
     choice = chosen_past(model(), whole, [alarm], CALIBRATED, MOST, seed=0)
     assert len(choice.rows) <= MOST
     found = diagnose(model(), whole.rows(choice.rows), criteria=CRITERIA)
-    findings = with_choice(found, choice.words, LONG)
+    findings = with_choice(found, [choice.words], LONG)
     check_invariants(findings)
     return findings
 

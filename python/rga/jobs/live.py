@@ -247,6 +247,8 @@ class LiveTwin:
     def _taken_up(self) -> Running:
         if self._running is None:
             hardware = Live(self._inbox, self.name)
+            if isinstance(self._place, Path) and not self._place.exists():
+                hardware.packet(0, 1)  # else a repository that is lost would be begun anew
             self._running = self._held.enter_context(
                 taken_up(
                     self.model,

@@ -101,6 +101,9 @@ def test_the_diagnosis_does_not_see_it(sound: Given, tmp_path: Path) -> None:
         outcome = twin.end()
     assert outcome.findings.verdict == "nothing_wrong"
     assert outcome.findings.causes == []
+    since = record.time_label(float(record.time[BROKEN - 1]))
+    said = f"no reading of {SENSOR} is used from {since} on, as was asked for"
+    assert said in outcome.findings.warnings
 
 
 def test_its_readings_stay_in_the_record(
@@ -135,6 +138,8 @@ def test_rows_that_were_followed_stay_as_they_are(sound: Given, tmp_path: Path) 
     command = Exclude(who="Ada", sensor=SENSOR, since=0.0)
     found = excluded(model, record, tmp_path / "out", command)
     expected = excluded(model, record, tmp_path / "used", None)
+    (event,) = [one for one in found.events if one.kind == "command"]
+    assert event.words.endswith("rows that were followed stay as they are")
     np.testing.assert_array_equal(found.gaps[:BROKEN], expected.gaps[:BROKEN])
     assert np.isnan(found.gaps[BROKEN:, record.sensors.index(SENSOR)]).all()
 

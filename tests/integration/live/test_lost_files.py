@@ -28,6 +28,7 @@ def test_a_repository_that_is_lost_is_told_of(sound: Given, taken_in: Callable[.
         pytest.raises(InputError, match="row 0 was taken in before, and the repository does not"),
     ):
         twin.play()
+    assert not (place / "twin.sqlite").exists()
 
 
 def test_an_inbox_that_is_lost_is_told_of(sound: Given, taken_in: Callable[..., Path]) -> None:

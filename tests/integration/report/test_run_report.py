@@ -19,7 +19,7 @@ from rga.records import Record
 from rga.report.figures.of_run.contexts_over_time import out_of_range
 from rga.report.figures.of_run.gap_map import MOST_CELLS, stretches
 from rga.report.figures.of_run.run_gap import MOST_PHASES, phases, smoothed, standardised
-from rga.report.pages.run_page import lived
+from rga.report.pages.run_page import lived, run_page
 from rga.report.pages.write import write_report, write_run_report
 from rga.twin.history import Event, History, Version
 from rga_bench.synthetic import draw_case
@@ -98,6 +98,16 @@ def test_gaps_in_words_are_those_of_the_events(model: Model) -> None:
     late = replace(history.events[-1], row=len(history.record) - 1)
     said = lived(replace(history, events=(*history.events[:-1], late)))
     assert "on the last rows as they came in, 1.13 after the version at the end;" in said
+
+
+def test_what_people_asked_for_stands_in_a_table_of_its_own(model: Model) -> None:
+    history = made_history(model)
+    words = [f"Ada asked to note: noted, {number}" for number in range(30)]
+    more = [Event("command", 60, history.events[2].time, one) for one in words]
+    page = run_page(replace(history, events=(*history.events, *more)), closing(history))
+    assert [one["words"] for one in page["asked"]] == words
+    assert page["events"] == run_page(history, closing(history))["events"]
+    assert run_page(history, closing(history))["asked"] == []
 
 
 def closing(history: History, **changes: Any) -> Findings:

@@ -105,4 +105,4 @@ def test_rows_of_the_zero_are_seen() -> None:
 
 def test_findings_of_a_whole_past_stay_as_they_are() -> None:
     told = findings()
-    assert with_choice(told, "", ROWS) is told
+    assert with_choice(told, [], ROWS) is told

@@ -47,7 +47,7 @@ COUNTED = {
 MOST_IN_A_ROW = 3
 MOST_SENSORS = 8
 #: kinds of events that people read one by one
-DECIDED = ("command", "proposal", "version", "rollback")
+DECIDED = ("proposal", "version", "rollback")
 
 
 def run_page(history: History, findings: Findings) -> dict[str, Any]:
@@ -60,6 +60,7 @@ def run_page(history: History, findings: Findings) -> dict[str, Any]:
         "phases": part("The phases", draw_phases, history),
         "gap_map": part("The map of the gap", draw_gap_map, history),
         "events": part("The table of events", events, history),
+        "asked": part("The table of commands", asked, history),
         "contexts_figure": part("The figure of the contexts", draw_contexts, history),
         "contexts_outside": part("The contexts out of range", contexts_outside, history),
         "growth": part("The figure of the repository", draw_growth, history),
@@ -133,9 +134,10 @@ def _listed(parts: list[str]) -> str:
 
 
 def events(history: History) -> list[dict[str, str]]:
-    """The table of events; a long series of one kind stands on one line."""
+    """The table of events without commands; a long series of one kind stands on one line."""
     found = []
-    for kind, series in groupby(history.events, key=lambda event: event.kind):
+    happened = (event for event in history.events if event.kind != "command")
+    for kind, series in groupby(happened, key=lambda event: event.kind):
         several = list(series)
         if len(several) <= MOST_IN_A_ROW or kind in DECIDED:
             found += [_event(event) for event in several]
@@ -149,6 +151,11 @@ def events(history: History) -> list[dict[str, str]]:
         one["gap"] = _change(first.gap_before, last.gap_after)
         found.append(one)
     return found
+
+
+def asked(history: History) -> list[dict[str, str]]:
+    """The table of what people asked for."""
+    return [_event(event) for event in history.events if event.kind == "command"]
 
 
 def _event(event: Event) -> dict[str, str]:

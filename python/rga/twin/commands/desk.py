@@ -137,7 +137,8 @@ class CommandDesk:
         self._calibration.read_again(standing)
         begin = "now" if command.since is None else str(command.since)
         end = "on" if command.until is None else f"to {command.until}"
-        return f"{command.sensor} is not used from {begin} {end}"
+        words = f"{command.sensor} is not used from {begin} {end}"
+        return f"{words}; rows that were followed stay as they are" if since < clock else words
 
     def _forget(self, keep: int | None) -> str:
         if keep is not None and keep < self._least_kept:

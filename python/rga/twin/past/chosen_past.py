@@ -81,17 +81,17 @@ def chosen_past(
     return replace(choice, words="; ".join(told))
 
 
-def with_choice(findings: Findings, words: str, rows: int) -> Findings:
-    """Findings that tell of which rows they are.
+def with_choice(findings: Findings, words: Sequence[str], rows: int) -> Findings:
+    """Findings that tell of which rows and readings they are.
 
     Args:
         findings: of a record of chosen rows.
-        words: how they were chosen; empty where they are all.
+        words: how they were chosen, and what is not used of them; empty where they are all.
         rows: of the past that they were chosen of.
     """
     if not words:
         return findings
-    told = findings.model_copy(update={"warnings": [*findings.warnings, words]})
+    told = findings.model_copy(update={"warnings": [*findings.warnings, *words]})
     told._account = replace(findings.account, recorded=rows)
     return told
 

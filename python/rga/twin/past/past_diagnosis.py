@@ -60,6 +60,7 @@ class PastDiagnosis:
             model, past, events, calibrated, most, self._seed, standing.forgotten_rows
         )
         record = self._archive.used(self._chosen(past, choice.rows))
+        words = [choice.words] * bool(choice.words) + self._unused(standing)
         if changed and given is not None and given.found is not None:
             assert given.correction is not None
             found = diagnose_change(
@@ -73,12 +74,21 @@ class PastDiagnosis:
                 progress=self._progress,
             )
             if found is not None:
-                return with_choice(found, choice.words, rows)
+                return with_choice(found, words, rows)
         findings = diagnose(
             model, record, criteria=criteria, seed=self._seed, progress=self._progress
         )
-        findings = with_choice(findings, choice.words, rows)
+        findings = with_choice(findings, words, rows)
         return in_doubt(findings) if changed and not findings.causes else findings
+
+    def _unused(self, standing: Standing) -> list[str]:
+        """What somebody took out of use, in words."""
+        label, origin = self._hardware.station.time_label, self._hardware.station.origin
+        return [
+            f"no reading of {sensor} is used from {label(since - origin)} "
+            f"{'on' if until is None else f'to {label(until - origin)}'}, as was asked for"
+            for sensor, since, until in standing.excluded
+        ]
 
     def _past(self, rows: int) -> Record:
         """The rows so far; their readings may be left out."""
