@@ -39,10 +39,12 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
             draft.write_bytes(files[path])
         for path, draft in drafts.items():
             draft.replace(path)
-    except OSError as error:
+    except BaseException as error:
         for draft in drafts.values():
             with suppress(OSError):
                 draft.unlink()
+        if not isinstance(error, OSError):
+            raise
         reason = (error.strerror or "refused").lower()
         what = f"the output cannot be written, {reason}"
         raise InputError(what, str(path), "give another place") from None

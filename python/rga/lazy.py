@@ -15,7 +15,6 @@ EXTRAS = {
     "safetensors": "networks",
     "sqlalchemy": "twin",
     "alembic": "twin",
-    "filelock": "twin",
     "weasyprint": "pdf",
     "ezdxf": "formats",
     "openpyxl": "formats",

@@ -2,8 +2,8 @@
 
 import os
 import re
-import time
-from collections.abc import Callable, Iterable, Iterator
+import signal
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
     CancelledError,
@@ -12,10 +12,11 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     wait,
 )
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
 from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from threading import Lock, Thread
 from typing import Any, TypeVar
 
@@ -39,10 +40,11 @@ def finished(
     *,
     workers: int = 1,
     dask: str | None = None,
-) -> Iterator[tuple[Task, Future[Result]]]:
+) -> Generator[tuple[Task, Future[Result]]]:
     """Tasks as they are finished, each with its result or error.
 
     A task is taken when a process is free for it, so that tasks may be made as they are needed.
+    Whoever takes no more of them closes the generator, and the processes end.
 
     Args:
         function: of a module that the processes can import.
@@ -59,7 +61,8 @@ def finished(
         while True:
             # A cluster that has no worker left may get one again.
             for task in islice(waiting, max(count(), 1) - len(going)):
-                going[executor.submit(_alone, function, task)] = task
+                with _interruptions_held_back():
+                    going[executor.submit(_alone, function, task)] = task
             if not going:
                 return
             for future in wait(going, return_when=FIRST_COMPLETED).done:
@@ -89,8 +92,33 @@ def _here() -> Iterator[Processes]:
 @contextmanager
 def _local(workers: int) -> Iterator[Processes]:
     context = get_context("spawn")
-    with ProcessPoolExecutor(workers, context, _end_with, (os.getpid(),)) as pool:
-        yield pool, lambda: workers
+    end, held = context.Pipe(duplex=False)
+    with end, held:
+        pool = ProcessPoolExecutor(workers, context, _end_with, (end,))
+        try:
+            yield pool, lambda: workers
+        except BaseException:
+            # Nobody waits for what they have begun, nor for one that was killed as it answered.
+            held.close()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+        pool.shutdown()
+
+
+@contextmanager
+def _interruptions_held_back() -> Iterator[None]:
+    """Ctrl-C comes after the block, and never to processes that begin within it.
+
+    A terminal sends it to all of them, and they have nothing to say of it.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -168,12 +196,16 @@ class _Here(Executor):
         return future
 
 
-def _end_with(parent: int) -> None:
-    """A worker whose parent was killed ends by itself: nobody will take what it makes."""
+def _end_with(end: Connection) -> None:
+    """A worker whose parent has stopped ends by itself: nobody will take what it makes.
+
+    Args:
+        end: of a pipe that the parent holds as long as it wants results.
+    """
 
     def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(1.0)
+        with suppress(EOFError, OSError):
+            end.recv()
         os._exit(1)
 
     Thread(target=watch, daemon=True).start()

@@ -63,16 +63,15 @@ def _options(
     pass
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
+def run_command(arguments: Sequence[str]) -> None:
     """Run a command and leave with its exit code: 0 done, 2 bad input, 1 fault.
 
     Args:
-        arguments: as typed after `rga`; None: those of the process.
+        arguments: as typed after `rga`.
     """
-    given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         with needing_extras():
-            app(args=_json_with_target(given), prog_name="rga")
+            app(args=_json_with_target(arguments), prog_name="rga")
     except (InputError, MissingPackageError, ReportError) as error:
         typer.echo(f"error: {_words(error)}", err=True)
         sys.exit(1 if isinstance(error, ReportError) else 2)
@@ -83,7 +82,7 @@ def _words(error: Exception) -> str:
     return str(error) if isinstance(error, SeveralMistakes) else " ".join(str(error).split())
 
 
-def _json_with_target(arguments: list[str]) -> list[str]:
+def _json_with_target(arguments: Sequence[str]) -> list[str]:
     """Arguments in which `--json` without a file has the target "-", the standard output."""
     complete: list[str] = []
     for place, argument in enumerate(arguments):

@@ -6,10 +6,10 @@ from rga.cli.options import JsonTarget
 
 NEEDED = (
     "numpy", "scipy", "pydantic", "polars", "PyYAML", "typer", "rich", "jinja2", "matplotlib",
-    "pint",
+    "pint", "filelock",
 )  # fmt: skip
 OPTIONAL = (
-    "torch", "safetensors", "sqlalchemy", "alembic", "filelock", "psycopg", "distributed",
+    "torch", "safetensors", "sqlalchemy", "alembic", "psycopg", "distributed",
     "scikit-sparse", "PyNiteFEA", "ezdxf", "openpyxl", "npTDMS",
 )  # fmt: skip
 CPU_FEATURES = ("sse4_2", "avx", "avx2", "fma", "avx512f", "neon", "asimd", "sve")

@@ -2,6 +2,7 @@
 
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.phrases import effect_words
 from rga.given import as_record
 from rga.model import Model, as_model
+from rga.one_writer import only_writer
 from rga.parallel import finished
 from rga.records import Record
 from rga.records.read import read_table
@@ -113,23 +115,25 @@ def diagnose_many(
     faults: list[ReportError] = []
     summary_of: dict[str, Summary] = {}
     tasks = _tasks(listed, chosen, seed, errors)
-    for task, future in finished(_work, tasks, workers=workers, dask=dask):
-        error = future.exception()
-        if isinstance(error, Exception):
-            errors[task.name] = error
-        else:
-            done: _Done = future.result()
-            summary_of[task.name] = _keep(task.name, done, output / task.name)
-            faults += (
-                [] if done.fault is None else [ReportError(done.fault.reason, output / task.name)]
-            )
-        if progress is not None:
-            progress("diagnosing bridges", len({*summary_of, *errors}) / len(listed))
-    for name, error in errors.items():
-        summary_of[name] = Summary(name, error=" ".join(str(error).split()) or type(error).__name__)
-    summaries = [summary_of[bridge.name] for bridge in listed]
-    frame = pl.DataFrame([asdict(one) for one in summaries], infer_schema_length=None)
-    write_whole({output / SUMMARY: frame.write_csv().encode()})
+    done = finished(_work, tasks, workers=workers, dask=dask)
+    with only_writer(output / SUMMARY), closing(done):
+        for task, future in done:
+            error = future.exception()
+            if isinstance(error, Exception):
+                errors[task.name] = error
+            else:
+                kept: _Done = future.result()
+                summary_of[task.name] = _keep(task.name, kept, output / task.name)
+                if kept.fault is not None:
+                    faults.append(ReportError(kept.fault.reason, output / task.name))
+            if progress is not None:
+                progress("diagnosing bridges", len({*summary_of, *errors}) / len(listed))
+        for name, error in errors.items():
+            words = " ".join(str(error).split()) or type(error).__name__
+            summary_of[name] = Summary(name, error=words)
+        summaries = [summary_of[bridge.name] for bridge in listed]
+        frame = pl.DataFrame([asdict(one) for one in summaries], infer_schema_length=None)
+        write_whole({output / SUMMARY: frame.write_csv().encode()})
     for error in errors.values():
         if not isinstance(error, InputError):
             raise error

@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.metadata import version
@@ -18,11 +18,13 @@ from threadpoolctl import threadpool_limits
 from rga.errors import InputError
 from rga.files import check_room
 from rga.model import Model
+from rga.one_writer import only_writer
 from rga.parallel import finished
 from rga.simulation.simulator import Simulator
 
 #: rows of a part: a power of two keeps the sequence of the contexts balanced
 CHUNK = 16_384
+ELSEWHERE = "give another place, or make room: what is there is gone on from"
 
 
 def write_dataset(
@@ -73,6 +75,8 @@ def write_dataset(
                 "leave it out, or simulate contexts that follow each other",
             )
     path = Path(path)
+    if path.is_dir():
+        raise InputError("the dataset cannot be written, it is a directory", str(path), ELSEWHERE)
     metadata = {
         "seed": str(seed),
         "noise": str(noise).lower(),
@@ -85,24 +89,26 @@ def write_dataset(
         # The parts and the whole, of numbers that hardly compress.
         check_room(path, 2.0 * rows * 8 * (len(model.context) + len(model.sensors)))
     content = [repr(model), metadata, rows, CHUNK]
-    _begin(parts, sha256(json.dumps(content).encode()).hexdigest())
     tasks = [
         _Part(model, seed, noise, begin, min(CHUNK, rows - begin))
         for begin in range(0, rows, CHUNK)
     ]
-    waiting = [task for task in tasks if not task.is_in(parts)]
-    done = len(tasks) - len(waiting)
-    workers = min(workers, max(len(waiting), 1))
-    simulated = finished(_Part.simulate, waiting, workers=workers, dask=dask)
-    for number, (task, part) in enumerate(simulated, start=done + 1):
-        _keep(part.result(), task.file(parts))
-        if progress is not None:
-            progress("simulating", number / len(tasks))
-    draft = parts / "whole.parquet"
-    frames = pl.scan_parquet([task.file(parts) for task in tasks], low_memory=True)
-    frames.sink_parquet(draft, metadata=metadata, maintain_order=True)
-    draft.replace(path)
-    shutil.rmtree(parts)
+    with _written(path), only_writer(path):
+        _begin(parts, sha256(json.dumps(content).encode()).hexdigest())
+        waiting = [task for task in tasks if not task.is_in(parts)]
+        done = len(tasks) - len(waiting)
+        workers = min(workers, max(len(waiting), 1))
+        simulated = finished(_Part.simulate, waiting, workers=workers, dask=dask)
+        with closing(simulated):
+            for number, (task, part) in enumerate(simulated, start=done + 1):
+                _keep(part.result(), task.file(parts))
+                if progress is not None:
+                    progress("simulating", number / len(tasks))
+        draft = parts / "whole.parquet"
+        frames = pl.scan_parquet([task.file(parts) for task in tasks], low_memory=True)
+        frames.sink_parquet(draft, metadata=metadata, maintain_order=True)
+        draft.replace(path)
+        shutil.rmtree(parts)
 
 
 @dataclass(frozen=True)
@@ -157,25 +163,27 @@ def _begin(parts: Path, key: str) -> None:
     if told.exists() and told.read_text(encoding="utf-8") == key:
         return
     shutil.rmtree(parts, ignore_errors=True)
-    with _written(parts):
-        parts.mkdir(parents=True)
-        told.write_text(key, encoding="utf-8")
+    parts.mkdir(parents=True)
+    told.write_text(key, encoding="utf-8")
 
 
 def _keep(content: bytes, file: Path) -> None:
     """Write a part, whole or not at all."""
     draft = file.with_suffix(".draft")
-    with _written(file):
-        draft.write_bytes(content)
-        draft.replace(file)
+    draft.write_bytes(content)
+    draft.replace(file)
 
 
 @contextmanager
 def _written(place: Path) -> Iterator[None]:
     try:
+        place.parent.mkdir(parents=True, exist_ok=True)
         yield
     except OSError as error:
         reason = (error.strerror or "refused").lower()
         raise InputError(
-            f"the dataset cannot be written, {reason}", str(place), "give another place"
+            f"the dataset cannot be written, {reason}", str(place), ELSEWHERE
         ) from None
+    except pl.exceptions.ComputeError as error:
+        words = str(error).partition("\n")[0]
+        raise InputError(f"the dataset cannot be written: {words}", str(place), ELSEWHERE) from None

@@ -17,6 +17,7 @@ from rga.twin.hardware.interface import LIVE, Station
 from rga.twin.history import Event, History, Version
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
 from rga.twin.repository import RunView, StoredReadings
+from rga.twin.repository.faults import Damaged
 from rga.twin.rows.recent import Stretch, carried_on
 from rga.twin.run_state import Standing
 
@@ -133,6 +134,31 @@ def given_model(view: RunView) -> Model:
 def record_of(view: RunView, first: int = 0, end: int | None = None) -> Record:
     """The rows that the repository holds, from one to before another, as a record."""
     return _as_record(view, view.measured(first, end), station_of(view).channels)
+
+
+def whole_record(view: RunView) -> tuple[Record, list[tuple[int, int]]]:
+    """The rows that the repository holds as they were written, as a record.
+
+    Returns:
+        The record, and the first and last rows of those that are damaged.
+
+    Raises:
+        InputError: none is whole.
+    """
+    try:
+        return record_of(view), []
+    except Damaged:
+        whole, damaged = list[StoredReadings](), list[tuple[int, int]]()
+    for first, behind in view.packets(0, view.rows):
+        try:
+            whole.append(view.measured(first, behind))
+        except Damaged:
+            damaged.append((first, behind - 1))
+    if not whole:
+        raise InputError("no row is whole", "repository", "restore it from a copy")
+    parts = [vars(one).values() for one in whole]
+    seen = StoredReadings(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    return _as_record(view, seen, station_of(view).channels), damaged
 
 
 def chosen_record(view: RunView, rows: IntArray) -> Record:

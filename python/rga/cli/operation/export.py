@@ -15,16 +15,27 @@ RecordFile = Annotated[
 def export(place: Place, output: RecordFile = Path("record.csv")) -> None:
     """Write the rows that a run has taken in as a record, which `rga run` reads again."""
     from rga.quantities import counted
-    from rga.twin import Twin
+    from rga.twin.repository import Repository
+    from rga.twin.repository.faults import Damaged
+    from rga.twin.restore import standing_of, whole_record
 
-    with Twin.open(place) as twin:
-        record, gone = twin.record, twin.forgotten
+    with Repository.open(place, read_only=True) as repository:
+        view = repository.latest()
+        record, damaged = whole_record(view)
+        gone: tuple[tuple[int, int], ...] = ()
+        try:
+            gone = standing_of(view).forgotten_rows
+        except Damaged as error:
+            typer.echo(f"warning: {error}", err=True)
     record.write(output)
     contexts = f" and {len(record.contexts)} contexts" if record.contexts else ""
     if gone:
-        count, last = sum(end + 1 - first for first, end in gone), gone[-1][1]
+        count, last = sum(behind - first for first, behind in gone), gone[-1][1] - 1
         words = f"warning: readings of {count} rows from {gone[0][0]} to {last} are forgotten"
         typer.echo(words, err=True)
+    if damaged:
+        which = ", ".join(f"{first} to {last}" for first, last in damaged)
+        typer.echo(f"warning: rows {which} are damaged and left out", err=True)
     typer.echo(
         f"{counted(len(record), 'row')} of {len(record.sensors)} sensors{contexts} are in {output}."
     )

@@ -6,6 +6,9 @@ import typer
 
 from rga.cli.options import JsonTarget
 
+#: damage that is listed
+MOST = 5
+
 Place = Annotated[
     str, typer.Argument(metavar="DIR", help="Directory of a run, or a database by URL.")
 ]
@@ -22,7 +25,18 @@ Time = Annotated[
 ]
 
 
-def replay(place: Place, row: Row = None, time: Time = None, json: JsonTarget = None) -> None:
+Check = Annotated[
+    bool, typer.Option("--check", help="Prove first that all that is kept is what was written.")
+]
+
+
+def replay(
+    place: Place,
+    row: Row = None,
+    time: Time = None,
+    check: Check = False,
+    json: JsonTarget = None,
+) -> None:
     """Replay the log of queries and responses, and check that it leads to where the twin stands."""
     from rga.cli.output import write_json
     from rga.errors import InputError
@@ -30,6 +44,7 @@ def replay(place: Place, row: Row = None, time: Time = None, json: JsonTarget = 
 
     if row is not None and time is not None:
         raise InputError("both --row and --time are given", "options", "give one of them")
+    proved = _proved(place) if check else ""
     with Twin.open(place) as twin:
         if row is not None or time is not None:
             twin = twin.as_of(row=row, time=None if time is None else _moment(time))
@@ -47,8 +62,31 @@ def replay(place: Place, row: Row = None, time: Time = None, json: JsonTarget = 
         return
     for at, kinds, words in log:
         typer.echo(f"row {at:>6}  {kinds}  {words}")
+    if proved:
+        typer.echo(proved)
     where = "before its first row" if state["row"] is None else f"at row {state['row']}"
     typer.echo(f"The twin stands {where}, with model version {state['version']}.")
+
+
+def _proved(place: str) -> str:
+    """That a repository is whole, in words.
+
+    Raises:
+        InputError: it is not.
+    """
+    from rga.errors import InputError
+    from rga.twin.repository import Repository
+
+    with Repository.open(place, read_only=True) as repository:
+        proof = repository.check()
+    if not proof.damage:
+        return f"The repository is whole: all {proof.entries} entries are what was written."
+    listed, more = "; ".join(proof.damage[:MOST]), len(proof.damage) - MOST
+    raise InputError(
+        f"the repository is damaged: {listed}{f'; and {more} more' if more > 0 else ''}",
+        place,
+        "restore it from a copy; rga export saves the rows that are whole",
+    )
 
 
 def _moment(text: str) -> float | str:

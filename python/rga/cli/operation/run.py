@@ -1,7 +1,5 @@
 """`rga run`: the main job."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -76,7 +74,7 @@ def run(
     from rga.jobs.run import run as run_twin
 
     quiet = json == "-"
-    with shown_progress() as progress, _interruption_told():
+    with shown_progress() as progress:
         outcome = run_twin(
             structure,
             measured,
@@ -121,15 +119,6 @@ def _replaced(output: Path, model: "Model", record: "Record", seed: int) -> list
         return []
     which = " and ".join(others)
     return [f"{output} holds the results of a run with another {which}: this run replaces them"]
-
-
-@contextmanager
-def _interruption_told() -> Iterator[None]:
-    try:
-        yield
-    except KeyboardInterrupt:
-        typer.echo("\nInterrupted; the same command goes on where the run stands.", err=True)
-        raise
 
 
 class _News:

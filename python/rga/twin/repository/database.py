@@ -1,5 +1,6 @@
 """Which database a place names."""
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Protocol
@@ -23,6 +24,12 @@ class Database(Protocol):
 
     def writer(self, key: str) -> AbstractContextManager[Connection]:
         """A connection that only one process holds at a time."""
+
+    def begin(self, fill: Callable[[Connection], None]) -> None:
+        """Make what holds the tables where that is this package's business, and fill it."""
+
+    def inspect(self, connection: Connection) -> list[str]:
+        """What is wrong with how the database itself is built, in words."""
 
     def back_up(self, revision: str | None) -> None:
         """Copy what is there before its tables change, where that is this package's business."""

@@ -1,16 +1,20 @@
-"""What a database driver complains of, as an error for the user."""
+"""What a database driver complains of, and what is damaged, as an error for the user."""
 
+import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
+from sqlalchemy import Row, Table
 from sqlalchemy.exc import DBAPIError, OperationalError
 
 from rga.errors import InputError
+from rga.twin.repository.checksum import is_whole
+from rga.twin.repository.chunks import LONGEST
 
 # By the beginning of SQLite's name of the error, and by PostgreSQL's state.
 _MENDED = {
     "SQLITE_NOTADB": ("the file is no repository", "name a file that rga wrote, or a new one"),
-    "SQLITE_CORRUPT": ("the repository is damaged", "restore it from a copy"),
     "SQLITE_BUSY": ("the repository is locked by another process", "wait for it, or end it"),
     "SQLITE_LOCKED": ("the repository is locked by another process", "wait for it, or end it"),
     "SQLITE_PROTOCOL": ("the repository cannot be locked", "keep it on a local disk"),
@@ -20,6 +24,7 @@ _MENDED = {
         "the repository cannot be written",
         "allow writing to it and its directory",
     ),
+    "SQLITE_TOOBIG": ("too much for one entry", "give it less at once"),
     "SQLITE_FULL": ("the disk of the repository is full", "make room"),
     "SQLITE_IOERR": ("the disk of the repository fails", "check the disk"),
     "55P03": ("another process writes this run", "wait for it, or end it"),
@@ -36,6 +41,16 @@ class InUse(RepositoryFault):
     """Another process writes there."""
 
 
+class Damaged(RepositoryFault):
+    """What is there is not what was written."""
+
+
+class NotWhole(Exception):
+    """An entry does not hold what was written, in words."""
+
+
+#: rows that no record has
+MOST_ROWS = 2**40
 #: what says that another process writes there
 _LOCKED = ("SQLITE_BUSY", "55P03")
 
@@ -45,6 +60,8 @@ def as_input_errors(where: str) -> Iterator[None]:
     """Turns what a user can mend into an InputError; other faults pass."""
     try:
         yield
+    except NotWhole as error:
+        raise _damaged(str(error), where) from error
     except DBAPIError as error:
         name = getattr(error.orig, "sqlite_errorname", None)
         name = name or getattr(error.orig, "sqlstate", None) or ""
@@ -52,8 +69,50 @@ def as_input_errors(where: str) -> Iterator[None]:
             if name.startswith(beginning):
                 kind = InUse if name in _LOCKED else RepositoryFault
                 raise kind(what, where, remedy) from error
-        if isinstance(error, OperationalError) and not name.startswith("SQLITE_"):
-            words = str(error.orig).strip().partition("\n")[0]
+        words = str(error.orig).strip().partition("\n")[0]
+        if isinstance(error.orig, sqlite3.Error):
+            raise _damaged(words, where) from error
+        if isinstance(error, OperationalError):
             remedy = "check the URL, and that the server runs and lets you in"
             raise RepositoryFault(f"the server says: {words}", where, remedy) from error
         raise
+
+
+def _damaged(words: str, where: str) -> Damaged:
+    remedy = "restore it from a copy; rga replay --check lists the damage, rga export saves rows"
+    return Damaged(f"the repository is damaged: {words}", where, remedy)
+
+
+def whole(table: Table, entry: Row[Any]) -> Row[Any]:
+    """An entry as it was written.
+
+    Raises:
+        NotWhole: it is not.
+    """
+    if is_whole(entry._asdict()):
+        return entry
+    raise NotWhole(f"{named(table, entry)} is not what was written")
+
+
+def could_be(table: Table, entry: Row[Any]) -> Row[Any]:
+    """Some columns of an entry, if an entry can hold them.
+
+    Raises:
+        NotWhole: they cannot be.
+    """
+    values = entry._mapping
+    numbers = [values[name] for name in ("first_row", "length") if name in values]
+    arrays = [one for one in values.values() if isinstance(one, bytes)]
+    size = values.get("length", 1)
+    if all(isinstance(one, int) and 0 <= one < MOST_ROWS for one in numbers) and (
+        0 < size <= LONGEST and not any(len(one) % (8 * size) for one in arrays)
+    ):
+        return entry
+    raise NotWhole(f"{named(table, entry)} is nothing that is written")
+
+
+def named(table: Table, entry: Row[Any]) -> str:
+    """Which entry it is, in words."""
+    values = entry._mapping
+    key = [f"{one.name} {values[one.name]}" for one in table.primary_key if one.name in values]
+    return " ".join([f"an entry of {table.name}", *key]).replace("run_id", "run")

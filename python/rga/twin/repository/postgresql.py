@@ -1,6 +1,6 @@
 """A repository in a database server: PostgreSQL, one writer for each run."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from sqlalchemy import URL, Connection, Engine, create_engine, text
@@ -53,6 +53,13 @@ class PostgreSQL:
                 connection.execute(_LOCK, {"key": key})
                 connection.execute(text("SET synchronous_commit = on"))
             yield connection
+
+    def begin(self, fill: Callable[[Connection], None]) -> None:
+        """Nothing: whoever runs a server makes its databases."""
+
+    def inspect(self, connection: Connection) -> list[str]:
+        """Nothing: a server watches over its own files."""
+        return []
 
     def back_up(self, revision: str | None) -> None:
         """Nothing: those who run a server back it up, and a migration is one transaction."""

@@ -6,12 +6,23 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import ColumnElement, Connection, Row, Select, Table, func, select, tuple_
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    LargeBinary,
+    Row,
+    Select,
+    Table,
+    func,
+    select,
+    tuple_,
+)
 
 from rga.arrays import FloatArray
 from rga.twin.repository import tables
 from rga.twin.repository.chunks import LONGEST, one_after_another, unpack
 from rga.twin.repository.entries import Rows
+from rga.twin.repository.faults import could_be, whole
 
 #: chunks that are loaded at a time
 BATCH = 32
@@ -31,6 +42,15 @@ class Source:
     run_id: int
     until: int | None = None
 
+    def last_step(self) -> Row[Any] | None:
+        """The last step that was acknowledged, if any."""
+        statement = self._select(tables.step, *tables.step.columns)
+        with self.reading() as connection:
+            entry = connection.execute(
+                statement.order_by(tables.step.c.number.desc()).limit(1)
+            ).one_or_none()
+            return None if entry is None else whole(tables.step, entry)
+
     def scalar(self, table: Table, value: ColumnElement[Any], *where: ColumnElement[bool]) -> Any:
         """A value over the entries of a table, None where there are none."""
         with self.reading() as connection:
@@ -39,17 +59,29 @@ class Source:
     def entries(
         self, table: Table, *columns: ColumnElement[Any], where: Sequence[ColumnElement[bool]] = ()
     ) -> Sequence[Row[Any]]:
-        """Columns of a table (all, if none is named), in the order in which they were stored."""
+        """Columns of a table (all, if none is named), in the order in which they were stored.
+
+        Raises:
+            InputError: one of them is not what was written, or of some columns cannot be.
+        """
         statement = self._select(table, *(columns or table.columns)).where(*where)
         with self.reading() as connection:
-            return connection.execute(statement.order_by(table.c.step, table.c.ordinal)).all()
+            found = connection.execute(statement.order_by(table.c.step, table.c.ordinal)).all()
+            checked = could_be if columns else whole
+            return [checked(table, entry) for entry in found]
 
     def last(self, table: Table, *where: ColumnElement[bool]) -> Row[Any] | None:
         """The entry that was stored last, if any."""
         order = table.c.step.desc(), table.c.ordinal.desc()
         statement = self._select(table, *table.columns).where(*where).order_by(*order).limit(1)
         with self.reading() as connection:
-            return connection.execute(statement).one_or_none()
+            entry = connection.execute(statement).one_or_none()
+            return None if entry is None else whole(table, entry)
+
+    def last_chunk(self, table: Table) -> Row[Any] | None:
+        """The chunk of the last rows, if any."""
+        first = self._select(table, func.max(table.c.first_row)).scalar_subquery()
+        return self.last(table, table.c.first_row == first)
 
     def rows(
         self,
@@ -66,13 +98,13 @@ class Source:
             The rows int[n], an array float[n, width] for each name, and the chunk of each row.
         """
         c = table.c
-        where = [c.first_row > first - LONGEST]
+        where = [c.first_row > first - LONGEST, c.first_row + c.length > first]
         if end is not None:
             where.append(c.first_row < end)
         if version is not None:
             where.append(c.version == version)
-        columns = [c.first_row, c.length, *(c[name] for name in names)]
-        columns += [c.version] if "version" in c else []
+        unread = {one.name for one in c if isinstance(one.type, LargeBinary)} - {*names}
+        columns = [one for one in c if one.name not in unread] if unread else []
         chunks = self.entries(table, *columns, where=where)
         spans = [np.arange(chunk.first_row, chunk.first_row + chunk.length) for chunk in chunks]
         stored = np.concatenate(spans) if spans else np.zeros(0, dtype=np.int64)

@@ -1,15 +1,16 @@
 """A repository in a file: SQLite, one writer for the file."""
 
+import glob
 import os
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from filelock import FileLock, Timeout
 from sqlalchemy import Connection, QueuePool, create_engine, event
 
 from rga.errors import InputError
+from rga.one_writer import Held, only_writer
 from rga.twin.repository.faults import InUse
 
 # How long to wait for a lock [s]: a killed writer's may need a moment to vanish.
@@ -73,21 +74,36 @@ class SQLite:
         Raises:
             InUse: another writer holds the lock.
         """
-        lock = FileLock(f"{self._path}.lock", timeout=self._patience, thread_local=False)
-        try:
-            lock.acquire()
-        except Timeout:
-            remedy = "wait for it, or end it"
-            raise InUse("another process writes this repository", self.where, remedy) from None
-        except OSError as error:
-            remedy = "allow writing to its directory"
-            what = f"the repository cannot be locked: {error.strerror}"
-            raise InputError(what, self.where, remedy) from error
-        try:
-            with self.engine.connect() as connection:
-                yield connection
-        finally:
-            lock.release()
+        with self._alone(), self.engine.connect() as connection:
+            yield connection
+
+    def begin(self, fill: Callable[[Connection], None]) -> None:
+        """Make the file where it is missing, with its tables or not at all."""
+        if self.read_only or self._path.exists():
+            return
+        with self._alone():
+            draft = SQLite(self._path.with_name(f"{self._path.name}.draft"), read_only=False)
+            for file in self._path.parent.glob(f"{glob.escape(draft._path.name)}*"):
+                file.unlink()
+            with draft.engine.begin() as connection:
+                fill(connection)
+            draft.engine.dispose()
+            if not self._path.exists():
+                draft._path.replace(self._path)
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        with ExitStack() as held:
+            try:
+                held.enter_context(only_writer(self._path, self._patience, stays=True))
+            except Held as error:
+                raise InUse(error.what, self.where, error.remedy) from None
+            yield
+
+    def inspect(self, connection: Connection) -> list[str]:
+        """What is wrong with pages and indices of the file, in words."""
+        found = connection.exec_driver_sql("PRAGMA integrity_check(20)").scalars().all()
+        return [] if found == ["ok"] else [str(one) for one in found]
 
     def back_up(self, revision: str | None) -> None:
         """Copy the file beside itself, named after the revision of its tables."""

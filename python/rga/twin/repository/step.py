@@ -9,8 +9,10 @@ from numpy.typing import ArrayLike
 from sqlalchemy import ColumnElement, Connection, Table, delete, insert, select, update
 
 from rga.twin.repository import tables
+from rga.twin.repository.checksum import with_checksum
 from rga.twin.repository.chunks import chunks
 from rga.twin.repository.entries import Origin, Time
+from rga.twin.repository.faults import whole
 
 #: bytes of a page of a state
 PAGE = 16_384
@@ -50,11 +52,7 @@ class Transaction:
         self._pages = {} if pages is None else pages
         self._ordinal = 0
         self._ended = False
-        connection.execute(
-            insert(tables.step).values(
-                run_id=run_id, number=self.number, row=self.row, written_at=now()
-            )
-        )
+        connection.execute(insert(tables.step).values(**self._entry()))
 
     def message(
         self, *, kind: str, row: int, body: dict[str, Any], time: Time | None = None
@@ -185,7 +183,10 @@ class Transaction:
             return (c.run_id == self._run_id) & inside
 
         measured = tables.measured
-        self._connection.execute(update(measured).where(old(measured)).values(readings=b""))
+        for entry in self._connection.execute(select(measured).where(old(measured))).all():
+            left = whole(measured, entry)._asdict() | {"readings": b""}
+            own = [measured.c[name] == left[name] for name in ("run_id", "step", "ordinal")]
+            self._connection.execute(update(measured).where(*own).values(**with_checksum(**left)))
         self._connection.execute(delete(tables.gap).where(old(tables.gap)))
 
     def proposal(
@@ -252,7 +253,7 @@ class Transaction:
             self._connection.execute(
                 insert(tables.state_page),
                 [
-                    {"run_id": self._run_id, "name": name, "page": k, "data": pages[k]}
+                    with_checksum(run_id=self._run_id, name=name, page=k, data=pages[k])
                     for k in changed
                 ],
             )
@@ -261,7 +262,7 @@ class Transaction:
     def end(self) -> None:
         """Note the row that the step reached; nothing more can be stored in it."""
         own = (tables.step.c.run_id == self._run_id) & (tables.step.c.number == self.number)
-        self._connection.execute(update(tables.step).where(own).values(row=self.row))
+        self._connection.execute(update(tables.step).where(own).values(**self._entry()))
         self._ended = True
 
     def _store_rows(
@@ -273,9 +274,16 @@ class Transaction:
     def _store(self, table: Table, about: int, **columns: Any) -> None:
         self._check_open()
         key = {"run_id": self._run_id, "step": self.number, "ordinal": self._ordinal}
-        self._connection.execute(insert(table), key | columns)
+        empty = {column.name: None for column in table.columns if column.nullable}
+        self._connection.execute(insert(table), with_checksum(**empty | key | columns))
         self._ordinal += 1
         self.row = max(self.row, about)
+
+    def _entry(self) -> dict[str, Any]:
+        """The step itself, as far as it has come."""
+        return with_checksum(
+            run_id=self._run_id, number=self.number, row=self.row, written_at=now()
+        )
 
     def _check_open(self) -> None:
         if self._ended:

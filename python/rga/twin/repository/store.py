@@ -13,7 +13,8 @@ from rga.errors import InputError
 from rga.twin.repository import migrations, tables
 from rga.twin.repository.database import Database, database
 from rga.twin.repository.entries import Identity
-from rga.twin.repository.faults import as_input_errors
+from rga.twin.repository.faults import NotWhole, as_input_errors, named, whole
+from rga.twin.repository.proof import Proof, prove
 from rga.twin.repository.source import Source
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.repository.step import Transaction, now
@@ -52,8 +53,13 @@ class Run(RunView):
         c = tables.state_page.c
         with self._reading() as connection:
             of_name = (c.run_id == self._source.run_id) & (c.name == name)
-            pages = connection.scalars(select(c.data).where(of_name).order_by(c.page)).all()
-        return b"".join(bytes(page) for page in pages) if pages else None
+            found = connection.execute(
+                select(tables.state_page).where(of_name).order_by(c.page)
+            ).all()
+            pages = [whole(tables.state_page, one) for one in found]
+            if [one.page for one in pages] != list(range(len(pages))):
+                raise NotWhole(f"pages of the state {name!r} are missing")
+        return b"".join(one.data for one in pages) if pages else None
 
     def close(self) -> None:
         """Let another process write."""
@@ -145,7 +151,8 @@ class Repository:
         """All runs, in the order in which they were begun."""
         with self._reading() as connection:
             entries = connection.execute(select(tables.run).order_by(tables.run.c.id)).all()
-        return tuple(RunView(Source(self._reading, entry.id), *_of(entry)) for entry in entries)
+            views = [RunView(Source(self._reading, one.id), *_of(one)) for one in entries]
+        return tuple(views)
 
     def latest(self, source: str | None = None) -> RunView:
         """The run last acted on.
@@ -161,6 +168,17 @@ class Repository:
             what = "nothing" if source is None else f"no {source!r}"
             raise InputError(f"{what} has run here", self._database.where, "begin with rga run")
         return max(runs, key=lambda view: view.acknowledged_at)
+
+    def check(self) -> Proof:
+        """Read all that is here, and prove that it is what was written.
+
+        Raises:
+            InputError: it cannot be read at all.
+        """
+        with self._reading() as connection:
+            broken = self._database.inspect(connection)
+        proof = prove(self._reading)
+        return Proof(len(self.runs()) + proof.entries, (*broken, *proof.damage))
 
     def close(self) -> None:
         """Close all connections; the lock of a run goes with them."""
@@ -180,6 +198,8 @@ class Repository:
 
     def _prepare(self) -> None:
         where, read_only = self._database.where, self._database.read_only
+        with as_input_errors(where):
+            self._database.begin(migrations.upgrade)
         with self._reading() as connection:
             state = migrations.state(connection)
         if state == "foreign" or (state == "empty" and read_only):
@@ -212,5 +232,15 @@ def _columns(identity: Identity) -> dict[str, Any]:
 
 
 def _of(entry: Row[Any]) -> tuple[Identity, datetime]:
+    """What distinguishes a run, and when it was begun.
+
+    Raises:
+        NotWhole: it is not what was written.
+    """
     identity = Identity(entry.model_sha256, entry.source, entry.seed, entry.settings)
-    return identity, datetime.fromisoformat(entry.begun_at)
+    if identity.key != entry.key:
+        raise NotWhole(f"{named(tables.run, entry)} is not what was written")
+    try:
+        return identity, datetime.fromisoformat(entry.begun_at)
+    except (TypeError, ValueError):
+        raise NotWhole(f"{named(tables.run, entry)} has begun at no time") from None

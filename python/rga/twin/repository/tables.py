@@ -20,6 +20,8 @@ from sqlalchemy import (
     Text,
 )
 
+from rga.twin.repository.checksum import COLUMN
+
 metadata = MetaData(
     naming_convention={
         "pk": "pk_%(table_name)s",
@@ -49,6 +51,7 @@ step = Table(
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("row", Integer, nullable=False),
     Column("written_at", String(40), nullable=False),
+    Column(COLUMN, BigInteger, nullable=False),
 )
 
 
@@ -61,6 +64,7 @@ def _stored(name: str, *columns: Column[Any] | Index) -> Table:
         Column("step", Integer, primary_key=True, autoincrement=False),
         Column("ordinal", Integer, primary_key=True, autoincrement=False),
         *columns,
+        Column(COLUMN, BigInteger, nullable=False),
         ForeignKeyConstraint(["run_id", "step"], ["step.run_id", "step.number"]),
     )
 
@@ -193,4 +197,23 @@ state_page = Table(
     Column("name", String(40), primary_key=True),
     Column("page", Integer, primary_key=True, autoincrement=False),
     _blob("data"),
+    Column(COLUMN, BigInteger, nullable=False),
+)
+
+#: tables of what belongs to a run, with a checksum for every entry
+OF_A_RUN = (
+    step,
+    message,
+    measured,
+    simulated,
+    inferred,
+    gap,
+    version,
+    in_force,
+    findings,
+    event,
+    kept,
+    proposal,
+    command,
+    state_page,
 )

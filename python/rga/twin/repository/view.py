@@ -72,25 +72,26 @@ class RunView:
     @property
     def steps(self) -> int:
         """Number of acknowledged steps."""
-        return self._source.scalar(tables.step, func.max(tables.step.c.number)) or 0
+        last = self._source.last_step()
+        return 0 if last is None else int(last.number)
 
     @property
     def acknowledged_at(self) -> str:
         """Wall clock at the last step, UTC, as ISO 8601 text; that of the beginning before it."""
-        last = self._source.scalar(tables.step, func.max(tables.step.c.written_at))
-        return str(last or self.begun_at.isoformat())
+        last = self._source.last_step()
+        return self.begun_at.isoformat() if last is None else str(last.written_at)
 
     @property
     def row(self) -> int:
         """Last row of the record that a step was about; -1 where there is none."""
-        row = self._source.scalar(tables.step, func.max(tables.step.c.row))
-        return -1 if row is None else int(row)
+        last = self._source.last_step()
+        return -1 if last is None else int(last.row)
 
     @property
     def rows(self) -> int:
         """Number of rows of the record that were taken in."""
-        c = tables.measured.c
-        return self._source.scalar(tables.measured, func.max(c.first_row + c.length)) or 0
+        last = self._source.last_chunk(tables.measured)
+        return 0 if last is None else int(last.first_row + last.length)
 
     def packets(self, first: int, end: int) -> list[tuple[int, int]]:
         """First row of, and row behind, the packets from a row on that end by another."""

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from alembic.script import ScriptDirectory
 
 #: revision of the tables that the code reads and writes
-CURRENT = "0003"
+CURRENT = "0004"
 # A name of its own: the database of a server may hold another application's revisions.
 VERSIONS = "rga_repository"
 OPTIONS: dict[str, Any] = {"version_table": VERSIONS, "compare_type": True}

@@ -1,0 +1,50 @@
+"""Ctrl-C, and the signal by which a system ends a process, as an error that cleans up."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import current_thread, main_thread
+from types import FrameType
+
+#: signals that end a command, in words
+ENDING = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+
+
+class Stopped(BaseException):
+    """A signal has come. No KeyboardInterrupt: the parser of the command line takes those.
+
+    Attributes:
+        number: of the signal.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+    @property
+    def code(self) -> int:
+        """Exit code, as shells count it."""
+        return 128 + self.number
+
+    def __str__(self) -> str:
+        return ENDING[signal.Signals(self.number)]
+
+
+@contextmanager
+def stopping() -> Iterator[None]:
+    """Signals raise `Stopped` within the block; a second one ends the process at once."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, _stop) for number in ENDING}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _stop(number: int, _frame: FrameType | None) -> None:
+    for one in ENDING:
+        signal.signal(one, signal.SIG_DFL)
+    raise Stopped(number)
