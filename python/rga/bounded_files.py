@@ -1,5 +1,6 @@
 """Files that are read: those of a disk, of a size that fits."""
 
+import os
 import stat
 from pathlib import Path
 
@@ -55,5 +56,6 @@ def fault_of(error: Exception) -> str:
 
 
 def _first(path: Path, count: int) -> bytes:
+    """At most so many bytes; room is made for those that are there."""
     with path.open("rb") as file:
-        return file.read(count)
+        return file.read(min(count, os.fstat(file.fileno()).st_size + 1))

@@ -14,6 +14,38 @@ if TYPE_CHECKING:
     import polars as pl
 
 
+class CannotWrite(InputError):
+    """The disk or its rights do not let something be written."""
+
+    def __init__(self, what: str, where: str, remedy: str = "give another place") -> None:
+        super().__init__(what, where, remedy)
+
+
+def cannot_write(error: OSError, path: Path) -> CannotWrite:
+    """The error of an output that the system does not let be written.
+
+    >>> str(cannot_write(OSError(28, "No space left on device"), Path("out.csv")))
+    'the output cannot be written, no space left on device (out.csv): give another place'
+    """
+    reason = (error.strerror or "refused").lower()
+    return CannotWrite(f"the output cannot be written, {reason}", str(path))
+
+
+def made_directory(directory: Path) -> Path:
+    """The directory, made where it is missing.
+
+    Raises:
+        CannotWrite: it cannot be.
+    """
+    if directory.exists() and not directory.is_dir():
+        raise CannotWrite("the output cannot be written, it is a file", str(directory))
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(error, directory) from None
+    return directory
+
+
 def write_whole(files: Mapping[Path, bytes]) -> None:
     """Write files under temporary names beside them, and rename them when all are written.
 
@@ -21,7 +53,7 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         files: contents by path; directories are made where they are missing.
 
     Raises:
-        InputError: one cannot be written; no draft of another stays.
+        CannotWrite: one cannot be written; no draft of another stays, nor a directory without any.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -30,24 +62,25 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
     ['a.txt', 'b.txt']
     """
     drafts = {path: path.with_name(path.name + ".partial") for path in files}
-    path = next(iter(files), Path())
+    path, made = next(iter(files), Path()), list[Path]()
     try:
         for path, draft in drafts.items():
             if path.is_dir():
                 raise IsADirectoryError(EISDIR, "it is a directory")
+            made += [one for one in path.parents if not one.exists()]
             path.parent.mkdir(parents=True, exist_ok=True)
             draft.write_bytes(files[path])
         for path, draft in drafts.items():
             draft.replace(path)
     except BaseException as error:
-        for draft in drafts.values():
-            with suppress(OSError):
-                draft.unlink()
+        with suppress(OSError):
+            for draft in drafts.values():
+                draft.unlink(missing_ok=True)
+            for one in made:
+                one.rmdir()
         if not isinstance(error, OSError):
             raise
-        reason = (error.strerror or "refused").lower()
-        what = f"the output cannot be written, {reason}"
-        raise InputError(what, str(path), "give another place") from None
+        raise cannot_write(error, path) from None
 
 
 def check_room(path: Path, wanted: float) -> None:

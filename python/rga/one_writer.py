@@ -24,7 +24,7 @@ def only_writer(place: Path, patience: float = 0.0, stays: bool = False) -> Iter
         place: a file or directory that may be missing; its name with `.lock` and `.writer` behind
             it are taken.
         patience: how long to wait for another process [s].
-        stays: whether the lock is left for others who may be waiting for it.
+        stays: whether the lock of a place that is there is left for others who wait for it.
 
     Raises:
         Held: another process holds it.
@@ -57,6 +57,6 @@ def only_writer(place: Path, patience: float = 0.0, stays: bool = False) -> Iter
     finally:
         with suppress(OSError):
             writer.unlink()
-            if not stays:
+            if not (stays and place.exists()):
                 path.unlink()
         lock.release()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rga.errors import ReportError, in_short
-from rga.files import write_whole
+from rga.files import CannotWrite, write_whole
 from rga.findings import Findings
 from rga.model.io import model_text
 
@@ -33,12 +33,12 @@ def write_findings(
         The path of the report.
 
     Raises:
+        InputError: they cannot be written there.
         ReportError: the report could not be drawn. Findings and model are there, and a line that
             says so in the place of the report.
     """
     directory = Path(directory)
     extended = findings.account.extended
-    directory.mkdir(parents=True, exist_ok=True)
     write_whole(
         {
             directory / "model.json": model_text(extended).encode(),
@@ -48,11 +48,14 @@ def write_findings(
     shown = directory / "report.html"
     try:
         return (report or _write_report)(findings, shown)
+    except CannotWrite:
+        raise
     except Exception as error:  # of any kind: the findings do not hang on their report
         fault = ReportError(in_short(error), directory)
         # A report that stood here is of other findings.
         said = f"The report could not be drawn: {fault.reason}."
-        shown.write_text(f"<!doctype html><title>No report</title><p>{escape(said)}</p>\n")
+        page = f"<!doctype html><title>No report</title><p>{escape(said)}</p>\n"
+        write_whole({shown: page.encode()})
         raise fault from error
 
 

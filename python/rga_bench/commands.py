@@ -77,6 +77,7 @@ CrossingModel = Annotated[
     Path, typer.Option("--crossing", metavar="MODEL", help="Model file of the crossing in --data.")
 ]
 Small = Annotated[bool, typer.Option("--quick", help="100 rows of 12 sensors only.")]
+Smallest = Annotated[bool, typer.Option("--quick", help="200 rows of 12 sensors only.")]
 Short = Annotated[bool, typer.Option("--quick", help="One run of 3 000 rows only.")]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
@@ -209,6 +210,14 @@ def diagnosis_speed(quick: Small = False, seed: Seed = 0) -> Experiment[Any]:
     from rga_bench.speed.experiment import SpeedExperiment
 
     return SpeedExperiment.of(seed, quick=quick)
+
+
+@_experiment(WRITTEN)
+def limits(quick: Smallest = False, seed: Seed = 0) -> Experiment[Any]:
+    """Time and memory of a diagnosis up to a million rows, 500 sensors and 5 000 members."""
+    from rga_bench.limits.experiment import LimitsExperiment
+
+    return LimitsExperiment.of(seed, quick=quick)
 
 
 @_experiment(WRITTEN)

@@ -24,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        with stopping():
+        with stopping(to_the_end=arguments is None):
             # Signals are minded before what takes a while to import.
             from rga.cli.app import run_command
 

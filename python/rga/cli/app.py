@@ -1,5 +1,6 @@
 """The commands of `rga`, and how their errors reach the user."""
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
@@ -75,6 +76,15 @@ def run_command(arguments: Sequence[str]) -> None:
     except (InputError, MissingPackageError, ReportError) as error:
         typer.echo(f"error: {_words(error)}", err=True)
         sys.exit(1 if isinstance(error, ReportError) else 2)
+    except OSError as error:
+        # What the system refuses: a name that is too long, an output that takes no more.
+        reason, where = (error.strerror or "refused").lower(), error.filename
+        if where is None:
+            where = "the output"
+            # What is left of it would be refused once more when Python ends.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        typer.echo(f"error: {reason} ({where}): give another file or place", err=True)
+        sys.exit(2)
 
 
 def _words(error: Exception) -> str:

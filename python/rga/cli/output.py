@@ -11,6 +11,7 @@ from typing import Any
 import typer
 
 from rga.errors import InputError
+from rga.files import CannotWrite, cannot_write
 
 
 @contextmanager
@@ -73,11 +74,12 @@ def _scratch(path: Path) -> Iterator[Path]:
         parent.mkdir(parents=True, exist_ok=True)
         scratch = Path(tempfile.mkdtemp(prefix=".rga-", dir=parent))
     except OSError as error:
-        reason = (error.strerror or "refused").lower()
-        raise InputError(
-            f"the output cannot be written, {reason}", str(path), "give another place"
-        ) from None
+        raise cannot_write(error, path) from None
     try:
         yield scratch
+    except CannotWrite as error:
+        raise CannotWrite(error.what, str(path)) from error
+    except OSError as error:
+        raise cannot_write(error, path) from error
     finally:
         shutil.rmtree(scratch, ignore_errors=True)

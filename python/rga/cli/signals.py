@@ -31,20 +31,34 @@ class Stopped(BaseException):
 
 
 @contextmanager
-def stopping() -> Iterator[None]:
-    """Signals raise `Stopped` within the block; a second one ends the process at once."""
+def stopping(to_the_end: bool = False) -> Iterator[None]:
+    """Signals raise `Stopped` within the block; a second one ends the process at once.
+
+    Args:
+        to_the_end: whether the process ends behind the block, and then minds no signal any more.
+
+    Raises:
+        Stopped: a signal has come.
+    """
     if current_thread() is not main_thread():
         yield
         return
-    before = {number: signal.signal(number, _stop) for number in ENDING}
+    came: list[int] = []
+
+    def stop(number: int, _frame: FrameType | None) -> None:
+        for one in ENDING:
+            signal.signal(one, signal.SIG_DFL)
+        came.append(number)
+        raise Stopped(number)
+
+    before = {number: signal.signal(number, stop) for number in ENDING}
     try:
         yield
+    except Exception as error:
+        if not came:
+            raise
+        # Libraries in C, as they begin, make another error of it.
+        raise Stopped(came[0]) from error
     finally:
         for number, handler in before.items():
-            signal.signal(number, handler)
-
-
-def _stop(number: int, _frame: FrameType | None) -> None:
-    for one in ENDING:
-        signal.signal(one, signal.SIG_DFL)
-    raise Stopped(number)
+            signal.signal(number, signal.SIG_IGN if to_the_end else handler)

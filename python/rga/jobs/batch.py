@@ -10,7 +10,7 @@ import polars as pl
 
 from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
-from rga.files import write_whole
+from rga.files import made_directory, write_whole
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.phrases import effect_words
@@ -109,8 +109,7 @@ def diagnose_many(
         ReportError: a report could not be drawn; all else is written.
     """
     listed, chosen = _listed(bridges), as_criteria(criteria)
-    output = Path(output)
-    _make(output)
+    output = made_directory(Path(output))
     errors: dict[str, Exception] = {}
     faults: list[ReportError] = []
     summary_of: dict[str, Summary] = {}
@@ -171,21 +170,10 @@ def _work(task: _Task) -> _Done:
 
 
 def _keep(name: str, done: _Done, directory: Path) -> Summary:
-    _make(directory)
     write_whole({directory / name: content for name, content in done.files.items()})
     findings = Findings.model_validate_json(done.files["findings.json"])
     causes = " and ".join(effect_words(cause.effect) for cause in findings.causes)
     return Summary(name, findings.verdict, causes, findings.gap.held_out.gain)
-
-
-def _make(directory: Path) -> None:
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = (error.strerror or "refused").lower()
-        raise InputError(
-            f"the directory cannot be made, {reason}", str(directory), "give another place"
-        ) from None
 
 
 def _listed(

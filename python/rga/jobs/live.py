@@ -9,8 +9,9 @@ from threading import RLock
 from typing import Self
 
 from rga.errors import InputError
+from rga.files import made_directory
 from rga.given import as_record
-from rga.jobs.run import FILE, concluded, made
+from rga.jobs.run import FILE, concluded
 from rga.model import Model, as_model, model_of_text
 from rga.records import Record, RecordMapping, RecordSource
 from rga.records.frames import is_frame, table_of_frame
@@ -337,7 +338,7 @@ def live(
     wanted = Addressee(
         name or given.name, text, given.sha256 or digest, chosen.model_dump_json(), seed
     )
-    place = made(Path(directory))
+    place = made_directory(Path(directory))
     _check_holds_no_record(place)
     inbox = Inbox(place)
     try:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from rga.diagnosis.preparation.prepare import check_length
 from rga.errors import InputError
+from rga.files import made_directory
 from rga.given import as_record
 from rga.model import Model, as_model
 from rga.outputs import write_run
@@ -61,7 +62,7 @@ def run(
     model = as_model(model)
     record, settings = as_record(record, model, mapping), as_settings(settings)
     check_length(record, settings.criteria.record)
-    directory = made(Path(directory))
+    directory = made_directory(Path(directory))
     if (directory / INBOX).exists():
         raise InputError(
             "a twin that goes on is here", str(directory), "give another directory for this run"
@@ -89,19 +90,3 @@ def concluded(running: Running, directory: Path) -> Outcome:
     write_run(outcome, directory)
     running.end()
     return outcome
-
-
-def made(directory: Path) -> Path:
-    """The directory, made where it is missing.
-
-    Raises:
-        InputError: it cannot be.
-    """
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = "it is a file" if directory.is_file() else (error.strerror or "refused").lower()
-        raise InputError(
-            f"the output cannot be written, {reason}", str(directory), "give another directory"
-        ) from None
-    return directory

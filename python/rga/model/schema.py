@@ -184,6 +184,8 @@ class ContextVariable(Part):
             raise ValueError(f"range {list(self.range)} must grow: [smallest, largest]")
         if self.law == "linear" and self.rate is None:
             raise ValueError("the law 'linear' needs a rate: [smallest, largest] per second")
+        if self.noise and not 1e-12 <= self.noise / (self.range[1] - self.range[0]) <= 1e6:
+            raise ValueError(f"a noise of {self.noise:g} is none beside the range: state another")
         return self
 
 
@@ -208,7 +210,7 @@ class Sensor(Part):
     z: Number = 0.0
     total: bool = False
     zero: tuple[AnyNumber | str, AnyNumber | str] | None = None
-    noise: Positive | None = None
+    noise: Annotated[Positive, Field(ge=1e-30, le=1e30)] | None = None
     groups: list[str] = []
 
     @field_validator("zero")

@@ -16,7 +16,7 @@ from scipy.stats import qmc
 from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
-from rga.files import check_room
+from rga.files import CannotWrite, cannot_write, check_room
 from rga.model import Model
 from rga.one_writer import only_writer
 from rga.parallel import finished
@@ -76,7 +76,7 @@ def write_dataset(
             )
     path = Path(path)
     if path.is_dir():
-        raise InputError("the dataset cannot be written, it is a directory", str(path), ELSEWHERE)
+        raise CannotWrite("the output cannot be written, it is a directory", str(path))
     metadata = {
         "seed": str(seed),
         "noise": str(noise).lower(),
@@ -99,7 +99,7 @@ def write_dataset(
         done = len(tasks) - len(waiting)
         workers = min(workers, max(len(waiting), 1))
         simulated = finished(_Part.simulate, waiting, workers=workers, dask=dask)
-        with closing(simulated):
+        with closing(simulated), _nothing_left(parts):
             for number, (task, part) in enumerate(simulated, start=done + 1):
                 _keep(part.result(), task.file(parts))
                 if progress is not None:
@@ -175,15 +175,23 @@ def _keep(content: bytes, file: Path) -> None:
 
 
 @contextmanager
+def _nothing_left(parts: Path) -> Iterator[None]:
+    """Where no part could be made, there is nothing to go on from."""
+    try:
+        yield
+    except BaseException:
+        if not any(parts.glob("*.parquet")):
+            shutil.rmtree(parts, ignore_errors=True)
+        raise
+
+
+@contextmanager
 def _written(place: Path) -> Iterator[None]:
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
         yield
     except OSError as error:
-        reason = (error.strerror or "refused").lower()
-        raise InputError(
-            f"the dataset cannot be written, {reason}", str(place), ELSEWHERE
-        ) from None
+        raise CannotWrite(cannot_write(error, place).what, str(place), ELSEWHERE) from None
     except pl.exceptions.ComputeError as error:
         words = str(error).partition("\n")[0]
-        raise InputError(f"the dataset cannot be written: {words}", str(place), ELSEWHERE) from None
+        raise CannotWrite(f"the output cannot be written: {words}", str(place), ELSEWHERE) from None

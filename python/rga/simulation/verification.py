@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rga import _core
+from rga.bounded_files import bytes_of
 from rga.simulation.verification_input import FrameCase, Json, Loads, output_arrays, point
 
 # A reference value below this part of what the loads could cause is a zero, spelled out by the
@@ -67,9 +68,9 @@ def verify_case(path: str | Path) -> VerificationResult:
     path = Path(path)
     readable = True
     try:
-        case = json.loads(path.read_text(encoding="utf-8"))
+        case = json.loads(bytes_of(path, "case"))
         if "samples" in case:
-            base = json.loads((path.parent / f"{case['base']}.json").read_text(encoding="utf-8"))
+            base = json.loads(bytes_of(path.parent / f"{case['base']}.json", "case"))
             checks = _check_samples(case, base)
         else:
             frame = FrameCase.read(case)
@@ -83,7 +84,7 @@ def verify_case(path: str | Path) -> VerificationResult:
     except KeyError as error:
         failure = f"the case lacks, or has nowhere, what it names {error.args[0]!r}"
         readable = False
-    except (OSError, RecursionError, ArithmeticError, *MALFORMED) as error:
+    except (RecursionError, ArithmeticError, *MALFORMED) as error:
         failure = f"the case cannot be read as one of this format ({error})"
         readable = False
     else:

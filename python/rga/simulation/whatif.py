@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from rga.arrays import FloatArray
+from rga.bounded_files import bytes_of, fault_of
 from rga.errors import InputError
 from rga.model import Effect, Model, as_model, read_effect
 from rga.model.effect import when_all_act
@@ -191,15 +192,12 @@ def read_effects(path: str | Path) -> dict[str, Effect]:
         InputError: the file cannot be read, or holds no effect of the vocabulary.
     """
     path = Path(path)
+    raw = bytes_of(path, "effect")
     try:
-        content = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        reason = (error.strerror or "unreadable").lower()
-        raise InputError(
-            f"the effect cannot be read, {reason}", str(path), "check the path"
-        ) from None
-    except ValueError as error:
-        raise InputError(f"this is no JSON: {error}", str(path), "mend the syntax") from None
+        content = json.loads(raw.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        what = f"this is no JSON: {fault_of(error)}"
+        raise InputError(what, str(path), "mend the syntax") from None
     if not isinstance(content, dict):
         raise InputError("this is no effect", str(path), "give an object with a 'kind'")
     named = {path.stem: content} if "kind" in content else content

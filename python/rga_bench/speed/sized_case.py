@@ -58,6 +58,14 @@ class SizedCase:
 
     def draw(self) -> tuple[Model, Record]:
         """The model, and the record of a bridge that is not quite as drawn."""
+        model, table = self.table()
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "record.csv"
+            table.write_csv(path)
+            return model, load_record(path, model)
+
+    def table(self) -> tuple[Model, polars.DataFrame]:
+        """The model, and the columns of the record."""
         rng = np.random.default_rng(self.seed)
         model = self.model()
         factors = np.exp(SCATTER * rng.normal(size=len(model.members)))
@@ -79,8 +87,4 @@ class SizedCase:
         if self.hidden == "broken channel":
             shown[self.rows // 2 :, 1] = shown[self.rows // 2, 1]
         columns = {**drawn, **dict(zip(model.sensors, shown.T, strict=True))}
-        table = polars.DataFrame({"time": 3600.0 * np.arange(self.rows), **columns})
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "record.csv"
-            table.write_csv(path)
-            return model, load_record(path, model)
+        return model, polars.DataFrame({"time": 3600.0 * np.arange(self.rows), **columns})

@@ -28,7 +28,7 @@ DONE: list[tuple[Any, dict[str, Any], str]] = [
     (
         Exclude(sensor="D1", since=4e4, until=5e4, **BY),
         {"sensor": "D1", "since": 4e4, "until": 5e4},
-        "D1 is not used from 40000.0 to 50000.0",
+        "D1 is not used from 40000.0 to 50000.0; rows that were followed stay as they are",
     ),
 ]
 #: those that cannot be done by a twin that has found nothing, and what it says

@@ -59,7 +59,7 @@ def test_a_twin_that_another_plays_is_left_to_it(sound: Given, tmp_path: Path) -
         worker = Worker([place])
         assert worker.round() == {}
         assert worker.failed == {}
-        with pytest.raises(InUse, match="another process"):
+        with pytest.raises(InUse, match="writes there"):
             LiveTwin(place, patience=0.0).play()
     assert worker.round()[place][0].kind == "calibration"
 

@@ -117,7 +117,7 @@ def scatter_effects(
     own[every, 1:, every] = size[:, None, None] * share(patterns).T
     shares = [
         *(share(change).T for change in members),
-        *own.reshape(-1, *own.shape[2:]),
+        *own.reshape(sensors * own.shape[1], *own.shape[2:]),
         *(share(change).T for change in of_contexts),
         *(np.outer(factor, share(history)) for factor in factors.T for history in drift.T),
         *(share(change).T for change in moved),

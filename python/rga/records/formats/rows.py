@@ -8,6 +8,9 @@ import polars as pl
 
 from rga.errors import InputError
 
+#: columns beyond which a file is no table of channels
+MOST_COLUMNS = 20_000
+
 
 def read_rows(
     body: bytes,
@@ -58,6 +61,9 @@ def read_rows(
         raise InputError(
             f"a line has {most} fields, the header has {count}", str(path), "mend the line"
         )
+    if wide > MOST_COLUMNS:
+        what = f"a line has {wide} fields, and at most {MOST_COLUMNS} are read"
+        raise InputError(what, str(path), "part the table, a column a channel")
     ids = [f"c{number}" for number in range(wide)]
     head = delimiter.join(ids).encode() + b"\n"
     try:

@@ -92,6 +92,12 @@ def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
     return StatedTime(columns, time.format, unit=size)
 
 
+#: types of columns that tell no time of a row
+NO_TIMES = (pl.Time, pl.Boolean, pl.Binary)
+#: span of a record, below which no row can be told from another [s]
+SHORTEST = 1e-6
+
+
 @dataclass(frozen=True)
 class _Reading:
     """Time columns on their way to a clock; their rows may be in any order."""
@@ -117,6 +123,14 @@ class _Reading:
                     self.table.where(int(values.is_null().arg_true()[0]), column),
                     "give every row its time, or take the row out",
                 )
+        if unfit := [one for one in series if one.dtype.is_nested() or one.dtype in NO_TIMES]:
+            raise InputError(
+                f"a column of {unfit[0].dtype} holds no times",
+                self.table.where(0, unfit[0].name),
+                "give dates with their time of day, or seconds",
+            )
+        if len(series) == 1 and series[0].dtype == pl.Duration:
+            return self._elapsed(series[0].dt.total_microseconds().to_numpy() / 1e6)
         if len(series) == 1 and series[0].dtype.is_temporal():
             return self._temporal(series[0])
         if stated.format in COUNTED:
@@ -255,6 +269,12 @@ class _Reading:
         return self._clock((stamps - stamps[0]) / 1e6, start.isoformat())
 
     def _clock(self, seconds: FloatArray, start: str | float) -> Clock:
+        if len(seconds) > 1 and 0 < np.ptp(seconds) < SHORTEST:
+            raise InputError(
+                f"all rows lie within {np.ptp(seconds):g} s",
+                self.table.where(0, self.where),
+                "give times in seconds, or state their unit in import.toml",
+            )
         kind: Literal["iso", "seconds"] = "iso" if isinstance(start, str) else "seconds"
         return Clock(seconds, start, kind, self.stated.columns, tuple(self.notes))
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from sqlalchemy import (
@@ -19,6 +20,7 @@ from sqlalchemy import (
     Integer,
     LargeBinary,
     MetaData,
+    Row,
     Table,
     Text,
     delete,
@@ -30,11 +32,14 @@ from sqlalchemy import (
 
 from rga.arrays import FloatArray
 from rga.twin.hardware.interface import Packet, Station
-from rga.twin.repository.faults import as_input_errors
+from rga.twin.repository.checksum import COLUMN, with_checksum
+from rga.twin.repository.faults import as_input_errors, whole
 from rga.twin.repository.sqlite import SQLite
 
 #: name of the file
 INBOX = "inbox.sqlite"
+#: a time later than any
+LATEST = 1e308
 
 _metadata = MetaData()
 # One line: the twin that rows are for.
@@ -46,6 +51,7 @@ _twin = Table(
     Column("model_sha256", Text, nullable=False),
     Column("settings", Text, nullable=False),
     Column("seed", BigInteger, nullable=False),
+    Column(COLUMN, BigInteger, nullable=False),
 )
 # One line: what is mounted, rows that have ever arrived, the time of the last, and whether it is.
 _station = Table(
@@ -55,6 +61,7 @@ _station = Table(
     Column("rows", Integer, nullable=False),
     Column("last", Float(53), nullable=False),
     Column("ended", Boolean, nullable=False),
+    Column(COLUMN, BigInteger, nullable=False),
 )
 _row = Table(
     "row",
@@ -62,13 +69,14 @@ _row = Table(
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("time", Float(53), nullable=False),
     Column("values", LargeBinary, nullable=False),
+    Column(COLUMN, BigInteger, nullable=False),
 )
 _command = Table(
     "command",
     _metadata,
-    Column("number", Integer, primary_key=True, autoincrement=True),
+    Column("number", Integer, primary_key=True, autoincrement=False),
     Column("command", Text, nullable=False),
-    sqlite_autoincrement=True,
+    Column(COLUMN, BigInteger, nullable=False),
 )
 
 
@@ -116,15 +124,14 @@ class Inbox:
     @property
     def addressee(self) -> Addressee | None:
         """The twin that rows are for; None before it is named."""
-        with self._reading() as connection:
-            known = connection.execute(select(_twin)).one_or_none()
-        return None if known is None else Addressee(**known._mapping)
+        known = self._only(_twin)
+        return None if known is None else Addressee(**known)
 
     def name(self, addressee: Addressee) -> Addressee:
         """Name the twin that rows are for, unless one is named already, which it gives then."""
         with self._writing() as connection:
             if connection.execute(select(_twin)).one_or_none() is None:
-                connection.execute(insert(_twin).values(**asdict(addressee)))
+                connection.execute(insert(_twin).values(**with_checksum(**asdict(addressee))))
         named = self.addressee
         assert named is not None
         return named
@@ -132,21 +139,20 @@ class Inbox:
     @property
     def station(self) -> Station | None:
         """What is mounted on the structure; None before the first row."""
-        with self._reading() as connection:
-            text = connection.scalar(select(_station.c.station))
-        return None if text is None else Station.from_json(text)
+        known = self._only(_station)
+        return None if known is None else Station.from_json(known["station"])
 
     @property
     def rows(self) -> int:
         """Rows that have ever arrived."""
-        with self._reading() as connection:
-            return connection.scalar(select(_station.c.rows)) or 0
+        known = self._only(_station)
+        return 0 if known is None else int(known["rows"])
 
     @property
     def ended(self) -> bool:
         """Whether no more rows will come."""
-        with self._reading() as connection:
-            return bool(connection.scalar(select(_station.c.ended)))
+        known = self._only(_station)
+        return known is not None and bool(known["ended"])
 
     def put(
         self, station: Station, time: FloatArray, readings: FloatArray, contexts: FloatArray
@@ -163,43 +169,48 @@ class Inbox:
             or the end meanwhile.
         """
         with self._writing() as connection:
-            known = connection.execute(select(_station)).one_or_none()
-            if known is None:
-                first, last = 0, -np.inf
-                connection.execute(
-                    insert(_station).values(
-                        station=station.to_json(), rows=0, last=0.0, ended=False
-                    )
-                )
+            found = connection.execute(select(_station)).one_or_none()
+            if found is None:
+                known: dict[str, Any] = {
+                    "station": station.to_json(),
+                    "rows": 0,
+                    "last": -LATEST,
+                    "ended": False,
+                }
+                connection.execute(insert(_station).values(**with_checksum(**known)))
             else:
-                if known.ended or known.station != station.to_json():
-                    return None
-                first, last = known.rows, known.last
-            new = np.flatnonzero(time > last)
+                known = _values(_station, found)
+            if known["ended"] or known["station"] != station.to_json():
+                return None
+            new = np.flatnonzero(time > known["last"])
             if not len(new):
                 return 0
-            values = np.column_stack([readings, contexts])[new].astype("<f8")
+            first, values = known["rows"], np.column_stack([readings, contexts])[new].astype("<f8")
             rows = [
-                {"number": first + k, "time": float(time[one]), "values": values[k].tobytes()}
+                with_checksum(number=first + k, time=float(time[one]), values=values[k].tobytes())
                 for k, one in enumerate(new)
             ]
             connection.execute(insert(_row), rows)
-            connection.execute(
-                update(_station).values(rows=first + len(new), last=float(time[new[-1]]))
-            )
+            known |= {"rows": first + len(new), "last": float(time[new[-1]])}
+            connection.execute(update(_station).values(**with_checksum(**known)))
         return len(new)
 
     def end(self) -> None:
         """No more rows will come."""
         with self._writing() as connection:
-            connection.execute(update(_station).values(ended=True))
+            known = _values(_station, connection.execute(select(_station)).one())
+            ended = with_checksum(**known | {"ended": True})
+            connection.execute(update(_station).values(**ended))
 
     def packet(self, station: Station, first: int, rows: int) -> Packet:
         """Of so many rows from a row on, those that are here."""
         c = _row.c
         with self._reading() as connection:
             chosen = (c.number >= first) & (c.number < first + rows)
-            found = connection.execute(select(_row).where(chosen).order_by(c.number)).all()
+            found = [
+                whole(_row, one)
+                for one in connection.execute(select(_row).where(chosen).order_by(c.number))
+            ]
         channels, measured = len(station.channels), len(station.measured)
         values = np.array([np.frombuffer(one.values, dtype="<f8") for one in found], dtype=float)
         values = values.reshape(len(found), channels + measured)
@@ -215,14 +226,24 @@ class Inbox:
     def ask(self, command: str) -> int:
         """Keep a command, and give its number: numbers rise."""
         with self._writing() as connection:
-            connection.execute(insert(_command).values(command=command))
-            return int(connection.scalar(select(func.max(_command.c.number))) or 0)
+            number = 1 + int(connection.scalar(select(func.max(_command.c.number))) or 0)
+            entry = with_checksum(number=number, command=command)
+            connection.execute(insert(_command).values(**entry))
+            return number
 
     def commands(self, after: int) -> list[tuple[int, str]]:
         """Numbers and texts of the commands behind a number, in their order."""
         behind = select(_command).where(_command.c.number > after).order_by(_command.c.number)
         with self._reading() as connection:
-            return [(one.number, one.command) for one in connection.execute(behind)]
+            return [
+                (one.number, whole(_command, one).command) for one in connection.execute(behind)
+            ]
+
+    def _only(self, table: Table) -> dict[str, Any] | None:
+        """The values of a table of one line; None where it has none."""
+        with self._reading() as connection:
+            found = connection.execute(select(table)).one_or_none()
+            return None if found is None else _values(table, found)
 
     @contextmanager
     def _reading(self) -> Iterator[Connection]:
@@ -235,3 +256,14 @@ class Inbox:
             # Whoever reads before writing is refused when another has written meanwhile.
             connection.exec_driver_sql("PRAGMA user_version = 1")
             yield connection
+
+
+def _values(table: Table, entry: Row[Any]) -> dict[str, Any]:
+    """The columns of an entry without its checksum.
+
+    Raises:
+        NotWhole: it is not what was written.
+    """
+    values = whole(table, entry)._asdict()
+    values.pop(COLUMN)
+    return values

@@ -83,13 +83,20 @@ class SQLite:
             return
         with self._alone():
             draft = SQLite(self._path.with_name(f"{self._path.name}.draft"), read_only=False)
-            for file in self._path.parent.glob(f"{glob.escape(draft._path.name)}*"):
-                file.unlink()
-            with draft.engine.begin() as connection:
-                fill(connection)
-            draft.engine.dispose()
-            if not self._path.exists():
-                draft._path.replace(self._path)
+            draft._remove()
+            try:
+                with draft.engine.begin() as connection:
+                    fill(connection)
+                draft.engine.dispose()  # the file alone is whole then
+                if not self._path.exists():
+                    draft._path.replace(self._path)
+            finally:
+                draft.engine.dispose()
+                draft._remove()
+
+    def _remove(self) -> None:
+        for file in self._path.parent.glob(f"{glob.escape(self._path.name)}*"):
+            file.unlink()
 
     @contextmanager
     def _alone(self) -> Iterator[None]:

@@ -1,0 +1,1 @@
+"""How much a diagnosis can be given."""

@@ -1,0 +1,73 @@
+"""Ctrl-C and SIGTERM end a command in a line; what it had done is gone on from."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ENDED = {signal.SIGINT: (130, "interrupted"), signal.SIGTERM: (143, "terminated")}
+
+
+def begun(*words: str | Path) -> subprocess.Popen[str]:
+    """A command, in a group of processes of its own."""
+    command = [sys.executable, "-m", "rga", *map(str, words)]
+    return subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def until(process: subprocess.Popen[str], there: Callable[[], bool]) -> None:
+    """Wait until something is there."""
+    while not there():
+        assert process.poll() is None, process.communicate()
+
+
+@pytest.mark.parametrize("number", ENDED)
+@pytest.mark.parametrize("whom", ["the process", "its group"])
+def test_a_dataset_goes_on_where_a_signal_stopped_it(
+    number: signal.Signals, whom: str, model_file: Path, tmp_path: Path
+) -> None:
+    target = tmp_path / "set.parquet"
+    parts = tmp_path / "set.parquet.parts"
+    words = ("dataset", model_file, "-n", "2000000", "-o", target, "--workers", "2")
+    process = begun(*words)
+    until(process, lambda: len(list(parts.glob("0*.parquet"))) > 1)
+    (os.kill if whom == "the process" else os.killpg)(process.pid, number)
+    _, said = process.communicate(timeout=20)
+    code, word = ENDED[number]
+    assert (process.returncode, said) == (
+        code,
+        f"{word}; the same command goes on where it stood\n",
+    )
+    kept = {file.name: file.stat().st_mtime_ns for file in parts.glob("0*.parquet")}
+    assert not target.exists()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["model.json", parts.name]
+    process = begun(*words)
+    until(process, lambda: len(list(parts.glob("0*.parquet"))) > len(kept))
+    process.kill()
+    process.communicate()
+    for name, written in kept.items():
+        assert (parts / name).stat().st_mtime_ns == written
+
+
+@pytest.mark.parametrize("number", ENDED)
+def test_a_diagnosis_leaves_nothing(
+    number: signal.Signals, small_stream: Callable[..., Path], tmp_path: Path
+) -> None:
+    folder = small_stream(rows=100)
+    out = tmp_path / "out"
+    process = begun("diagnose", folder / "model.json", folder / "record.csv", "-o", out)
+    until(process, lambda: any(tmp_path.iterdir()))
+    process.send_signal(number)
+    said, error = process.communicate(timeout=20)
+    code, word = ENDED[number]
+    assert (process.returncode, said, error) == (code, "", f"{word}\n")
+    assert list(tmp_path.iterdir()) == []
