@@ -33,7 +33,7 @@ ONE = "rga_bench.limits.one_size"
 
 
 @dataclass(frozen=True)
-class Size:
+class SizeOutcome:
     """What a size took.
 
     Attributes:
@@ -57,7 +57,7 @@ class Size:
 
 
 @dataclass(frozen=True)
-class LimitsExperiment(Experiment[Sequence[Size]]):
+class LimitsExperiment(Experiment[Sequence[SizeOutcome]]):
     """Diagnoses of ever larger records.
 
     Attributes:
@@ -75,7 +75,7 @@ class LimitsExperiment(Experiment[Sequence[Size]]):
         """That of a command line."""
         return cls(QUICK if quick else SIZES, seed)
 
-    def measure(self, execution: Execution) -> list[Size]:
+    def measure(self, execution: Execution) -> list[SizeOutcome]:
         """One after the other, each in processes of its own."""
         found = []
         for number, size in enumerate(self.sizes):
@@ -83,7 +83,7 @@ class LimitsExperiment(Experiment[Sequence[Size]]):
             execution.progress((number + 1) / len(self.sizes))
         return found
 
-    def page(self, result: Sequence[Size], command: str) -> MarkdownPage:
+    def page(self, result: Sequence[SizeOutcome], command: str) -> MarkdownPage:
         """The table."""
         headings = ["rows", "sensors", "members", "reading [s]", "diagnosis [s]", "memory [GB]"]
         return MarkdownPage(
@@ -97,10 +97,10 @@ class LimitsExperiment(Experiment[Sequence[Size]]):
             parts=[TextTable("", [*headings, "verdict"], [_row(one) for one in result], True)],
         )
 
-    def write_figures(self, result: Sequence[Size], folder: Path) -> None:
+    def write_figures(self, result: Sequence[SizeOutcome], folder: Path) -> None:
         """There is none."""
 
-    def content(self, result: Sequence[Size], command: str) -> dict[str, Any]:
+    def content(self, result: Sequence[SizeOutcome], command: str) -> dict[str, Any]:
         """Every size."""
         return {
             "command": command,
@@ -110,7 +110,7 @@ class LimitsExperiment(Experiment[Sequence[Size]]):
         }
 
 
-def _measured(rows: int, sensors: int, panels: int, seed: int) -> Size:
+def _measured(rows: int, sensors: int, panels: int, seed: int) -> SizeOutcome:
     with tempfile.TemporaryDirectory() as folder:
         numbers = map(str, (rows, sensors, panels, seed))
         command = [sys.executable, "-m", ONE]
@@ -119,16 +119,16 @@ def _measured(rows: int, sensors: int, panels: int, seed: int) -> Size:
             subprocess.run([*command, "draw", folder, *numbers], **given)
             done = subprocess.run([*command, "measure", folder], timeout=LONGEST, **given)
         except subprocess.TimeoutExpired:
-            return Size(rows, sensors, panels, "no time")
+            return SizeOutcome(rows, sensors, panels, "no time")
         except subprocess.CalledProcessError as error:
             # The system kills what takes more memory than there is.
             if error.returncode in (-9, 137) or b"MemoryError" in error.stderr:
-                return Size(rows, sensors, panels, "no memory")
+                return SizeOutcome(rows, sensors, panels, "no memory")
             raise
-    return Size(rows, sensors, panels, "yes", **json.loads(done.stdout))
+    return SizeOutcome(rows, sensors, panels, "yes", **json.loads(done.stdout))
 
 
-def _row(one: Size) -> list[str]:
+def _row(one: SizeOutcome) -> list[str]:
     cells = [f"{one.rows:,}", str(one.sensors), str(one.members or f"about {11 * one.panels}")]
     if one.reading is None or one.diagnosis is None or one.memory is None:
         return [*cells, "", "", "", f"not ended: {one.ended}"]

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rga_bench.limits.experiment import Size, _row
+from rga_bench.limits.experiment import SizeOutcome, _row
 
 
 def test_a_small_size_is_measured(rga: Callable[..., Any], tmp_path: Path) -> None:
@@ -20,4 +20,4 @@ def test_a_small_size_is_measured(rga: Callable[..., Any], tmp_path: Path) -> No
 
 
 def test_what_did_not_end_is_told() -> None:
-    assert _row(Size(1000, 84, 10, "no memory"))[-1] == "not ended: no memory"
+    assert _row(SizeOutcome(1000, 84, 10, "no memory"))[-1] == "not ended: no memory"

@@ -1,6 +1,7 @@
 """A repository of which bytes are damaged: what is answered is right, or one line says so."""
 
 import json
+import shutil
 import sqlite3
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,9 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import sqlalchemy
 
 import rga as package
+from rga.errors import InputError
 from rga.twin import Settings
+from rga.twin.repository import tables
+from rga.twin.repository.checksum import checksum
 
 Rga = Callable[..., Any]
 #: readings of one sensor, as bytes, are so many; damage that is drawn is as long
@@ -92,3 +97,22 @@ def test_an_answer_is_right_or_one_line_says_what_is_damaged(
                 assert not whole, (name, begun, err)
                 assert err.count("\n") == 1, (name, begun, err)
     assert seen > 2
+
+
+def test_a_repository_that_was_tampered_with_is_reported(directory: Path, tmp_path: Path) -> None:
+    """Also where whoever did it knows of checksums: the log has hashes of what was answered."""
+    shutil.copytree(directory, tmp_path, dirs_exist_ok=True)
+    package.Twin.open(tmp_path).close()
+    engine = sqlalchemy.create_engine(f"sqlite:///{tmp_path / 'twin.sqlite'}")
+    with engine.begin() as connection:
+        connection.execute(sqlalchemy.text("UPDATE gap SET simulated = gaps"))
+    with pytest.raises(InputError, match=r"an entry of gap .* is not what was written"):
+        package.Twin.open(tmp_path)
+    with engine.begin() as connection:
+        for entry in connection.execute(sqlalchemy.select(tables.gap)).all():
+            own = (tables.gap.c.step == entry.step) & (tables.gap.c.ordinal == entry.ordinal)
+            forged = {"checksum": checksum(entry._asdict())}
+            connection.execute(sqlalchemy.update(tables.gap).where(own).values(**forged))
+    engine.dispose()
+    with pytest.raises(InputError, match="does not hold what the twin answered"):
+        package.Twin.open(tmp_path)

@@ -12,14 +12,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-import sqlalchemy
 
 import rga
 from rga.cli import main
 from rga.errors import InputError
 from rga.twin import Outcome, Settings, rollback
-from rga.twin.repository import Repository, tables
-from rga.twin.repository.checksum import checksum
+from rga.twin.repository import Repository
 from rga.twin.restore import log_of
 from rga.twin.runner import Running
 
@@ -291,28 +289,6 @@ def test_the_past_stands_as_it_was(finished: tuple[Path, Outcome]) -> None:
         assert twin.version > 1
         assert len(early.history().events) < len(twin.history().events)
         assert twin.as_of(time=600.0 * 79).context == early.context
-
-
-def test_a_repository_that_was_tampered_with_is_reported(
-    at_level: Callable[[str], tuple[Path, Outcome]], tmp_path: Path
-) -> None:
-    """Also where whoever did it knows of checksums: the log has hashes of what was answered."""
-    shutil.copytree(at_level("A")[0], tmp_path, dirs_exist_ok=True)
-    with rga.Twin.open(tmp_path):
-        pass
-    engine = sqlalchemy.create_engine(f"sqlite:///{tmp_path / 'twin.sqlite'}")
-    with engine.begin() as connection:
-        connection.execute(sqlalchemy.text("UPDATE gap SET simulated = gaps"))
-    with pytest.raises(InputError, match=r"an entry of gap .* is not what was written"):
-        rga.Twin.open(tmp_path)
-    with engine.begin() as connection:
-        for entry in connection.execute(sqlalchemy.select(tables.gap)).all():
-            own = (tables.gap.c.step == entry.step) & (tables.gap.c.ordinal == entry.ordinal)
-            forged = {"checksum": checksum(entry._asdict())}
-            connection.execute(sqlalchemy.update(tables.gap).where(own).values(**forged))
-    engine.dispose()
-    with pytest.raises(InputError, match="does not hold what the twin answered"):
-        rga.Twin.open(tmp_path)
 
 
 @pytest.mark.parametrize(("level", "kinds"), [("A", set()), ("B", {"alarm", "recalibration"})])
