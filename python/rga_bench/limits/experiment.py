@@ -23,7 +23,7 @@ SIZES = (
 )  # fmt: skip
 QUICK = ((200, 12, 10),)
 #: how long one size may take [s]
-LONGEST = 900.0
+LONGEST = 300.0
 ABOUT = (
     "{}, one core. A footbridge in which nothing is hidden, all contexts measured; the record is a "
     "Parquet file."
