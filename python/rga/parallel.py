@@ -15,8 +15,8 @@ from concurrent.futures import (
 from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
-from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnContext, SpawnProcess
 from threading import Lock, Thread
 from typing import Any, TypeVar
 
@@ -91,7 +91,7 @@ def _here() -> Iterator[Processes]:
 
 @contextmanager
 def _local(workers: int) -> Iterator[Processes]:
-    context = get_context("spawn")
+    context = _Spawning()
     end, held = context.Pipe(duplex=False)
     with end, held:
         pool = ProcessPoolExecutor(workers, context, _end_with, (end,))
@@ -99,10 +99,30 @@ def _local(workers: int) -> Iterator[Processes]:
             yield pool, lambda: workers
         except BaseException:
             # Nobody waits for what they have begun, nor for one that was killed as it answered.
-            held.close()
             pool.shutdown(wait=False, cancel_futures=True)
+            context.terminate()
             raise
         pool.shutdown()
+
+
+class _Spawning(SpawnContext):
+    """Begins processes, and can end all that it has begun, those that are beginning as well."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._begun: list[SpawnProcess] = []
+
+    def Process(self, *given: Any, **named: Any) -> SpawnProcess:  # type: ignore[override]
+        """A process that is not begun yet."""
+        process = SpawnProcess(*given, **named)
+        self._begun.append(process)
+        return process
+
+    def terminate(self) -> None:
+        """End them."""
+        for process in self._begun:
+            if process.pid is not None:
+                process.terminate()
 
 
 @contextmanager

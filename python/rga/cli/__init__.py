@@ -11,7 +11,7 @@ from rga.cli.signals import Stopped, stopping
 #: commands that go on where they were stopped
 RESUMED = ("run", "dataset")
 #: how long a command that was stopped may take to end [s]
-PATIENCE = 3.0
+PATIENCE = 5.0
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -19,7 +19,7 @@ from rga.records.mapping import read_mapping
 from rga.records.sources import find_sources, named_files
 from rga.twin.commands.command import AnyCommand, Command, read_command
 from rga.twin.hardware.inbox import INBOX, Addressee, Inbox
-from rga.twin.hardware.interface import LIVE
+from rga.twin.hardware.interface import LIVE, Station
 from rga.twin.hardware.live import Live, as_rows, check_lives, station_for
 from rga.twin.history import Event
 from rga.twin.outcome import Outcome
@@ -130,9 +130,30 @@ class LiveTwin:
         while new is None:
             if self._inbox.ended:
                 raise InputError("it has ended", f"twin {self.name!r}", "begin another")
-            station = self._inbox.station or station_for(self.model, record)
+            station = self._inbox.station
+            if station is None:
+                station = station_for(self.model, record)
+                self._check_begun_with(station)
             new = self._inbox.put(station, *as_rows(station, record))
         return Fed(new, len(record) - new)
+
+    def _check_begun_with(self, station: Station) -> None:
+        """Whether the first rows of an inbox are those that the twin began with, if it has.
+
+        Raises:
+            InputError: they are not: an inbox was lost.
+        """
+        if isinstance(self._place, Path) and not self._place.exists():
+            return
+        with Repository.open(self._place) as repository:
+            runs = [one for one in repository.runs() if one.identity.source == self._source]
+            begun = runs[-1].kept("station") if runs else None
+        if begun not in (None, station.to_json().encode()):
+            raise InputError(
+                "these rows are not those that the twin began with",
+                f"twin {self.name!r}",
+                "its inbox was lost: feed all rows from the first, or begin another twin",
+            )
 
     def _as_record(
         self, rows: Record | RecordSource, mapping: str | Path | RecordMapping | None

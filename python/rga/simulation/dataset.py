@@ -16,7 +16,7 @@ from scipy.stats import qmc
 from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
-from rga.files import CannotWrite, cannot_write, check_room
+from rga.files import CannotWrite, cannot_write, check_room, write_whole
 from rga.model import Model
 from rga.one_writer import only_writer
 from rga.parallel import finished
@@ -101,7 +101,7 @@ def write_dataset(
         simulated = finished(_Part.simulate, waiting, workers=workers, dask=dask)
         with closing(simulated), _nothing_left(parts):
             for number, (task, part) in enumerate(simulated, start=done + 1):
-                _keep(part.result(), task.file(parts))
+                write_whole({task.file(parts): part.result()})
                 if progress is not None:
                     progress("simulating", number / len(tasks))
         draft = parts / "whole.parquet"
@@ -165,13 +165,6 @@ def _begin(parts: Path, key: str) -> None:
     shutil.rmtree(parts, ignore_errors=True)
     parts.mkdir(parents=True)
     told.write_text(key, encoding="utf-8")
-
-
-def _keep(content: bytes, file: Path) -> None:
-    """Write a part, whole or not at all."""
-    draft = file.with_suffix(".draft")
-    draft.write_bytes(content)
-    draft.replace(file)
 
 
 @contextmanager

@@ -25,6 +25,7 @@ from rga.twin.history import Event, History
 from rga.twin.messages.query_bus import QueryResponse
 from rga.twin.past.past_diagnosis import PastDiagnosis
 from rga.twin.repository import Identity, Repository, Run
+from rga.twin.repository.faults import RepositoryFault
 from rga.twin.repository.sqlite import PATIENCE
 from rga.twin.restore import given_model, history_of
 from rga.twin.rows.retention import forget_what_is_old
@@ -65,6 +66,8 @@ def taken_up(
     Raises:
         InputError: the repository cannot be used.
     """
+    if not 0 <= seed < 2**63:
+        raise InputError(f"{seed} is no seed", "seed", "give a whole number from 0 to 2^63 - 1")
     digest = model.sha256 or written(model)[1]
     hardware = Recorded(record, model) if isinstance(record, Record) else record
     identity = Identity(digest, hardware.source, seed, settings.model_dump_json())
@@ -354,7 +357,7 @@ class Running:
         try:
             findings = self._ask_diagnosis()
         except InputError as error:
-            if closing:
+            if closing or isinstance(error, RepositoryFault):
                 raise
             self.postpone(str(error))
             return

@@ -1,14 +1,16 @@
 """A file of a twin that is lost is told of; rows that lack something are taken as they are."""
 
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+from sqlite3 import connect
 from typing import Any
 
 import numpy as np
 import pytest
 
-import rga
+import rga as package
 from live_streams import SETTINGS, assert_same, history
 from rga import LiveTwin
 from rga.errors import InputError
@@ -35,10 +37,30 @@ def test_an_inbox_that_is_lost_is_told_of(sound: Given, taken_in: Callable[..., 
     place = taken_in(sound, 50)
     for file in place.glob("inbox.sqlite*"):
         file.unlink()
-    with rga.live(sound[0], place, settings=SETTINGS) as twin:
-        assert twin.feed(sound[1].rows(slice(50, 100))).new == 50
-        with pytest.raises(InputError, match="not those that the run began with"):
-            twin.play()
+    with package.live(sound[0], place, settings=SETTINGS) as twin:
+        with pytest.raises(InputError, match="not those that the twin began with"):
+            twin.feed(sound[1].rows(slice(50, 100)))
+        # Nothing of them is kept.
+        assert twin.feed(sound[1].rows(slice(0, 60))).new == 60
+        twin.play()
+        assert len(history(twin).record) == 60
+
+
+def test_a_damaged_inbox_is_told_of(
+    sound: Given, taken_in: Callable[..., Path], rga: Callable[..., Any]
+) -> None:
+    place = taken_in(sound, 50)
+    with LiveTwin(place) as twin:
+        twin.feed(sound[1].rows(slice(50, 80)))
+    assert rga("replay", place, "--check").code == 0
+    with closing(connect(place / "inbox.sqlite")) as connection, connection:
+        connection.execute("UPDATE row SET time = time + 1 WHERE number = 70")
+    said = "an entry of row number 70 is not what was"
+    with LiveTwin(place) as twin, pytest.raises(InputError, match=said):
+        twin.play()
+    done = rga("replay", place, "--check")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "an entry of row number 70 of the inbox" in done.err
 
 
 def test_all_rows_may_be_fed_again_into_a_new_inbox(
@@ -47,7 +69,7 @@ def test_all_rows_may_be_fed_again_into_a_new_inbox(
     place = taken_in(sound, 50)
     for file in place.glob("inbox.sqlite*"):
         file.unlink()
-    with rga.live(sound[0], place, settings=SETTINGS) as twin:
+    with package.live(sound[0], place, settings=SETTINGS) as twin:
         twin.feed(sound[1])
         twin.play()
         with LiveTwin(taken_in(sound, 100)) as other:
@@ -56,7 +78,7 @@ def test_all_rows_may_be_fed_again_into_a_new_inbox(
 
 def test_a_twin_that_has_not_begun_says_so(sound: Given, tmp_path: Path) -> None:
     with (
-        rga.live(sound[0], tmp_path, settings=SETTINGS) as twin,
+        package.live(sound[0], tmp_path, settings=SETTINGS) as twin,
         pytest.raises(InputError, match="it has not begun"),
     ):
         assert twin.twin
@@ -99,7 +121,7 @@ def test_a_time_with_a_zone_is_no_time_of_rows_without(
 ) -> None:
     given: dict[str, Any] = {**vars(sound[1]), "start": "2026-03-01T00:00:00"}
     record = Record(**given | {"time_format": "iso"})
-    with rga.live(sound[0], tmp_path, settings=SETTINGS) as twin:
+    with package.live(sound[0], tmp_path, settings=SETTINGS) as twin:
         twin.feed(record)
         twin.ask(Exclude(who="Ada", sensor="D1", since="2026-03-01T09:00:00+01:00"))
         twin.play()

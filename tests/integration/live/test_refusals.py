@@ -361,3 +361,24 @@ def test_no_rows_are_no_fault(sound: Given, tmp_path: Path) -> None:
         assert twin.feed(record) == Fed(0, 100)
         late = record.rows(np.arange(100) % 2 == 0)
         assert twin.feed(late) == Fed(0, 50)
+
+
+def test_a_command_of_values_that_cannot_be_is_one_error() -> None:
+    for given, said in (
+        ({"who": "x" * 201}, "who: "),
+        ({"who": ""}, "who: "),
+        ({"who": "Ada", "why": "x" * 20_001}, "why: "),
+        ({"who": "\udcff"}, "who: "),
+        ({"who": "Ada", "to": 1}, "to: "),
+        ({}, "who: "),
+    ):
+        with pytest.raises(InputError, match=said) as error:
+            Note(**given)
+        assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**63])
+def test_a_seed_that_no_repository_holds(seed: int, sound: Given, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is no seed"):
+        rga.run(*sound, tmp_path / "out", seed=seed)
+    assert not list(tmp_path.rglob("*.sqlite*"))

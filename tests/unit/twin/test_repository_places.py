@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from sqlalchemy import text
+from sqlalchemy import Connection, text
 
 from rga.errors import InputError
 from rga.twin.repository import Repository, migrations, tables
@@ -68,6 +68,22 @@ def test_an_older_repository_is_brought_up_to_date_with_a_copy_beside_it(
             assert held.execute("SELECT count(*) FROM kept").fetchone() == (12,)
             assert held.execute("SELECT version_num FROM rga_repository").fetchone() == ("0001",)
         assert not list(file.parent.glob("*.draft"))
+
+
+def test_a_repository_that_cannot_be_filled_is_not_begun(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def half(connection: Connection) -> None:
+        connection.execute(text("CREATE TABLE run (id INTEGER)"))
+        # As a disk that is full; of a log of writing nothing would be seen.
+        connection.execute(text("PRAGMA max_page_count = 2"))
+        for number in range(9):
+            connection.execute(text(f"CREATE TABLE more{number} (id INTEGER)"))
+
+    monkeypatch.setattr(migrations, "upgrade", half)
+    with pytest.raises(InputError, match="full"):
+        Repository.open(tmp_path)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_newer_repository_is_refused(place: str) -> None:

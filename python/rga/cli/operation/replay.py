@@ -1,5 +1,6 @@
 """`rga replay`: the log of the twin."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -74,18 +75,30 @@ def _proved(place: str) -> str:
     Raises:
         InputError: it is not.
     """
-    from rga.errors import InputError
-    from rga.twin.repository import Repository
+    from contextlib import closing
 
-    with Repository.open(place, read_only=True) as repository:
-        proof = repository.check()
+    from rga.errors import InputError
+    from rga.twin.hardware.inbox import INBOX, Inbox
+    from rga.twin.repository import Repository
+    from rga.twin.repository.faults import Damaged
+    from rga.twin.repository.proof import Proof
+
+    try:
+        with Repository.open(place, read_only=True) as repository:
+            proof = repository.check()
+        if Path(place, INBOX).is_file():
+            with closing(Inbox(Path(place))) as inbox:
+                waiting = inbox.check()
+            proof = Proof(proof.entries + waiting.entries, (*proof.damage, *waiting.damage))
+    except Damaged as error:
+        proof = Proof(0, (error.what,))
     if not proof.damage:
         return f"The repository is whole: all {proof.entries} entries are what was written."
     listed, more = "; ".join(proof.damage[:MOST]), len(proof.damage) - MOST
     raise InputError(
-        f"the repository is damaged: {listed}{f'; and {more} more' if more > 0 else ''}",
+        f"it is damaged: {listed}{f'; and {more} more' if more > 0 else ''}",
         place,
-        "restore it from a copy; rga export saves the rows that are whole",
+        "restore it from a copy; rga export saves rows that were taken in and can be read",
     )
 
 

@@ -37,12 +37,15 @@ def _waiting(place: str) -> str:
     from rga.jobs.live import LiveTwin
     from rga.quantities import counted
     from rga.twin.hardware.inbox import INBOX
+    from rga.twin.repository.faults import Damaged
 
     if not Path(place, INBOX).is_file():
         return ""
     try:
         with LiveTwin(place) as twin:
             rows, commands = twin.waiting
+    except Damaged:
+        raise
     except InputError:
         # Where nothing can be written nothing is played, and what was can be shown all the same.
         return ""

@@ -1,10 +1,18 @@
 """What people ask a twin for: every command says who asks, and why, and stays in its log."""
 
 from datetime import UTC, datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, field_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    field_validator,
+)
 
+from rga.errors import InputError
 from rga.model.effect import check_moment
 
 #: where an error about one is
@@ -27,6 +35,21 @@ class Command(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def __init__(self, **given: Any) -> None:
+        """A command of values.
+
+        Raises:
+            InputError: a value is missing, or none that can be.
+        """
+        try:
+            super().__init__(**given)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            key = ".".join(str(one) for one in first["loc"]) or "it"
+            keys = ", ".join(one for one in type(self).model_fields if one != "kind")
+            raise InputError(f"{key}: {first['msg']}", PLACE, f"its values are {keys}") from None
+
     who: Annotated[str, Field(min_length=1, max_length=200)]
     why: Annotated[str, Field(max_length=20_000)] = ""
     given_at: str = Field(default_factory=_now)

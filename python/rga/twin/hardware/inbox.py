@@ -32,8 +32,9 @@ from sqlalchemy import (
 
 from rga.arrays import FloatArray
 from rga.twin.hardware.interface import Packet, Station
-from rga.twin.repository.checksum import COLUMN, with_checksum
-from rga.twin.repository.faults import as_input_errors, whole
+from rga.twin.repository.checksum import COLUMN, is_whole, with_checksum
+from rga.twin.repository.faults import as_input_errors, named, whole
+from rga.twin.repository.proof import Proof, entries_of
 from rga.twin.repository.sqlite import SQLite
 
 #: name of the file
@@ -217,6 +218,21 @@ class Inbox:
         time = np.array([one.time for one in found], dtype=float)
         begun = found[0].number if found else first
         return Packet(begun, time, values[:, :channels], values[:, channels:])
+
+    def check(self) -> Proof:
+        """Read all that waits, and prove that it is what was put in.
+
+        Raises:
+            InputError: it cannot be read at all.
+        """
+        tables = (_twin, _station, _row, _command)
+        found = [(table, one) for table in tables for one in entries_of(self._reading, table)]
+        damage = [
+            f"{named(table, one)} of the inbox is not what was put in"
+            for table, one in found
+            if not is_whole(one._asdict())
+        ]
+        return Proof(len(found), tuple(damage))
 
     def drop(self, rows: int) -> None:
         """Forget the first so many rows that have ever arrived."""

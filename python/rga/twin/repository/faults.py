@@ -26,7 +26,7 @@ _MENDED = {
     ),
     "SQLITE_TOOBIG": ("too much for one entry", "give it less at once"),
     "SQLITE_FULL": ("the disk of the repository is full", "make room"),
-    "SQLITE_IOERR": ("the disk of the repository fails", "check the disk"),
+    "SQLITE_IOERR": ("the disk of the repository fails or is full", "make room, or check the disk"),
     "55P03": ("another process writes this run", "wait for it, or end it"),
     "42501": ("the server allows too little", "grant this user CREATE on the schema"),
     "25006": ("the server allows reading only", "name a server that accepts writing"),
@@ -79,7 +79,10 @@ def as_input_errors(where: str) -> Iterator[None]:
 
 
 def _damaged(words: str, where: str) -> Damaged:
-    remedy = "restore it from a copy; rga replay --check lists the damage, rga export saves rows"
+    remedy = (
+        "restore it from a copy; rga replay --check lists the damage, and rga export saves the "
+    )
+    remedy += "rows that were taken in and can be read"
     return Damaged(f"the repository is damaged: {words}", where, remedy)
 
 

@@ -41,7 +41,7 @@ def prove(reading: Reading) -> Proof:
     count = 0
     for table in tables.OF_A_RUN:
         try:
-            for entry in _entries(reading, table):
+            for entry in entries_of(reading, table):
                 count += 1
                 if not is_whole(entry._asdict()):
                     damage.append(f"{named(table, entry)} is not what was written")
@@ -56,7 +56,12 @@ def prove(reading: Reading) -> Proof:
     return Proof(count, tuple(damage))
 
 
-def _entries(reading: Reading, table: Table) -> Iterator[Row[Any]]:
+def entries_of(reading: Reading, table: Table) -> Iterator[Row[Any]]:
+    """All entries of a table, in the order of their keys, a few at a time.
+
+    Raises:
+        InputError: they cannot be read.
+    """
     order = list(table.primary_key)
     statement = select(table).order_by(*order).execution_options(yield_per=BATCH)
     with reading() as connection:

@@ -1,6 +1,7 @@
 """A repository in a file: SQLite, one writer for the file."""
 
 import glob
+import logging
 import os
 import sqlite3
 from collections.abc import Callable, Iterator
@@ -13,6 +14,9 @@ from rga.errors import InputError
 from rga.one_writer import Held, only_writer
 from rga.twin.repository.faults import InUse
 
+# Of a connection that a signal meets as it is closed; the signal itself is told.
+logging.getLogger("sqlalchemy.pool").addHandler(logging.NullHandler())
+
 # How long to wait for a lock [s]: a killed writer's may need a moment to vanish.
 PATIENCE = 2.0
 
@@ -24,15 +28,18 @@ class SQLite:
         path: of the file.
         read_only: nothing is written.
         patience: how long to wait for another writer [s].
+        journal: of SQLite, for writing.
 
     Raises:
         InputError: the file is missing where it is only to be read, or cannot be written.
     """
 
-    def __init__(self, path: Path, read_only: bool, patience: float = PATIENCE) -> None:
+    def __init__(
+        self, path: Path, read_only: bool, patience: float = PATIENCE, journal: str = "WAL"
+    ) -> None:
         self.where = f"repository {path}"
         self.read_only = read_only
-        self._path, self._patience = path, patience
+        self._path, self._patience, self._journal = path, patience, journal
         if read_only and not path.is_file():
             raise InputError("there is no such file", self.where, "name a repository of a run")
         if not read_only and not os.access(path if path.exists() else path.parent, os.W_OK):
@@ -56,7 +63,7 @@ class SQLite:
         if not self.read_only:
             # Of a new file: less of its last page is left empty by what a step stores.
             connection.execute("PRAGMA page_size = 2048")
-            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute(f"PRAGMA journal_mode = {self._journal}")
         # What is acknowledged survives a power cut; fullfsync is what that takes on macOS.
         connection.execute("PRAGMA synchronous = FULL")
         connection.execute("PRAGMA fullfsync = ON")
@@ -82,12 +89,15 @@ class SQLite:
         if self.read_only or self._path.exists():
             return
         with self._alone():
-            draft = SQLite(self._path.with_name(f"{self._path.name}.draft"), read_only=False)
+            # A log of writing would be brought into the file as it is closed, unless the disk is
+            # full, which nothing tells.
+            file = self._path.with_name(f"{self._path.name}.draft")
+            draft = SQLite(file, read_only=False, journal="DELETE")
             draft._remove()
             try:
                 with draft.engine.begin() as connection:
                     fill(connection)
-                draft.engine.dispose()  # the file alone is whole then
+                draft.engine.dispose()
                 if not self._path.exists():
                     draft._path.replace(self._path)
             finally:
