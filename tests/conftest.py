@@ -3,6 +3,7 @@
 import gc
 import json
 from collections.abc import Callable
+from copy import deepcopy
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -69,8 +70,8 @@ def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Find
     return diagnosis
 
 
-@pytest.fixture
-def two_bars() -> dict[str, Any]:
+@pytest.fixture(scope="session")
+def bars() -> dict[str, Any]:
     """A model file: two bars over a span, a load and a temperature, a deflection and a strain."""
     bar = {"section": "bar", "material": "steel", "groups": ["bars"]}
     return {
@@ -112,6 +113,12 @@ def two_bars() -> dict[str, Any]:
             "S1": {"kind": "strain", "member": "west", "unit": "microstrain", "noise": 0.5},
         },
     }
+
+
+@pytest.fixture
+def two_bars(bars: dict[str, Any]) -> dict[str, Any]:
+    """A copy of it, to be changed."""
+    return deepcopy(bars)
 
 
 @pytest.fixture

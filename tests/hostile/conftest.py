@@ -9,10 +9,12 @@ import resource
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import mkdtemp
 from types import FrameType
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -140,46 +142,11 @@ def _no_constant(name: str) -> None:
 
 
 @pytest.fixture(scope="session")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def sound(bars: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of files that nothing is wrong with."""
-    bar = {"section": "bar", "material": "steel", "groups": ["bars"]}
-    model = {
-        "rga_model": 1,
-        "name": "two bars",
-        "plane": "xz",
-        "materials": {"steel": {"E": 2e11, "alpha": 1.2e-5}},
-        "sections": {"bar": {"A": 0.01}},
-        "nodes": {"W": [0, 0, 0], "T": [3, 0, 4], "E": [6, 0, 0]},
-        "members": {"west": {"nodes": ["W", "T"], **bar}, "east": {"nodes": ["T", "E"], **bar}},
-        "supports": {
-            "W": {"node": "W", "fixed": ["ux", "uy", "uz"]},
-            "E": {"node": "E", "fixed": ["ux", "uy", "uz"]},
-        },
-        "context": {
-            "temperature": {"unit": "degC", "range": [-20, 40], "noise": 0.2},
-            "load": {"unit": "N", "range": [0, 1e5]},
-        },
-        "effects": {
-            "warmth": {
-                "kind": "temperature",
-                "groups": {"bars": 1.0},
-                "delta": {"context": "temperature", "minus": 10.0},
-            },
-            "weight": {
-                "kind": "nodal_load",
-                "forces": {"T": [0, 0, -1]},
-                "factor": {"context": "load"},
-            },
-        },
-        "sensors": {
-            "D1": {
-                "kind": "displacement", "node": "T", "direction": [0, 0, 1], "unit": "mm",
-                "noise": 0.01,
-            },
-            "S1": {"kind": "strain", "member": "west", "unit": "microstrain", "noise": 0.5},
-            "S2": {"kind": "strain", "member": "east", "unit": "microstrain", "noise": 0.5},
-        },
-    }  # fmt: skip
+    model = deepcopy(bars)
+    model["context"]["temperature"]["noise"] = 0.2
+    model["sensors"]["S2"] = {**model["sensors"]["S1"], "member": "east"}
     folder = tmp_path_factory.mktemp("sound")
     (folder / "model.json").write_text(json.dumps(model), "utf-8")
     draw = np.random.default_rng(1)
