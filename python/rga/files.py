@@ -73,10 +73,11 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
         for path, draft in drafts.items():
             draft.replace(path)
     except BaseException as error:
-        with suppress(OSError):
-            for draft in drafts.values():
-                draft.unlink(missing_ok=True)
-            for one in made:
+        for draft in drafts.values():
+            with suppress(OSError):
+                draft.unlink()
+        for one in made:
+            with suppress(OSError):
                 one.rmdir()
         if not isinstance(error, OSError):
             raise

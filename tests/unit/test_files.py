@@ -24,3 +24,11 @@ def test_where_one_cannot_be_written_all_stay_as_they_were(tmp_path: Path) -> No
 def test_directories_are_made_where_they_are_missing(tmp_path: Path) -> None:
     write_whole({tmp_path / "new" / "deeper" / "a.txt": b"after"})
     assert (tmp_path / "new" / "deeper" / "a.txt").read_bytes() == b"after"
+
+
+def test_no_draft_stays_where_one_could_not_be_begun(tmp_path: Path) -> None:
+    """A name that is too long has no draft to take away; those of the others go all the same."""
+    long = tmp_path / ("x" * 300)
+    with pytest.raises(InputError, match="too long"):
+        write_whole({tmp_path / "new" / "a": b"1", long: b"2", tmp_path / "b": b"3"})
+    assert list(tmp_path.iterdir()) == []

@@ -96,7 +96,7 @@ def _proved(place: str) -> str:
         return f"The repository is whole: all {proof.entries} entries are what was written."
     listed, more = "; ".join(proof.damage[:MOST]), len(proof.damage) - MOST
     raise InputError(
-        f"it is damaged: {listed}{f'; and {more} more' if more > 0 else ''}",
+        f"it is not whole: {listed}{f'; and {more} more' if more > 0 else ''}",
         place,
         "restore it from a copy; rga export saves rows that were taken in and can be read",
     )

@@ -36,6 +36,10 @@ class Command(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
+    who: Annotated[str, Field(min_length=1, max_length=200)]
+    why: Annotated[str, Field(max_length=20_000)] = ""
+    given_at: str = Field(default_factory=_now)
+
     def __init__(self, **given: Any) -> None:
         """A command of values.
 
@@ -49,10 +53,6 @@ class Command(BaseModel):
             key = ".".join(str(one) for one in first["loc"]) or "it"
             keys = ", ".join(one for one in type(self).model_fields if one != "kind")
             raise InputError(f"{key}: {first['msg']}", PLACE, f"its values are {keys}") from None
-
-    who: Annotated[str, Field(min_length=1, max_length=200)]
-    why: Annotated[str, Field(max_length=20_000)] = ""
-    given_at: str = Field(default_factory=_now)
 
     @field_validator("who", "why")
     @classmethod
