@@ -52,7 +52,7 @@ def fault_of(error: Exception) -> str:
     """
     if isinstance(error, RecursionError):
         return "lists or tables stand too deep in one another"
-    return " ".join(str(error).split())
+    return " ".join(str(error).split()) or type(error).__name__
 
 
 def _first(path: Path, count: int) -> bytes:

@@ -6,7 +6,9 @@ hangs, takes much memory, or leaves something behind where it refuses.
 
 import json
 import resource
+import shutil
 import signal
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from copy import deepcopy
@@ -15,6 +17,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from types import FrameType
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 import polars as pl
@@ -38,11 +41,13 @@ class Case:
         words: of the command line; "{}" is the folder.
         folder: of the files.
         output: folder that is empty before, and that the command may write to.
+        longest: time that it may take [s].
     """
 
     words: tuple[str, ...]
     folder: Path
     output: Path
+    longest: int = LONGEST
 
 
 @dataclass
@@ -59,7 +64,7 @@ class TooLong(BaseException):
 
 
 @contextmanager
-def bounded() -> Iterator[None]:
+def bounded(longest: int) -> Iterator[None]:
     """A block that may take some time and memory, and no more."""
 
     def stop(_number: int, _frame: FrameType | None) -> None:
@@ -69,7 +74,7 @@ def bounded() -> Iterator[None]:
     pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
     before = signal.signal(signal.SIGALRM, stop)
     resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + MOST, hard))
-    signal.alarm(LONGEST)
+    signal.alarm(longest)
     try:
         yield
     finally:
@@ -87,12 +92,14 @@ def judged(capsys: pytest.CaptureFixture[str]) -> Callable[[Case], Came]:
         capsys.readouterr()
         words = [word.replace("{}", str(case.folder)) for word in case.words]
         try:
-            with bounded():
+            with bounded(case.longest), catch_warnings():
+                # What is told of on the way to no number is no word of this package.
+                simplefilter("error", RuntimeWarning)
                 main(words)
         except SystemExit as left:
             came.code = int(left.code or 0)
         except TooLong:
-            came.faults.append(f"it takes longer than {LONGEST} s")
+            came.faults.append(f"it takes longer than {case.longest} s")
         except BaseException as error:
             place = error.__traceback__
             while place is not None and place.tb_next is not None:
@@ -106,7 +113,7 @@ def judged(capsys: pytest.CaptureFixture[str]) -> Callable[[Case], Came]:
         if came.code == 2:
             lines = [one for one in err.splitlines() if not one.startswith("warning: ")]
             listed = [one for one in lines[1:] if not one.startswith("  ")]
-            if words[0] in ("check", "import-record"):
+            if words[0] in ("check", "import", "import-record"):
                 # They list all that is wrong, as their result.
                 err, listed = f"error: {out}{err}", []
             if "error: " not in err and "Usage" not in err:
@@ -185,3 +192,25 @@ def given(sound: Path, tmp_path: Path) -> Callable[..., Case]:
         return Case(words, folder, folder / "out")
 
     return make
+
+
+@pytest.fixture
+def judged_all(
+    given: Callable[..., Case], judged: Callable[[Case], Came]
+) -> Callable[[range, Callable[[int], Any]], None]:
+    """Runs cases by number, and tells of those of which something comes that may not."""
+
+    def run(numbers: range, drawn: Callable[[int], Any]) -> None:
+        codes: Counter[int | None] = Counter()
+        wrong = []
+        for number in numbers:
+            case = given(*drawn(number))
+            came = judged(case)
+            codes[came.code] += 1
+            wrong += [f"case {number}, rga {' '.join(case.words)}: {one}" for one in came.faults]
+            shutil.rmtree(case.folder)
+        assert not wrong, "\n".join(wrong)
+        # Some are good all the same, and most are refused.
+        assert codes[0] > 0 < codes[2]
+
+    return run

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
+from io import TextIOWrapper
 from typing import Annotated
 
 import typer
@@ -70,6 +71,10 @@ def run_command(arguments: Sequence[str]) -> None:
     Args:
         arguments: as typed after `rga`.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            # Names that the terminal's encoding cannot show are told in its letters.
+            stream.reconfigure(errors="backslashreplace")
     try:
         with needing_extras():
             app(args=_json_with_target(arguments), prog_name="rga")

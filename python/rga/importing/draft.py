@@ -17,6 +17,8 @@ from rga.model.schema import DOFS
 TURNED = {"ux": "ux", "uy": "uz", "uz": "uy", "rx": "rx", "ry": "rz", "rz": "ry"}
 #: share of a member's length by which a node may lie off its line, or a load beyond an end
 NEAR = 1e-9
+#: coordinate that no structure has [m]
+FARTHEST = 1e9
 Shape = tuple[str, tuple[float, ...]]
 
 
@@ -73,11 +75,18 @@ class ModelDraft:
         """Add a node [m].
 
         Raises:
-            InputError: there is one of this name.
+            InputError: there is one of this name, or it is farther away than any structure is.
         """
         if name in self.nodes:
             raise InputError(f"node {name!r} is there already", where, "give it another name")
+        if not all(abs(value) <= FARTHEST for value in place):
+            what = f"node {name!r} is at {', '.join(f'{value:.3g}' for value in place)} m"
+            raise InputError(what, where, "correct it, or the unit of length")
         self.nodes[name] = self.vector(place)
+
+    def has_length(self, first: str, last: str) -> bool:
+        """Whether two nodes are apart."""
+        return not np.allclose(self.nodes[first], self.nodes[last], rtol=0, atol=1e-12)
 
     def material(self, label: str, **properties: float) -> str:
         """The name of a material with these properties, added where there was none."""
@@ -110,7 +119,7 @@ class ModelDraft:
             raise InputError(f"member {name!r} is there already", where, "give it another name")
         for node in nodes:
             self._known(node, f"member {name!r}", where)
-        if np.allclose(self.nodes[nodes[0]], self.nodes[nodes[1]], rtol=0, atol=1e-12):
+        if not self.has_length(*nodes):
             self.notes.refuse(
                 where, f"member {name!r} has no length", "take it out, or part its nodes", "partial"
             )

@@ -3,9 +3,12 @@
 import csv
 import io
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from rga.bounded_files import fault_of
 from rga.errors import InputError
 from rga.importing.reading import read_bytes, read_text
 from rga.importing.sheets import Sheet, sheet_of
@@ -25,7 +28,7 @@ def read_workbook(path: Path) -> dict[str, Sheet]:
     return {
         name: sheet
         for name, rows in _sheets(data, path)
-        if name not in TURNED and (sheet := sheet_of(name, iter(rows))) is not None
+        if name not in TURNED and (sheet := sheet_of(name, rows)) is not None
     }
 
 
@@ -43,11 +46,11 @@ def read_properties(path: Path, name: str) -> dict[str, str]:
 TURNED = ("Project", "Model")
 
 
-def _sheets(data: bytes, path: Path) -> Any:
+def _sheets(data: bytes, path: Path) -> Iterator[tuple[str, Iterator[tuple[Any, ...]]]]:
     """Names of the sheets and their rows, one after the other."""
     with needing_extras():
         import openpyxl
-    try:
+    with _errors_of(path):
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             size = sum(one.file_size for one in packed.infolist())
         if size > LARGEST:
@@ -55,17 +58,27 @@ def _sheets(data: bytes, path: Path) -> Any:
                 f"the workbook unpacks to {size / 2**20:.0f} MiB", str(path), "give a smaller one"
             )
         book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
-        for sheet in book.worksheets:
-            # What a sheet says of its size may be anything.
-            sheet.reset_dimensions()
-            yield sheet.title, sheet.iter_rows(values_only=True)
+    for sheet in book.worksheets:
+        yield sheet.title, _rows(sheet, path)
+
+
+def _rows(sheet: Any, path: Path) -> Iterator[tuple[Any, ...]]:
+    with _errors_of(path):
+        # What a sheet says of its size may be anything.
+        sheet.reset_dimensions()
+        yield from sheet.iter_rows(values_only=True)
+
+
+@contextmanager
+def _errors_of(path: Path) -> Iterator[None]:
+    """Whatever fails as a workbook is read, as what is wrong with the file."""
+    try:
+        yield
     except InputError:
         raise
     except Exception as error:
-        reason = " ".join(str(error).split())[:100] or type(error).__name__
-        raise InputError(
-            f"this is no whole workbook: {reason}", str(path), "save it again as .xlsx"
-        ) from None
+        what = f"this is no whole workbook: {fault_of(error)[:100]}"
+        raise InputError(what, str(path), "save it again as .xlsx") from None
 
 
 def read_csv_folder(paths: list[Path]) -> dict[str, Sheet]:

@@ -1,7 +1,6 @@
 """Many bridges at once: the same findings wherever the work is done, and errors told by bridge."""
 
 import csv
-import json
 import pickle
 import socket
 import sys
@@ -13,38 +12,10 @@ import pytest
 
 import rga as package
 from rga.errors import InputError
-from rga.model import read_model
 from rga.parallel import finished
-from rga.records import Record
 
 Rga = Callable[..., Any]
 FILES = ("findings.json", "model.json", "report.html")
-CRACK = {"kind": "member_stiffness", "member": "U2-U3", "factor": 0.7}
-
-
-@pytest.fixture(scope="module")
-def bridges(
-    measured_bridge: dict[str, Any],
-    measured_record: Callable[..., Record],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Path:
-    """A list of a bridge with a cause, one whose record is cut off, and one that is as modelled."""
-    folder = tmp_path_factory.mktemp("bridges")
-    model = read_model(measured_bridge, "measured bridge")
-    for name, hidden in (("west", [CRACK]), ("east", [])):
-        (folder / name).mkdir()
-        (folder / name / "model.json").write_text(json.dumps(measured_bridge), encoding="utf-8")
-        measured_record(model, *hidden, rows=60).write(folder / name / "record.csv")
-    (folder / "broken.csv").write_text("time\n0\n", encoding="utf-8")
-    path = folder / "bridges.csv"
-    path.write_text(
-        "name,model,record\n"
-        "west,west/model.json,west/record.csv\n"
-        "broken,west/model.json,broken.csv\n"
-        "east,east/model.json,east/record.csv\n",
-        encoding="utf-8",
-    )
-    return path
 
 
 @pytest.fixture(scope="module")

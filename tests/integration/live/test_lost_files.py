@@ -63,6 +63,21 @@ def test_a_damaged_inbox_is_told_of(
     assert "an entry of row number 70 of the inbox" in done.err
 
 
+def test_it_is_proved_whole_where_nothing_can_be_written(
+    sound: Given,
+    taken_in: Callable[..., Path],
+    rga: Callable[..., Any],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    place = taken_in(sound, 50)
+    files = {file.name: file.read_bytes() for file in place.glob("*.sqlite*")}
+    monkeypatch.setattr("rga.twin.repository.sqlite.os.access", lambda path, mode: False)
+    done = rga("replay", place, "--check")
+    assert (done.code, done.err) == (0, "")
+    assert "The repository is whole" in done.out
+    assert {file.name: file.read_bytes() for file in place.glob("*.sqlite*")} == files
+
+
 def test_all_rows_may_be_fed_again_into_a_new_inbox(
     sound: Given, taken_in: Callable[..., Path], tmp_path: Path
 ) -> None:

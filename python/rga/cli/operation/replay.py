@@ -87,7 +87,7 @@ def _proved(place: str) -> str:
         with Repository.open(place, read_only=True) as repository:
             proof = repository.check()
         if Path(place, INBOX).is_file():
-            with closing(Inbox(Path(place))) as inbox:
+            with closing(Inbox(Path(place), read_only=True)) as inbox:
                 waiting = inbox.check()
             proof = Proof(proof.entries + waiting.entries, (*proof.damage, *waiting.damage))
     except Damaged as error:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from rga.bounded_files import fault_of
 from rga.errors import InputError
 from rga.importing.reading import read_bytes
 from rga.lazy import needing_extras
@@ -66,10 +67,8 @@ def read_drawing(path: Path) -> Drawing:
     except InputError:
         raise
     except Exception as error:
-        reason = " ".join(str(error).split())[:100] or type(error).__name__
-        raise InputError(
-            f"this is no whole drawing: {reason}", str(path), "save it again as DXF"
-        ) from None
+        what = f"this is no whole drawing: {fault_of(error)[:100]}"
+        raise InputError(what, str(path), "save it again as DXF") from None
     return drawing
 
 

@@ -135,7 +135,7 @@ class _Reader:
             )  # fmt: skip
         points = [np.array([node.X, node.Y, node.Z], dtype=float) for node in
                   (member.i_node, member.j_node)]  # fmt: skip
-        if np.array_equal(points[0], points[1]):
+        if not self.draft.has_length(*ends):
             self.draft.notes.refuse(where, "a member of no length", "take it out", "partial")
             return
         source_axes = local_axes(points[0], points[1], float(member.rotation))

@@ -161,10 +161,10 @@ class _Reader:
         for end in ends:
             if end not in self.draft.nodes:
                 raise InputError(f"joint {end!r} is not there", row.where, "define it")
-        along = np.subtract(self.draft.nodes[ends[1]], self.draft.nodes[ends[0]])
-        if not along.any():
+        if not self.draft.has_length(*ends):
             self.draft.notes.refuse(row.where, "a frame of no length", "take it out", "partial")
             return
+        along = np.subtract(self.draft.nodes[ends[1]], self.draft.nodes[ends[0]])
         y = local_y(along, angles.get(name, 0.0))
         x = along / np.linalg.norm(along)
         self._bends(section, released.get(name, {"i": [], "j": []}))

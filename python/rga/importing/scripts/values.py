@@ -6,7 +6,7 @@ from typing import Any, Literal
 from rga.errors import InputError
 
 #: steps that a script may take: the loops of any model of a structure
-MOST_STEPS = 400_000
+MOST_STEPS = 200_000
 #: characters of the longest text, and items of the longest list
 LONGEST = 300_000
 #: characters or items that weigh as much as a step

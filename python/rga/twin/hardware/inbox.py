@@ -108,15 +108,17 @@ class Inbox:
 
     Args:
         directory: of the twin, where its file is or is made.
+        read_only: nothing is put in or taken out; the file must be there.
 
     Raises:
         InputError: the file cannot be written, or is none.
     """
 
-    def __init__(self, directory: Path) -> None:
-        self._database = SQLite(directory / INBOX, read_only=False)
-        with self._writing() as connection:
-            _metadata.create_all(connection)
+    def __init__(self, directory: Path, *, read_only: bool = False) -> None:
+        self._database = SQLite(directory / INBOX, read_only)
+        if not read_only:
+            with self._writing() as connection:
+                _metadata.create_all(connection)
 
     def close(self) -> None:
         """Close the file; it opens again where it is asked more."""

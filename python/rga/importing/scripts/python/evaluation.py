@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rga.bounded_files import fault_of
 from rga.errors import InputError
 from rga.importing.scripts.python.library import BUILT_IN, METHODS, not_known, spoil, weight
 from rga.importing.scripts.python.modules import trust_of_built_in
@@ -110,12 +111,8 @@ class Evaluation(ABC):
         except InputError:
             raise
         except Exception as error:
-            reason = " ".join(str(error).split()) or type(error).__name__
-            raise InputError(
-                f"{ast.unparse(node)[:60]!r} has no value: {reason}",
-                self.where(node),
-                "correct it",
-            ) from None
+            what = f"{ast.unparse(node)[:60]!r} has no value: {fault_of(error)}"
+            raise InputError(what, self.where(node), "correct it") from None
 
     def name(self, node: ast.Name) -> Any:
         for table in (self.names, self.everywhere, BUILT_IN):
