@@ -27,8 +27,10 @@ from rga.cli import main
 from rga.model import load_model
 from rga.simulation import Simulator
 
-#: what a case may take: time [s], and memory beyond that of this process [bytes]
+#: what a case may take: time of a processor [s], and memory beyond that of this process [bytes]
 LONGEST, MOST = 10, 2**30
+#: times as long on a clock, where other processes have the processors as well
+WAITS = 6
 #: rows of the record
 ROWS = 60
 
@@ -41,7 +43,7 @@ class Case:
         words: of the command line; "{}" is the folder.
         folder: of the files.
         output: folder that is empty before, and that the command may write to.
-        longest: time that it may take [s].
+        longest: time of a processor that it may take [s].
     """
 
     words: tuple[str, ...]
@@ -72,15 +74,19 @@ def bounded(longest: int) -> Iterator[None]:
 
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     pages = int(Path("/proc/self/statm").read_text("ascii").split()[0])
-    before = signal.signal(signal.SIGALRM, stop)
+    timers = {signal.ITIMER_PROF: longest, signal.ITIMER_REAL: WAITS * longest}
+    before = [signal.signal(number, stop) for number in (signal.SIGPROF, signal.SIGALRM)]
     resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + MOST, hard))
-    signal.alarm(longest)
+    for timer, most in timers.items():
+        signal.setitimer(timer, most)
     try:
         yield
     finally:
-        signal.alarm(0)
+        for timer in timers:
+            signal.setitimer(timer, 0)
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
-        signal.signal(signal.SIGALRM, before)
+        for number, handler in zip((signal.SIGPROF, signal.SIGALRM), before, strict=True):
+            signal.signal(number, handler)
 
 
 @pytest.fixture

@@ -22,8 +22,13 @@ def breaks() -> None:
     raise ZeroDivisionError("division by zero")
 
 
-def hangs() -> None:
+def waits() -> None:
     time.sleep(60)
+
+
+def runs_for_ever() -> None:
+    while True:
+        pass
 
 
 def takes_memory() -> None:
@@ -48,7 +53,8 @@ def ends_as_a_fault() -> None:
 
 FAULTS: dict[Callable[[], None], str] = {
     breaks: "ZeroDivisionError",
-    hangs: "longer than 1 s",
+    waits: "longer than 1 s",
+    runs_for_ever: "longer than 1 s",
     takes_memory: "MemoryError",
     says_nothing: "does not say why",
     says_much: "more than a line",

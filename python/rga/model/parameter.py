@@ -5,15 +5,35 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Protocol
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from rga.arrays import FloatArray
 from rga.no_booleans import NO_BOOLEAN
 
 #: infinite and undefined ones among them
 AnyNumber = Annotated[float, NO_BOOLEAN]
-Number = Annotated[float, Field(allow_inf_nan=False), NO_BOOLEAN]
-NotNegative = Annotated[float, Field(ge=0), NO_BOOLEAN]
+#: beyond which squares and products are no numbers
+LARGEST, SMALLEST = 1e30, 1e-30
+
+
+def _not_huge(value: float) -> float:
+    if abs(value) > LARGEST:
+        raise ValueError(f"no structure has {value:g}: correct it, or its unit")
+    return value
+
+
+def _not_tiny(value: float) -> float:
+    if value < SMALLEST:
+        raise ValueError(f"no structure has {value:g}: correct it, or its unit")
+    return value
+
+
+NOT_HUGE = AfterValidator(_not_huge)
+Number = Annotated[float, Field(allow_inf_nan=False), NOT_HUGE, NO_BOOLEAN]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False), NOT_HUGE, NO_BOOLEAN]
+AboveZero = Annotated[
+    float, Field(gt=0, allow_inf_nan=False), NOT_HUGE, AfterValidator(_not_tiny), NO_BOOLEAN
+]
 
 
 class Driven(BaseModel):

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import dist
 from typing import TYPE_CHECKING, Any, LiteralString
 
 from pydantic import ValidationError
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
     from rga.model.effect import Effect
     from rga.model.schema import Model
 
+#: below which a member has no length [m]
+SHORTEST = 1e-9
 #: where a mistake stands, key by key, and what it is
 Mistake = tuple[tuple[str, ...], str]
 
@@ -159,7 +162,9 @@ def _without_length(
     one, other = nodes
     if one == other:
         yield place, f"both ends are node {one!r}"
-    elif one in model.nodes and model.nodes[one] == model.nodes.get(other):
+    elif {one, other} <= model.nodes.keys() and (
+        dist(model.nodes[one], model.nodes[other]) < SHORTEST
+    ):
         yield place, "the member has no length"
 
 

@@ -20,7 +20,7 @@ from pydantic import (
 
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment, seconds
-from rga.model.parameter import AnyNumber, NotNegative, Number, listed
+from rga.model.parameter import AboveZero, AnyNumber, NotNegative, Number, listed
 from rga.model.pictured import Pictured
 from rga.model.references import EVERYTHING_READ, Mistake, effect_mistakes, mistakes, refuse
 from rga.model.units import UNITS
@@ -32,7 +32,6 @@ UNREAD = "unread"
 DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
 Vector = tuple[Number, Number, Number]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), NO_BOOLEAN]
 
 
 class Part(BaseModel):
@@ -62,11 +61,11 @@ class Material(Part):
         yield_strength: [Pa]; stresses are set against it where it is given.
     """
 
-    E: Positive
+    E: AboveZero
     nu: Annotated[float, Field(gt=-1, lt=0.5), NO_BOOLEAN] = 0.3
     alpha: Number = 0.0
     density: NotNegative = 0.0
-    yield_strength: Positive | None = None
+    yield_strength: AboveZero | None = None
 
 
 class Section(Part):
@@ -76,12 +75,12 @@ class Section(Part):
         fibres: local y and z [m] of the points whose stresses are of interest, by name.
     """
 
-    A: Positive
+    A: AboveZero
     Iy: NotNegative = 0.0
     Iz: NotNegative = 0.0
     J: NotNegative = 0.0
-    Asy: Positive | None = None
-    Asz: Positive | None = None
+    Asy: AboveZero | None = None
+    Asz: AboveZero | None = None
     fibres: dict[str, tuple[Number, Number]] = {}
 
 
@@ -110,8 +109,8 @@ class Releases(Ends):
 class EndSprings(Ends):
     """Stiffness of the connection of the member's ends, in local axes [N m/rad or N/m]."""
 
-    i: dict[Dof, Positive] = {}
-    j: dict[Dof, Positive] = {}
+    i: dict[Dof, AboveZero] = {}
+    j: dict[Dof, AboveZero] = {}
 
 
 class Member(Part):
@@ -141,7 +140,7 @@ class Spring(Part):
     node: str
     to: str | None = None
     dof: Dof
-    stiffness: Positive
+    stiffness: AboveZero
 
 
 class Tie(Part):
@@ -159,7 +158,7 @@ class Mass(Part):
     """
 
     node: str
-    mass: Annotated[float, Field(ge=0, allow_inf_nan=False), NO_BOOLEAN]
+    mass: NotNegative
     inertia: tuple[Number, Number, Number] = (0.0, 0.0, 0.0)
 
 
@@ -174,7 +173,7 @@ class ContextVariable(Part):
 
     unit: str
     range: tuple[Number, Number]
-    noise: Positive | None = None
+    noise: AboveZero | None = None
     law: Literal["independent", "constant", "linear", "smooth"] = "independent"
     rate: tuple[Number, Number] | None = None
 
@@ -210,7 +209,7 @@ class Sensor(Part):
     z: Number = 0.0
     total: bool = False
     zero: tuple[AnyNumber | str, AnyNumber | str] | None = None
-    noise: Annotated[Positive, Field(ge=1e-30, le=1e30)] | None = None
+    noise: AboveZero | None = None
     groups: list[str] = []
 
     @field_validator("zero")
