@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -15,9 +16,11 @@ from concurrent.futures import (
 from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnContext, SpawnProcess
-from threading import Lock, Thread
+from pathlib import Path
+from threading import Lock, Thread, current_thread, main_thread
 from typing import Any, TypeVar
 
 from rga.errors import InputError
@@ -61,7 +64,7 @@ def finished(
         while True:
             # A cluster that has no worker left may get one again.
             for task in islice(waiting, max(count(), 1) - len(going)):
-                with _interruptions_held_back():
+                with _signals_held_back():
                     going[executor.submit(_alone, function, task)] = task
             if not going:
                 return
@@ -91,6 +94,8 @@ def _here() -> Iterator[Processes]:
 
 @contextmanager
 def _local(workers: int) -> Iterator[Processes]:
+    if sys.platform != "win32":
+        _begin_tracker()
     context = _Spawning()
     end, held = context.Pipe(duplex=False)
     with end, held:
@@ -126,19 +131,37 @@ class _Spawning(SpawnContext):
 
 
 @contextmanager
-def _interruptions_held_back() -> Iterator[None]:
-    """Ctrl-C comes after the block, and never to processes that begin within it.
+def _signals_held_back() -> Iterator[None]:
+    """Ctrl-C and SIGTERM come after the block: a process whose parent stops as it begins would say.
 
-    A terminal sends it to all of them, and they have nothing to say of it.
+    Ctrl-C never comes to processes that begin within it: a terminal sends it to all of them.
     """
-    if not hasattr(signal, "pthread_sigmask"):
+    if current_thread() is not main_thread() or not hasattr(signal, "pthread_sigmask"):
         yield
         return
+    came: list[int] = []
+    handler = signal.signal(signal.SIGTERM, lambda number, _frame: came.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
         yield
     finally:
+        signal.signal(signal.SIGTERM, handler)
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        if came:
+            signal.raise_signal(signal.SIGTERM)
+
+
+def _begin_tracker() -> None:
+    """Begin the process that takes away what killed ones leave, with nobody to tell of it."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with Path(os.devnull).open("wb") as nowhere:
+        os.dup2(nowhere.fileno(), 2)
+        try:
+            resource_tracker.ensure_running()
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
 
 
 @contextmanager

@@ -8,6 +8,8 @@ from types import FrameType
 
 #: signals that end a command, in words
 ENDING = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+#: time to clean up, after which the error comes again: libraries in C may have swallowed it [s]
+AGAIN = 2.0
 
 
 class Stopped(BaseException):
@@ -49,7 +51,13 @@ def stopping(to_the_end: bool = False) -> Iterator[None]:
         for one in ENDING:
             signal.signal(one, signal.SIG_DFL)
         came.append(number)
+        if hasattr(signal, "setitimer"):
+            signal.signal(signal.SIGALRM, again)
+            signal.setitimer(signal.ITIMER_REAL, AGAIN, AGAIN)
         raise Stopped(number)
+
+    def again(_number: int, _frame: FrameType | None) -> None:
+        raise Stopped(came[0])
 
     before = {number: signal.signal(number, stop) for number in ENDING}
     try:
@@ -60,5 +68,7 @@ def stopping(to_the_end: bool = False) -> Iterator[None]:
         # Libraries in C, as they begin, make another error of it.
         raise Stopped(came[0]) from error
     finally:
+        if came and hasattr(signal, "setitimer"):
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before.items():
             signal.signal(number, signal.SIG_IGN if to_the_end else handler)

@@ -18,6 +18,7 @@ from rga.model.parameter import (
     Parameter,
     Place,
     Prior,
+    listed,
     marks,
     resolve,
 )
@@ -164,6 +165,15 @@ class Effect(BaseModel):
         """True where the place is a sensor: members and other channels do not feel it."""
         return cls.on_sensors or any(mark.of == "sensor" for mark in cls.place_fields().values())
 
+    def sensors_named(self) -> list[str]:
+        """The sensors of its place."""
+        return [
+            sensor
+            for name, mark in self.place_fields().items()
+            if mark.of == "sensor"
+            for sensor in listed(getattr(self, name))
+        ]
+
     @classmethod
     @cache
     def overrides(cls, method: str) -> bool:
@@ -309,7 +319,7 @@ class Effect(BaseModel):
         """Change loads of other effects, by effect name, in place."""
 
     def change_readings(self, readings: "Readings", values: Values) -> None:
-        """Change what the sensors show, in place."""
+        """Change what the sensors of its place show, in place: all, where it names none."""
 
 
 def blend(value: FloatArray, neutral: float, weight: FloatArray) -> FloatArray:

@@ -348,10 +348,11 @@ class Simulator:
 
     def zeroed(self, readings: Readings) -> FloatArray:
         """Readings less the logger's zero, float[rows, sensors]; in place."""
-        for name, sensor in self.model.sensors.items():
+        for name, place in readings.columns.items():
+            sensor = self.model.sensors[name]
             if sensor.zero is not None:
                 first, last = (seconds(moment) for moment in sensor.zero)
-                column = readings.values[:, readings.columns[name]]
+                column = readings.values[:, place]
                 lead_in = (readings.time >= first) & (readings.time <= last)
                 if lead_in.any():
                     column -= column[lead_in].mean()

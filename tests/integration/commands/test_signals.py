@@ -4,10 +4,14 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
+
+from rga.cli.signals import Stopped, stopping
 
 ENDED = {signal.SIGINT: (130, "interrupted"), signal.SIGTERM: (143, "terminated")}
 
@@ -71,3 +75,15 @@ def test_a_diagnosis_leaves_nothing(
     code, word = ENDED[number]
     assert (process.returncode, said, error) == (code, "", f"{word}\n")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_library_swallowed_comes_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rga.cli.signals.AGAIN", 0.1)
+    until = time.monotonic() + 20.0
+    with pytest.raises(Stopped) as stopped, stopping():  # noqa: PT012
+        with suppress(Stopped):
+            signal.raise_signal(signal.SIGTERM)
+        while time.monotonic() < until:
+            pass
+    assert stopped.value.code == 143
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)

@@ -187,17 +187,22 @@ class Data:
             InputError: the effect cannot be simulated.
         """
         if effect.on_sensors:
-            changed = about.read_with(effect)
+            columns, changed = about.shown_with(effect)
+            before = about.read[:, columns]
+            channels = np.flatnonzero(np.isin(self.columns, columns))
+            places = np.searchsorted(columns, self.columns[channels])
         else:
             changed, _ = about.nearly({"trial": effect})
+            before = about.read
+            channels, places = np.arange(len(self.columns)), self.columns
         with np.errstate(invalid="ignore"):
-            difference = changed - about.read
+            difference = changed - before
         # What is not a number counts as touched: it is true.
-        channels = np.flatnonzero(difference[:, self.columns].any(0))
-        columns = self.columns[channels]
-        difference = difference[:, columns]
+        touched = difference[:, places].any(0)
+        channels, places = channels[touched], places[touched]
+        difference = difference[:, places]
         if not np.isfinite(difference).all():
-            difference = np.nan_to_num(changed[:, columns]) - np.nan_to_num(about.read[:, columns])
+            difference = np.nan_to_num(changed[:, places]) - np.nan_to_num(before[:, places])
         zero, rows = self._parted(difference)
         return channels, rows, zero
 

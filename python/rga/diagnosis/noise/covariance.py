@@ -104,6 +104,24 @@ class _Effects:
         found[self.alone] = np.matmul(self.own, columns.transpose(1, 2, 0))
         return found[:-1]
 
+    def along_few(self, columns: FloatArray, channels: IntArray) -> FloatArray:
+        """The same of columns on a few channels each, float[k, few, courses] and int[k, few]."""
+        count, few, courses = columns.shape
+        found = np.zeros((self.count + 1, count))
+        each = columns.reshape(count, 1, few * courses)
+        of_channels = self._by_sensor[channels].reshape(count, few * courses, len(self.shares))
+        found[self.several] = np.matmul(each, of_channels)[:, 0].T
+        own = np.matmul(self.own[channels], columns[..., None])[..., 0]
+        for place in range(few):
+            found[self.alone[channels[:, place]], np.arange(count)[:, None]] += own[:, place]
+        return found[:-1]
+
+    @cached_property
+    def _by_sensor(self) -> FloatArray:
+        """Shares of those of several sensors, float[sensors, courses, a]."""
+        sensors, _, courses = self.own.shape
+        return np.ascontiguousarray(self.shares.T).reshape(sensors, courses, len(self.shares))
+
 
 class Covariance:
     """The whole covariance: rows, and the scatter as random effects.
@@ -219,12 +237,9 @@ class Covariance:
         """
         white, back = self.rows.weighted(columns, channels)
         context = self.rows.solve_contexts(self.rows.on_contexts(back, channels))
-        along = back @ self.scatter.courses
-        if channels is not None:
-            of_channels = along
-            along = np.zeros((len(back), self.rows.observed.shape[1], along.shape[2]))
-            along[np.arange(len(back))[:, None], channels] = of_channels
-        score = self._effects.along(along) - self._context.T @ context
+        along, effects = back @ self.scatter.courses, self._effects
+        score = effects.along(along) if channels is None else effects.along_few(along, channels)
+        score -= self._context.T @ context
         scattered, _ = lapack.dtrtrs(self._factor, score, lower=1)
         return Reduced(white, context, score, scattered)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from math import prod
 
 import numpy as np
 
@@ -39,6 +40,8 @@ from rga.records import Record
 from rga.records.zero import zeros_of
 from rga.simulation import Simulator
 
+#: numbers in the signatures of all candidates, which are held together [4 bytes each]
+MOST_VALUES = 400_000_000
 #: times that broken channels are looked for: the worst may hide others
 GOES = 3
 #: share of a signature that courses of the loads must leave, to be no sum of them
@@ -118,7 +121,10 @@ def prepare(
         lost = lost_zeros(data.sensors, data.readings, data.observed, loaded, criteria.channels)
         found |= {fault.sensor: fault for fault in lost}
         data = _without(data, lost)
-    chosen = _loaded_rows(simulator, data)
+    most, few = _most_rows(simulator, data, record)
+    chosen = _loaded_rows(simulator, data, most)
+    if few is not None and chosen.sum() < len(chosen):
+        limits = [*limits, few]
     data = guess_rows(simulator, data.rows(chosen))
     simulated = data.predict(simulator)
     suspicious = [
@@ -316,8 +322,27 @@ def _of_channels(data: Data, kept: list[int]) -> Data:
     )
 
 
-def _loaded_rows(simulator: Simulator, data: Data) -> BoolArray:
-    """Rows that are analysed: without long unloaded ends, thinned evenly to a bounded number."""
+def _most_rows(simulator: Simulator, data: Data, record: Record) -> tuple[int, str | None]:
+    """Rows that are analysed at most; why they are fewer than the criterion allows, in words."""
+    allowed = data.criteria.record
+    candidates = hypotheses(simulator.model, data.sensors, set(record.contexts))
+    # One on sensors shows on two at most, another may show on all.
+    a_row = sum(
+        (2 if one.kind.on_sensors else len(data.sensors))
+        * prod(len(prior.trials) for prior in one.priors.values())
+        for one in candidates
+    )
+    most = max(allowed.few_rows, MOST_VALUES // max(1, a_row))
+    if most >= allowed.most_rows:
+        return allowed.most_rows, None
+    return most, (
+        f"of {len(data.time)} rows at most {most}, evenly chosen, were analysed: "
+        f"{len(data.sensors)} channels and {len(candidates)} possible causes leave no room for more"
+    )
+
+
+def _loaded_rows(simulator: Simulator, data: Data, most: int) -> BoolArray:
+    """Rows that are analysed: without long unloaded ends, thinned evenly to at most so many."""
     rows = len(data.time)
     first, last = 0, rows - 1
     if data.belief.lines:
@@ -326,7 +351,7 @@ def _loaded_rows(simulator: Simulator, data: Data) -> BoolArray:
         if len(acting):
             margin = max(2, len(acting) // 25)
             first, last = max(0, acting[0] - margin), min(rows - 1, acting[-1] + margin)
-    step = -(-(last - first + 1) // data.criteria.record.most_rows)
+    step = -(-(last - first + 1) // most)
     chosen = np.zeros(rows, dtype=bool)
     chosen[first : last + 1 : step] = True
     return chosen

@@ -75,11 +75,22 @@ class Vicinity:
         parts = [one.coefficients @ one.loaded.outputs for one in self._centres]
         self.response = replace(self.response, quantities=self._joined(parts, self._of_row))
 
-    def read_with(self, effect: Effect) -> FloatArray:
-        """What the sensors show with an effect on them alone, float[rows, sensors]."""
-        readings = replace(self._shown, values=self._shown.values.copy())
+    def shown_with(self, effect: Effect) -> tuple[IntArray, FloatArray]:
+        """What the sensors that an effect on sensors names show with it; all where it names none.
+
+        Returns:
+            Their columns, int[c], and float[rows, c].
+        """
+        named = sorted({self._shown.columns[name] for name in effect.sensors_named()})
+        columns = np.array(named or range(self.read.shape[1]), dtype=np.int64)
+        names = list(self._shown.columns)
+        readings = replace(
+            self._shown,
+            values=self._shown.values[:, columns],
+            columns={names[column]: place for place, column in enumerate(columns)},
+        )
         effect.change_readings(readings, effect.values(self.response.contexts, self._rows))
-        return self.simulator.zeroed(readings)
+        return columns, self.simulator.zeroed(readings)
 
     def trial(self, effects: Mapping[str, Effect]) -> tuple["Simulator", "Response"]:
         """The simulation with more effects, and its response as `Simulator.respond` gives it.
@@ -119,7 +130,8 @@ class Vicinity:
         time = self.response.contexts["time"]
         for name, effect in effects.items():
             if effect.on_sensors:
-                read += self.read_with(effect) - self.read
+                columns, shown = self.shown_with(effect)
+                read[:, columns] += shown - self.read[:, columns]
                 continue
             always = effect.model_copy(update={"onset": None, "profile": "step", "end": None})
             tried, response = self._calm.trial({name: always})

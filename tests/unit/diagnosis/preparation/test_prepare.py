@@ -30,6 +30,18 @@ def test_a_sound_record_is_taken_whole(model: Model, record: Record) -> None:
     assert (found.faults, found.warnings, found.apart) == ([], [], ())
 
 
+def test_of_many_candidates_fewer_rows_are_analysed(
+    model: Model, record: Record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rga.diagnosis.preparation.prepare.MOST_VALUES", 1)
+    found = ready(model, record)
+    # No fewer than the criterion of few rows, 60 of 100.
+    assert np.flatnonzero(found.chosen).tolist() == list(range(0, 100, 2))
+    assert len(found.data.time) == 50
+    (said,) = [one for one in found.warnings if "possible causes leave no room for more" in one]
+    assert said.startswith("of 100 rows at most 60, evenly chosen, were analysed: ")
+
+
 def test_missing_readings_and_contexts_are_left_aside(model: Model, record: Record) -> None:
     readings, warmth = record.readings.copy(), record.contexts["temperature"].copy()
     readings[3, 2] = warmth[[7, 8]] = np.nan
