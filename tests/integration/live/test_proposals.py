@@ -37,6 +37,19 @@ def test_a_diagnosis_proposes_and_changes_nothing(sinks: Given, taken_in: TakenI
     assert proposal.gain > 0
 
 
+def test_an_end_that_finds_the_same_does_not_propose_it_again(
+    sinks: Given, taken_in: TakenIn
+) -> None:
+    place = taken_in(sinks, 90, adopt="ask")
+    with rga.LiveTwin(place) as twin:
+        twin.end()
+        twin.play()
+        events = history(twin).events
+    (proposal,) = proposals(place)
+    assert kinds(events)[-2:] == ["diagnosis", "proposal"]
+    assert events[-1].words == f"proposal 1 stands: {proposal.words}"
+
+
 @pytest.mark.parametrize("how", ["asked", "carried out"])
 def test_what_is_accepted_is_what_is_adopted_at_once(
     how: str, sinks: Given, taken_in: TakenIn

@@ -25,7 +25,13 @@ class Proposals:
     def add(
         self, row: int, effects: Effects, gain: float | None, gain_ci90: tuple[float, float] | None
     ) -> str:
-        """Propose effects beyond the model as it was given, and say so in words."""
+        """Propose effects beyond the model as it was given, and say so in words.
+
+        The very same ones are not proposed twice while nobody has decided.
+        """
+        last = self._last
+        if last is not None and last.effects == effects and self._decided(last) is None:
+            return f"proposal {last.number} stands: {last.words}"
         causes = [effect_words(one) for one in effects.values()]
         words = f"a model with {', '.join(causes)}" if causes else "the model as it was given"
         number = self._archive.propose(row, words, effects, gain, gain_ci90)
