@@ -23,13 +23,14 @@ SIZES = (
 )  # fmt: skip
 QUICK = ((200, 12, 10),)
 #: how long one size may take [s]
-LONGEST = 300.0
+LONGEST = 600.0
 ABOUT = (
     "{}, one core. A footbridge in which nothing is hidden, all contexts measured; the record is a "
     "Parquet file."
 )
 ENVIRONMENT = os.environ | {"OMP_NUM_THREADS": "1"}
 ONE = "rga_bench.limits.one_size"
+NONE_SMALLER = "a smaller one did not"
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class SizeOutcome:
         reading, diagnosis: time [s]; None where it was over.
         memory: largest of the process, with Python and rga [B].
         verdict: of the diagnosis.
-        ended: "yes", "no time" or "no memory".
+        ended: "yes", "no time", "no memory", or that a smaller one did not.
     """
 
     rows: int
@@ -54,6 +55,11 @@ class SizeOutcome:
     diagnosis: float | None = None
     memory: int | None = None
     verdict: str = ""
+
+    def within(self, size: tuple[int, int, int]) -> bool:
+        """Whether another size is as large in all."""
+        own = (self.rows, self.sensors, self.panels)
+        return all(one <= other for one, other in zip(own, size, strict=True))
 
 
 @dataclass(frozen=True)
@@ -76,10 +82,13 @@ class LimitsExperiment(Experiment[Sequence[SizeOutcome]]):
         return cls(QUICK if quick else SIZES, seed)
 
     def measure(self, execution: Execution) -> list[SizeOutcome]:
-        """One after the other, each in processes of its own."""
-        found = []
+        """One after the other, each in processes of its own; none larger than what did not end."""
+        found: list[SizeOutcome] = []
         for number, size in enumerate(self.sizes):
-            found.append(_measured(*size, self.seed))
+            if any(one.ended != "yes" and one.within(size) for one in found):
+                found.append(SizeOutcome(*size, NONE_SMALLER))
+            else:
+                found.append(_measured(*size, self.seed))
             execution.progress((number + 1) / len(self.sizes))
         return found
 

@@ -15,21 +15,23 @@ from rga.model.io import model_text
 from rga.records import load_record
 from rga_bench.speed.sized_case import SizedCase
 
-MODEL, RECORD = "model.json", "record.parquet"
+MODEL, PART = "model.json", "part {:02}.parquet"
 
 
 def draw(folder: Path, rows: int, sensors: int, panels: int, seed: int) -> None:
     """Write a model and a record in which nothing is hidden."""
-    model, table = SizedCase(rows, sensors, panels, "nothing", seed).table()
+    case = SizedCase(rows, sensors, panels, "nothing", seed)
+    model = case.model()
     (folder / MODEL).write_text(model_text(model), "utf-8")
-    table.write_parquet(folder / RECORD)
+    for number, table in enumerate(case.tables(model)):
+        table.write_parquet(folder / PART.format(number))
 
 
 def measure(folder: Path) -> dict[str, object]:
     """Read and diagnose, and say what that takes."""
     begun = time.perf_counter()
     model = load_model(folder / MODEL)
-    record = load_record(folder / RECORD, model)
+    record = load_record(sorted(folder.glob("part *.parquet")), model)
     read = time.perf_counter()
     findings = diagnose(model, record)
     ended = time.perf_counter()

@@ -1,6 +1,7 @@
 """Cases of any size: the bridge of the case study with more panels, and gauges all over it."""
 
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -16,6 +17,8 @@ from rga_bench.synthetic.bridges.case_study import SIDES, actions, contexts, dra
 Hidden = Literal["nothing", "section loss", "bearing", "gain", "broken channel"]
 #: deviation of every member from its drawing, of a displacement [mm] and of a strain [microstrain]
 SCATTER, MILLIMETRES, MICROSTRAIN = 0.01, 0.15, 1.5
+#: rows that are drawn at a time
+PART = 250_000
 #: what may be hidden; a broken channel shows one value from the middle of the record on
 EFFECTS: dict[Hidden, dict[str, Any]] = {
     "section loss": {"kind": "member_stiffness", "member": "north.L4-L5", "factor": 0.6},
@@ -58,16 +61,19 @@ class SizedCase:
 
     def draw(self) -> tuple[Model, Record]:
         """The model, and the record of a bridge that is not quite as drawn."""
-        model, table = self.table()
+        model = self.model()
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "record.csv"
-            table.write_csv(path)
+            polars.concat(self.tables(model)).write_csv(path)
             return model, load_record(path, model)
 
-    def table(self) -> tuple[Model, polars.DataFrame]:
-        """The model, and the columns of the record."""
+    def tables(self, model: Model) -> Iterator[polars.DataFrame]:
+        """The columns of the record, so many rows at a time as fit into memory.
+
+        Args:
+            model: as `model` gives it.
+        """
         rng = np.random.default_rng(self.seed)
-        model = self.model()
         factors = np.exp(SCATTER * rng.normal(size=len(model.members)))
         built: dict[str, dict[str, Any]] = {
             f"as built {name}": {
@@ -80,11 +86,17 @@ class SizedCase:
         if self.hidden in EFFECTS:
             built["hidden"] = EFFECTS[self.hidden]
         true = model.extended({name: read_effect(one, name) for name, one in built.items()})
-        drawn = {name: rng.uniform(*one.range, self.rows) for name, one in model.context.items()}
-        shown = Simulator(true).predict(drawn)
+        simulator, stuck = Simulator(true), None
         noise = [sensor.noise or 0.0 for sensor in model.sensors.values()]
-        shown += noise * rng.normal(size=shown.shape)
-        if self.hidden == "broken channel":
-            shown[self.rows // 2 :, 1] = shown[self.rows // 2, 1]
-        columns = {**drawn, **dict(zip(model.sensors, shown.T, strict=True))}
-        return model, polars.DataFrame({"time": 3600.0 * np.arange(self.rows), **columns})
+        for first in range(0, self.rows, PART):
+            rows = min(PART, self.rows - first)
+            drawn = {name: rng.uniform(*one.range, rows) for name, one in model.context.items()}
+            shown = simulator.predict(drawn)
+            shown += noise * rng.normal(size=shown.shape)
+            begins = max(0, self.rows // 2 - first)
+            if self.hidden == "broken channel" and begins < rows:
+                stuck = shown[begins, 1] if stuck is None else stuck
+                shown[begins:, 1] = stuck
+            columns = {**drawn, **dict(zip(model.sensors, shown.T, strict=True))}
+            time = 3600.0 * np.arange(first, first + rows)
+            yield polars.DataFrame({"time": time, **columns})
