@@ -15,7 +15,7 @@ from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.records import Record
 
-SIZES = [0.0, -1.0, 1e-300, 1e300]
+SIZES = [0.0, -1.0, 1e-300, 1e30]
 
 
 def numbers(part: Any, here: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:

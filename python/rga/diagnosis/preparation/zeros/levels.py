@@ -1,10 +1,11 @@
 """Levels of residuals: offsets, jumps, and how much of them few causes of the structure make."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.data.observations import Data
@@ -14,6 +15,11 @@ from rga.diagnosis.search.signatures import signatures
 from rga.model.schema import Model
 from rga.numerics.decompositions import thin_svd
 from rga.simulation import Simulator
+
+#: rows that what causes change is worked out in: all of their constants are known by fewer
+MOST_ROWS = 2_000
+#: rows that are compared at a time
+BLOCK = 8_192
 
 
 @dataclass(frozen=True)
@@ -71,10 +77,50 @@ class Compared:
         """Readings less simulation, float[rows, sensors], NaN where missing."""
         return self.readings - self.simulated
 
-    @cached_property
-    def changes(self) -> list[tuple[FloatArray, FloatArray]]:
-        """What causes of the structure change, as `changes` has it."""
-        return list(changes(self.model, self.simulator, self.data))
+    def changes_from(self, row: int, rows: int) -> Iterator[FloatArray]:
+        """What causes of the structure that begin at a row change, over the noise.
+
+        Args:
+            row: the first.
+            rows: how many rows the change is the mean of.
+
+        Yields:
+            Float[sensors] for each.
+        """
+        # Of a long record those about it are enough.
+        first = max(0, min(row - MOST_ROWS // 2, len(self.simulated) - MOST_ROWS))
+        about = self._of_rows(np.arange(first, min(first + MOST_ROWS, len(self.simulated))))
+        behind = slice(row - first, row - first + rows)
+        for change, late in about.changes():
+            yield self.over_noise(change[behind].mean(0) + late)
+
+    def changes(self) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """What causes of the structure change, float[rows, sensors], and what a late one adds.
+
+        The latter, float[sensors], is what the zero takes off one that always acts.
+        """
+        data, sensors = self.data, len(self.data.sensors)
+        candidates = [
+            one
+            for one in hypotheses(self.model, data.sensors, list(data.belief.spread))
+            if not one.kind.on_sensors
+        ]
+        for found in signatures(data, data.about(self.simulator), candidates):
+            touched = slice(None) if found.channels is None else found.channels
+            change, late = np.zeros((len(data.time), sensors)), np.zeros(sensors)
+            change[:, touched], late[touched] = found.values.T, found.zero
+            yield change, late
+
+    def thinned(self) -> "Compared":
+        """The same of a bounded number of rows, evenly chosen."""
+        return self._of_rows(
+            np.arange(0, len(self.simulated), -(-len(self.simulated) // MOST_ROWS))
+        )
+
+    def _of_rows(self, chosen: IntArray) -> "Compared":
+        if len(chosen) == len(self.simulated):
+            return self
+        return replace(self, data=self.data.rows(chosen), simulated=self.simulated[chosen])
 
     def over_noise(self, values: FloatArray) -> FloatArray:
         """Values in units of the noise; zero of channels that do not work, or where missing."""
@@ -105,12 +151,41 @@ def moving_means(values: FloatArray, width: int) -> FloatArray:
 
 def means_between(values: FloatArray, first: IntArray, end: IntArray) -> FloatArray:
     """Means over rows from `first` to before `end`, NaN where there is none, float[n, sensors]."""
-    seen = np.isfinite(values)
-    none = np.zeros((1, values.shape[1]))
-    total = np.cumsum(np.concatenate([none, np.where(seen, values, 0.0)]), axis=0)
-    count = np.cumsum(np.concatenate([none, seen]), axis=0)
-    total, count = total[end] - total[first], count[end] - count[first]
-    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return RunningSums.of(values).means(first, end)
+
+
+@dataclass(frozen=True)
+class RunningSums:
+    """Sums of values over all rows before each, of which means over any rows follow.
+
+    Attributes:
+        total: float[rows + 1, sensors].
+        count: of the values that are there, int[rows + 1, sensors].
+    """
+
+    total: FloatArray
+    count: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, values: FloatArray) -> "RunningSums":
+        """Those of values float[rows, sensors], NaN where missing."""
+        seen = np.isfinite(values)
+        total = np.zeros((len(values) + 1, values.shape[1]))
+        np.cumsum(np.where(seen, values, 0.0), axis=0, out=total[1:])
+        count = np.zeros(total.shape, dtype=np.int32)
+        np.cumsum(seen, axis=0, out=count[1:])
+        return cls(total, count)
+
+    def means(self, first: IntArray, end: IntArray) -> FloatArray:
+        """As `means_between`."""
+        total, count = self.total[end] - self.total[first], self.count[end] - self.count[first]
+        return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """Slices of so many rows that what is made of each stays small."""
+    for first in range(0, count, BLOCK):
+        yield slice(first, min(first + BLOCK, count))
 
 
 def constant(simulator: Simulator, data: Data) -> FloatArray:
@@ -122,25 +197,6 @@ def constant(simulator: Simulator, data: Data) -> FloatArray:
     rest = ones - courses @ (courses.T @ ones)
     # Under loads that hardly vary no constant can be distinguished from their response.
     return rest if rest @ rest > 1e-3 * len(rest) else ones
-
-
-def changes(
-    model: Model, simulator: Simulator, data: Data
-) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """What causes of the structure change, float[rows, sensors], and what a late one adds.
-
-    The latter, float[sensors], is what the zero takes off one that always acts.
-    """
-    candidates = [
-        one
-        for one in hypotheses(model, data.sensors, list(data.belief.spread))
-        if not one.kind.on_sensors
-    ]
-    for found in signatures(data, data.about(simulator), candidates):
-        touched = slice(None) if found.channels is None else found.channels
-        change, late = np.zeros((len(data.time), len(data.sensors))), np.zeros(len(data.sensors))
-        change[:, touched], late[touched] = found.values.T, found.zero
-        yield change, late
 
 
 def left_by_causes(levels: FloatArray, patterns: Sequence[FloatArray], most: int) -> FloatArray:

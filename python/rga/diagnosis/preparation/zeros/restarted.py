@@ -9,8 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rga.arrays import BoolArray, FloatArray
-from rga.diagnosis.preparation.zeros.levels import Compared, constant, left_by_causes, moving_means
+from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.diagnosis.preparation.zeros.levels import (
+    Compared,
+    RunningSums,
+    blocks,
+    constant,
+    left_by_causes,
+    moving_means,
+)
 from rga.diagnosis.preparation.zeros.zeroed_again import BESIDE, TAKEN
 
 #: rows over which a jump must be there already, and the share of it
@@ -45,23 +52,28 @@ def restarted(compared: Compared) -> Jump | None:
 def jump_of_many(compared: Compared) -> Jump | None:
     """The largest jump of many channels that stays, if there is one."""
     criteria = compared.data.criteria.zeros
-    over, step = (moving_means(compared.residual, width) for width in (BESIDE, AT_ONCE))
-    rows = np.arange(BESIDE, len(over))
-    if not len(rows):
-        return None
-    size = over[rows] - over[rows - BESIDE]
-    at_once = step[rows] - step[rows - AT_ONCE]
+    sums = RunningSums.of(compared.residual)
     shift = np.where(compared.working, compared.noise * np.sqrt(2 / BESIDE), np.inf)
-    far = np.nan_to_num(np.abs(size)) > criteria.far_from_zero * shift
-    jumping = far & (at_once * np.sign(size) > THERE * np.abs(size))
-    many = jumping.sum(1) >= compared.at_least(criteria.share_that_jumps)
-    if not many.any():
+
+    def jumps(rows: IntArray) -> tuple[FloatArray, BoolArray]:
+        """How far levels move at rows, and which of them at once, float and bool[n, sensors]."""
+        size = sums.means(rows, rows + BESIDE) - sums.means(rows - BESIDE, rows)
+        at_once = sums.means(rows, rows + AT_ONCE) - sums.means(rows - AT_ONCE, rows)
+        far = np.nan_to_num(np.abs(size)) > criteria.far_from_zero * shift
+        return size, far & (at_once * np.sign(size) > THERE * np.abs(size))
+
+    rows = np.arange(BESIDE, len(compared.residual) - BESIDE + 1)
+    apart = np.full(len(rows), -1.0)
+    for block in blocks(len(rows)):
+        size, jumping = jumps(rows[block])
+        many = jumping.sum(1) >= compared.at_least(criteria.share_that_jumps)
+        # Means over rows beside a jump hold a part of it: it is largest where it happened.
+        apart[block][many] = (np.nan_to_num(np.abs(size)) / shift * jumping).sum(1)[many]
+    if (apart < 0).all():
         return None
-    # Means over rows on both sides of a jump hold a part of it: it is largest where it happened.
-    apart = (np.nan_to_num(np.abs(size)) / shift * jumping).sum(1)
-    best = int(np.argmax(np.where(many, apart, -1.0)))
-    row, channels = int(rows[best]), jumping[best]
-    largest = np.where(channels, size[best], 0.0)
+    row = int(rows[np.argmax(apart)])
+    (size,), (channels,) = jumps(np.array([row]))
+    largest = np.where(channels, size, 0.0)
     jump = Jump(row, channels, largest, _at_zero(compared, row, channels))
     return jump if _stays(compared, jump) else None
 
@@ -90,10 +102,7 @@ def _level(compared: Compared, rows: BoolArray) -> tuple[FloatArray, FloatArray]
 def _few_causes(compared: Compared, jump: Jump) -> bool:
     """Whether few causes of the structure that begin there make the jump."""
     criteria = compared.data.criteria.zeros
-    beside = slice(jump.row, jump.row + BESIDE)
-    patterns = [
-        compared.over_noise(change[beside].mean(0) + late) for change, late in compared.changes
-    ]
+    patterns = list(compared.changes_from(jump.row, BESIDE))
     size = compared.over_noise(jump.size)
     # No cause ends at the zero of the logger by chance, unless it is a load that acts no more.
     left = left_by_causes(size, patterns, 1 if jump.at_zero else criteria.most_causes)

@@ -86,10 +86,14 @@ def _anywhere(compared: Compared) -> bool:
     offset = off_by_constants(compared)
     if offset is None:
         return False
-    patterns = [_offsets(compared, change) for change, _ in compared.changes]
-    left = left_by_causes(offset, patterns, criteria.most_causes)
+    left = left_by_causes(offset, _offsets_of_causes(compared), criteria.most_causes)
     many = (np.abs(left) > criteria.offset).sum() >= least
     return bool(many and left @ left > criteria.left_by_causes * (offset @ offset))
+
+
+def _offsets_of_causes(compared: Compared) -> list[FloatArray]:
+    few = compared.thinned()
+    return [_offsets(few, change) for change, _ in few.changes()]
 
 
 def _offsets(compared: Compared, values: FloatArray) -> FloatArray:
@@ -108,8 +112,7 @@ def _likeliest(compared: Compared, taken: ZeroRows) -> bool:
     if taken.surely:
         return True
     offset = compared.over_noise(taken.taken)
-    patterns = [_offsets(compared, change) for change, _ in compared.changes]
-    left = left_by_causes(offset, patterns, 1)
+    left = left_by_causes(offset, _offsets_of_causes(compared), 1)
     share = 1 - compared.data.criteria.zeros.one_cause
     return bool(left @ left > share * (offset @ offset))
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from rga.arrays import FloatArray, IntArray
-from rga.diagnosis.preparation.zeros.levels import Compared, means_between
+from rga.arrays import BoolArray, FloatArray, IntArray
+from rga.diagnosis.preparation.zeros.levels import Compared, RunningSums, blocks
 
 #: numbers of rows that are tried anywhere in a record; from its first row on every number is
 ANYWHERE = (1, 2, 3, 5, 10, 20, 50)
@@ -46,25 +46,35 @@ def zero_rows(compared: Compared) -> ZeroRows | None:
     """The rows over which channels most likely were set to zero, if there are such."""
     criteria = compared.data.criteria.zeros
     first, end = _stretches(len(compared.readings))
-    shown = np.where(compared.data.observed, compared.simulated, np.nan)
-    mean = means_between(compared.readings, first, end)
-    should = means_between(shown, first, end)
-    should = np.where(compared.working, should, 0.0)
-    zero = compared.working & (np.abs(mean) <= criteria.near_zero * compared.own)
-    squares = np.zeros(zero.shape)
-    np.divide(mean, compared.own, out=squares, where=zero)
-    # Of stretches that read zero as nearly, the longer one says more.
-    chance = chi2.cdf((squares**2).sum(1) * (end - first), np.maximum(zero.sum(1), 1))
-    surely = chance * len(first) < BY_CHANCE
-    surely &= zero.sum(1) >= criteria.reading_zero * compared.working.sum()
-    least = np.where(surely, SEEN, criteria.offset)[:, None] * compared.noise
-    telling = np.abs(should) > least
-    few = np.where(surely, 1, compared.at_least(criteria.share_of_channels))
-    found = telling.sum(1) >= few
-    found &= (telling & zero).sum(1) >= criteria.reading_zero * telling.sum(1)
+    readings = RunningSums.of(compared.readings)
+    simulated = RunningSums.of(np.where(compared.data.observed, compared.simulated, np.nan))
+    chance, found = np.ones(len(first)), np.zeros(len(first), dtype=bool)
+    surely = found.copy()
+
+    def told(of: slice | IntArray) -> tuple[FloatArray, BoolArray]:
+        """What is simulated in stretches, and where that is far, float, bool[n, sensors]."""
+        should = np.where(compared.working, simulated.means(first[of], end[of]), 0.0)
+        least = np.where(surely[of], SEEN, criteria.offset)[:, None] * compared.noise
+        return should, np.abs(should) > least
+
+    for block in blocks(len(first)):
+        mean = readings.means(first[block], end[block])
+        zero = compared.working & (np.abs(mean) <= criteria.near_zero * compared.own)
+        squares = np.zeros(zero.shape)
+        np.divide(mean, compared.own, out=squares, where=zero)
+        # Of stretches that read zero as nearly, the longer one says more.
+        power = (squares**2).sum(1) * (end[block] - first[block])
+        chance[block] = chi2.cdf(power, np.maximum(zero.sum(1), 1))
+        surely[block] = chance[block] * len(first) < BY_CHANCE
+        surely[block] &= zero.sum(1) >= criteria.reading_zero * compared.working.sum()
+        _, telling = told(block)
+        few = np.where(surely[block], 1, compared.at_least(criteria.share_of_channels))
+        found[block] = telling.sum(1) >= few
+        found[block] &= (telling & zero).sum(1) >= criteria.reading_zero * telling.sum(1)
     order = np.argsort(np.where(found, chance, np.inf), kind="stable")
     for best in order[: min(LOOKED_AT, found.sum())]:
-        taken = np.where(telling[best], should[best], 0.0)
+        (should,), (telling,) = told(np.array([best]))
+        taken = np.where(telling, should, 0.0)
         if _stands(compared, taken):
             return ZeroRows(int(first[best]), int(end[best]) - 1, taken, bool(surely[best]))
     return None

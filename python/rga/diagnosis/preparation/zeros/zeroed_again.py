@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rga.diagnosis.preparation.zeros.levels import Compared, moving_means
+from rga.diagnosis.preparation.zeros.levels import Compared, RunningSums, blocks, moving_means
 
 #: rows over which the logger may have taken its zero, and over which levels are compared
 TAKEN, BESIDE = (1, 2, 5, 10), 10
@@ -19,26 +19,30 @@ def zero_from(compared: Compared) -> int | None:
     criteria = compared.data.criteria.zeros
     noise, own = compared.noise, compared.own
     expected = np.where(compared.data.observed, compared.simulated, np.nan)
-    over = moving_means(compared.residual, BESIDE)
-    rows = np.arange(BESIDE, len(over))
-    before, after = over[rows - BESIDE], over[rows]
+    missing, shown_sums, expected_sums = (
+        RunningSums.of(values) for values in (compared.residual, compared.readings, expected)
+    )
+    all_rows = np.arange(BESIDE, len(expected) - BESIDE + 1)
     shift = noise * np.sqrt(2 / BESIDE)
-    found = np.zeros(len(rows), dtype=bool)
-    for taken in TAKEN:
-        shown = moving_means(compared.readings, taken)[rows]
-        should = moving_means(expected, taken)[rows] + before
-        far = np.maximum(criteria.far_from_zero * shift, criteria.offset * own)
-        telling = (np.abs(should) > far) & compared.working
-        zero = telling & (np.abs(shown) <= criteria.near_zero * own)
-        missed = criteria.shift_share * np.abs(should) + criteria.shift_deviations * shift
-        zero &= np.abs(after - before + should) <= missed
-        enough = telling.sum(1) >= compared.at_least(criteria.share_of_channels)
-        found |= enough & (zero.sum(1) >= criteria.reading_zero * telling.sum(1))
-    if not found.any():
-        return None
-    # Rows beside it may read near zero too: where it happened the levels lie furthest apart.
-    apart = np.nansum(np.abs(after - before) / np.where(compared.working, shift, np.inf), axis=1)
-    return int(rows[np.argmax(np.where(found, apart, -1.0))])
+    far = np.maximum(criteria.far_from_zero * shift, criteria.offset * own)
+    apart = np.full(len(all_rows), -1.0)
+    for block in blocks(len(all_rows)):
+        rows = all_rows[block]
+        before, after = missing.means(rows - BESIDE, rows), missing.means(rows, rows + BESIDE)
+        found = np.zeros(len(rows), dtype=bool)
+        for taken in TAKEN:
+            shown = shown_sums.means(rows, rows + taken)
+            should = expected_sums.means(rows, rows + taken) + before
+            telling = (np.abs(should) > far) & compared.working
+            zero = telling & (np.abs(shown) <= criteria.near_zero * own)
+            missed = criteria.shift_share * np.abs(should) + criteria.shift_deviations * shift
+            zero &= np.abs(after - before + should) <= missed
+            enough = telling.sum(1) >= compared.at_least(criteria.share_of_channels)
+            found |= enough & (zero.sum(1) >= criteria.reading_zero * telling.sum(1))
+        # Rows beside it may read near zero too: where it happened the levels lie furthest apart.
+        levels = np.abs(after - before)[found] / np.where(compared.working, shift, np.inf)
+        apart[block][found] = np.nansum(levels, axis=1)
+    return None if (apart < 0).all() else int(all_rows[np.argmax(apart)])
 
 
 def _one_cause(compared: Compared, row: int) -> bool:
@@ -47,8 +51,7 @@ def _one_cause(compared: Compared, row: int) -> bool:
     beside = residual[row - BESIDE : row], residual[row : row + BESIDE]
     before, after = (moving_means(part, len(part))[0] for part in beside)
     jump = compared.over_noise(after - before)
-    for change, late in compared.changes:
-        shown = compared.over_noise(change[row : row + BESIDE].mean(0) + late)
+    for shown in compared.changes_from(row, BESIDE):
         alike = (shown @ jump) ** 2
         if alike > compared.data.criteria.zeros.one_cause * (shown @ shown) * (jump @ jump):
             return True
