@@ -1,13 +1,21 @@
 """Files that are read: those of a disk, of a size that fits."""
 
 import os
+import re
 import stat
+import tomllib
 from pathlib import Path
+from typing import Any
 
 from rga.errors import InputError
 
 #: bytes of the largest text that describes something
 LARGEST = 64 * 2**20
+#: tables within tables that a key of TOML may name: its reader takes the square of them
+DEEPEST = 100
+_DEEP_KEY = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]++[ \t]*+\.[ \t]*+){{{DEEPEST}}}")
+#: digits of an integer, of which no more than some thousands can be shown
+_LONG_INTEGER = re.compile(r"\b0[xob][\w]{300}")
 
 
 def bytes_of(
@@ -42,6 +50,26 @@ def bytes_of(
         size = f"more than {largest / 2**20:.0f} MiB"
         raise InputError(f"the {what} has {size}", str(path), "give a smaller one")
     return content
+
+
+def toml_of(text: str) -> dict[str, Any]:
+    """What a text in TOML holds.
+
+    Raises:
+        ValueError: it is no TOML, or has keys or integers beyond all bounds.
+        RecursionError: values stand too deep in one another.
+
+    >>> toml_of("a.b = 1")
+    {'a': {'b': 1}}
+    >>> toml_of("a" + ".a" * 40_000 + " = 1")
+    Traceback (most recent call last):
+    ValueError: a key names more than 100 tables within tables
+    """
+    if _DEEP_KEY.search(text):
+        raise ValueError(f"a key names more than {DEEPEST} tables within tables")
+    if _LONG_INTEGER.search(text):
+        raise ValueError("an integer has more than 300 digits")
+    return tomllib.loads(text)
 
 
 def fault_of(error: Exception) -> str:

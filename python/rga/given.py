@@ -21,9 +21,12 @@ def as_record(
         mapping: how to read the file, as `load_record` takes it.
 
     Raises:
-        InputError: the file cannot be used, or this is neither.
+        InputError: the file cannot be used, the record is of another model, or this is neither.
     """
     if isinstance(given, Record):
+        if foreign := [name for name in given.sensors if name not in model.sensors]:
+            what = f"the model has no sensor {foreign[0]!r}"
+            raise InputError(what, "record", "read the record with this model")
         return given
     if isinstance(given, (str, Path, list, tuple)) or is_frame(given):
         return load_record(given, model, mapping)

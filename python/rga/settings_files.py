@@ -1,13 +1,12 @@
 """Files of settings (JSON or TOML), read into frozen classes with one clear error."""
 
 import json
-import tomllib
 from pathlib import Path
 from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from rga.bounded_files import bytes_of, fault_of
+from rga.bounded_files import bytes_of, fault_of, toml_of
 from rga.errors import InputError
 
 T = TypeVar("T", bound=BaseModel)
@@ -28,7 +27,7 @@ def read_table(path: Path, what: str) -> dict[str, object]:
     raw = bytes_of(path, what, LARGEST_SETTINGS)
     try:
         text = raw.decode("utf-8-sig")
-        content = tomllib.loads(text) if path.suffix == ".toml" else json.loads(text)
+        content = toml_of(text) if path.suffix == ".toml" else json.loads(text)
     except (ValueError, RecursionError) as error:
         problem = fault_of(error)
         raise InputError(f"these are no {what}: {problem}", str(path), "mend the syntax") from None

@@ -128,6 +128,7 @@ MODELS: dict[str, dict[str, Any]] = {
     "noise of a sensor 1e300": {"sensors__D1__noise": 1e300},
     "noise of a sensor 1e-300": {"sensors__D1__noise": 1e-300},
     "nodes 1e-300 apart": {"nodes__T": [0, 0, 1e-300]},
+    "a direction of 1e-200": {"sensors__D1__direction": [0, 0, 1e-200]},
     "nodes 1e300 apart": {"nodes__T": [3, 0, 1e300]},
     "a name that is markup": {"name": "[/bold]<script>alert(1)</script>"},
     "half of a letter": {"name": "\ud800"},
@@ -222,7 +223,58 @@ def test_a_seed_beyond_any(seed: int, given: Given, judged: Judged) -> None:
     check(judged, given((*DIAGNOSE, "--seed", str(seed)), {}))
 
 
-@pytest.mark.parametrize("rows", [10**20, 10**12])
+@pytest.mark.parametrize("rows", [10**400, 10**20, 10**12])
 def test_a_dataset_that_no_disk_holds(rows: int, given: Given, judged: Judged) -> None:
     words = ("dataset", "{}/model.json", "-n", str(rows), "-o", "{}/out/set.parquet")
     assert check(judged, given(words, {})).code == 2
+
+
+#: text in other languages than JSON that is refused: the file, and what reads it
+LANGUAGES: dict[str, tuple[str, bytes]] = {
+    "a key of TOML through 40 000 tables": ("model.toml", b"a" + b".a" * 40_000 + b" = 1"),
+    "a key of a mapping through 40 000 tables": ("import.toml", b"a" + b".a" * 40_000 + b" = 1"),
+    "an integer of TOML of 5 000 digits": ("model.toml", b"rga_model = 0x" + b"f" * 5000),
+    "an integer of a mapping of 5 000 digits": ("import.toml", b"header_line = 0x" + b"f" * 5000),
+    "an integer of YAML of 5 000 digits": ("model.yaml", b"rga_model: 0x" + b"f" * 5000),
+    "a boolean of YAML that is none": ("model.yaml", b'x: !!bool "x"'),
+    "a time of YAML that is none": ("model.yaml", b'x: !!timestamp "x"'),
+    "a key of half a character": ("model.json", b'{"rga_model": 1, "\\ud800": {}}'),
+}
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_another_language(name: str, given: Given, judged: Judged) -> None:
+    file, content = LANGUAGES[name]
+    words = MAPPED if file == "import.toml" else ("check", f"{{}}/{file}")
+    assert check(judged, given(words, {file: content})).code == 2
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        {"explanations": [{"effects": [{"kind": {}}]}]},
+        {"gap": {"by_sensor": {"D1": {"after": float("nan")}}}},
+    ],
+    ids=["a kind that is a table", "a gap that is no number"],
+)
+def test_findings_that_were_edited(
+    edit: dict[str, Any], sound: Path, given: Given, judged: Judged
+) -> None:
+    findings = json.loads((sound / "findings.json").read_text("utf-8"))
+    findings |= edit
+    words = ("plan", "{}/model.json", "{}/findings.json")
+    check(judged, given(words, {"findings.json": json.dumps(findings).encode()}))
+
+
+@pytest.mark.parametrize("value", ["1e400", "nan", "1e308"])
+def test_a_drawing_that_reaches_beyond_all_bounds(value: str, given: Given, judged: Judged) -> None:
+    tokens = f"0 SECTION 2 ENTITIES 0 LINE 8 0 10 {value} 20 0 30 0 11 1 21 1 31 0 0 ENDSEC 0 EOF"
+    words = ("import", "{}/a.dxf", "--units", "m", "--kind", "truss", "--section", "A=12cm2")
+    words = (*words, "--material", "E=210GPa", "-o", "{}/out/model.json")
+    came = check(judged, given(words, {"a.dxf": "\n".join(tokens.split()).encode()}))
+    assert came.code == 2
+
+
+def test_a_name_that_is_no_text(given: Given, judged: Judged) -> None:
+    words = ("simulate", "{}/model.json", "{}/contexts.csv", "-o", "{}/out/nul\udc80.csv")
+    check(judged, given(words, {}))

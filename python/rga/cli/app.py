@@ -2,7 +2,8 @@
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib.metadata import entry_points
 from io import TextIOWrapper
 from typing import Annotated
@@ -76,7 +77,7 @@ def run_command(arguments: Sequence[str]) -> None:
             # Names that the terminal's encoding cannot show are told in its letters.
             stream.reconfigure(errors="backslashreplace")
     try:
-        with needing_extras():
+        with needing_extras(), _written_out():
             app(args=_json_with_target(arguments), prog_name="rga")
     except (InputError, MissingPackageError, ReportError) as error:
         typer.echo(f"error: {_words(error)}", err=True)
@@ -90,6 +91,16 @@ def run_command(arguments: Sequence[str]) -> None:
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         typer.echo(f"error: {reason} ({where}): give another file or place", err=True)
         sys.exit(2)
+
+
+@contextmanager
+def _written_out() -> Iterator[None]:
+    """What is printed within the block has reached its place behind it, or is an OSError."""
+    try:
+        yield
+    finally:
+        if sys.stdout is not None:
+            sys.stdout.flush()
 
 
 def _words(error: Exception) -> str:

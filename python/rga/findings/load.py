@@ -40,7 +40,7 @@ def load_findings(path: str | Path) -> Findings:
     remedy = "give findings.json of `rga diagnose` or `rga run`, or its directory"
     raw = bytes_of(path, "findings", remedy=remedy)
     try:
-        content = json.loads(raw.decode("utf-8"))
+        content = json.loads(raw.decode("utf-8"), parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
         raise InputError(
             f"this is no JSON: {fault_of(error)}", str(path), "mend the syntax"
@@ -59,6 +59,10 @@ def load_findings(path: str | Path) -> Findings:
         raise InputError(
             f"{key}: {first['msg']}", str(path), "give findings as the diagnosis wrote them"
         ) from None
+
+
+def _no_number(name: str) -> None:
+    raise ValueError(f"{name} is no number")
 
 
 def findings_sha256(findings: Findings) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 from rga.bounded_files import fault_of
 from rga.errors import InputError
@@ -63,10 +64,13 @@ def _sheets(data: bytes, path: Path) -> Iterator[tuple[str, Iterator[tuple[Any, 
 
 
 def _rows(sheet: Any, path: Path) -> Iterator[tuple[Any, ...]]:
-    with _errors_of(path):
+    with _errors_of(path), catch_warnings():
+        # A date that is none is told of as a cell that cannot be read.
+        simplefilter("ignore")
         # What a sheet says of its size may be anything.
         sheet.reset_dimensions()
-        yield from sheet.iter_rows(values_only=True)
+        rows = list(sheet.iter_rows(values_only=True))
+    yield from rows
 
 
 @contextmanager

@@ -2,14 +2,13 @@
 
 import hashlib
 import json
-import tomllib
 from pathlib import Path
 from typing import Any
 
 import yaml
 from pydantic import ValidationError
 
-from rga.bounded_files import LARGEST, bytes_of, fault_of
+from rga.bounded_files import LARGEST, bytes_of, fault_of, toml_of
 from rga.errors import InputError, kind_of
 from rga.files import write_whole
 from rga.model.mistakes import REMEDY, refusal
@@ -21,6 +20,8 @@ LANGUAGES = {".toml": "TOML", ".yaml": "YAML", ".yml": "YAML"}
 SLOWLY_READ = 8 * 2**20
 #: values of a YAML file, when what it refers to stands in every place
 MOST_VALUES = 10**6
+#: of an integer of a YAML file: no number is larger
+MOST_BITS = 1024
 
 
 def load_model(path: str | Path) -> Model:
@@ -136,9 +137,15 @@ def _parse(raw: bytes, suffix: str) -> Any:
     text = raw.decode("utf-8-sig")
     language = LANGUAGES.get(suffix)
     if language == "TOML":
-        return tomllib.loads(text)
+        return toml_of(text)
     if language == "YAML":
-        content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        try:
+            content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        except (yaml.YAMLError, RecursionError):
+            raise
+        except Exception as error:
+            # Values that are not what their tags say.
+            raise ValueError(fault_of(error)) from None
         if _values(content, {}) > MOST_VALUES:
             raise ValueError(f"its aliases make more than {MOST_VALUES} values of it")
         return content
@@ -152,6 +159,8 @@ def _values(content: Any, counted: dict[int, float]) -> float:
     >>> _values([several, several], {})
     7
     """
+    if isinstance(content, int) and content.bit_length() > MOST_BITS:
+        raise ValueError(f"an integer has more than {MOST_BITS} bits")
     if not isinstance(content, dict | list):
         return 1
     if id(content) not in counted:

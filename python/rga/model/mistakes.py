@@ -48,7 +48,7 @@ def refusal(error: ValidationError, content: Any, where: str) -> InputError:
 def _misnamed(error: ValidationError, content: Any) -> dict[tuple[str | int, ...], str]:
     """Mistakes of the parts that can be read, by their places."""
     places = [one["loc"] for one in error.errors(include_url=False) if one["type"] != REFERENCE]
-    if not isinstance(content, dict) or not places:
+    if not isinstance(content, dict) or not places or () in places:
         return {}
     rest, unread = _without(content, places)
     try:

@@ -20,7 +20,7 @@ from pydantic import (
 
 from rga.errors import InputError
 from rga.model.effect import Effect, check_moment, seconds
-from rga.model.parameter import AboveZero, AnyNumber, NotNegative, Number, listed
+from rga.model.parameter import SMALLEST, AboveZero, AnyNumber, NotNegative, Number, listed
 from rga.model.pictured import Pictured
 from rga.model.references import EVERYTHING_READ, Mistake, effect_mistakes, mistakes, refuse
 from rga.model.units import UNITS
@@ -236,8 +236,8 @@ class Sensor(Part):
         elif self.node is None or self.direction is None:
             lacking = [name for name in ("node", "direction") if getattr(self, name) is None]
             raise ValueError(f"a {self.kind} sensor needs {' and '.join(map(repr, lacking))}")
-        elif not any(self.direction):
-            raise ValueError("the direction [0, 0, 0] points nowhere")
+        elif max(map(abs, self.direction)) < SMALLEST:
+            raise ValueError(f"the direction {list(self.direction)} points nowhere")
         return self
 
 

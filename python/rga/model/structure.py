@@ -15,7 +15,7 @@ from rga.arrays import (
     by_name,
 )
 from rga.model.copied_when_read import CopiedWhenRead
-from rga.model.parameter import listed
+from rga.model.parameter import SMALLEST, listed
 from rga.model.schema import Model, Vector
 from rga.model.structure_arrays import member_arrays, restraint_arrays, sensor_output
 from rga.model.units import per_si
@@ -265,8 +265,8 @@ def _equal(one: NDArray[Any] | None, other: NDArray[Any] | None) -> bool:
 
 def check_direction(direction: Vector) -> None:
     """ValueError where a direction points nowhere."""
-    if not any(direction):
-        raise ValueError("the direction [0, 0, 0] points nowhere")
+    if max(map(abs, direction)) < SMALLEST:
+        raise ValueError(f"the direction {list(direction)} points nowhere")
 
 
 def unit_vector(direction: Vector) -> FloatArray:

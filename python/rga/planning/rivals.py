@@ -116,6 +116,6 @@ def _nearest(findings: Findings, causes: Sequence[Cause]) -> list[Sequence[Mappi
 
 
 def _place(effect: Mapping[str, Any]) -> str:
-    kind = Effect.vocabulary.get(effect.get("kind", ""))
+    kind = Effect.vocabulary.get(str(effect.get("kind")))
     fields = kind.place_fields() if kind else {}
     return repr((effect.get("kind"), [(name, effect.get(name)) for name in fields]))

@@ -34,7 +34,10 @@ def table_of_frame(given: Any) -> Table:
     if frame.height == 0:
         raise InputError("there are no rows in the data frame", "record", "give at least one row")
     digest = sha256()
-    for name in frame.columns:
+    for name, kind in frame.schema.items():
+        if kind.is_nested() or kind == pl.Object:
+            what = f"the column {name!r} holds {str(kind).lower()[:40]}, and no numbers"
+            raise InputError(what, "data frame", "leave it out, or make columns of its parts")
         digest.update(name.encode())
         digest.update(frame.select(name).write_csv().encode())
     return Table(

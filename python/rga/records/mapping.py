@@ -1,7 +1,6 @@
 """The mapping of a logger's file to the channels of a model: `import.toml`."""
 
 import re
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -15,7 +14,7 @@ from pydantic import (
     model_validator,
 )
 
-from rga.bounded_files import bytes_of, fault_of
+from rga.bounded_files import bytes_of, fault_of, toml_of
 from rga.errors import InputError, kind_of
 from rga.no_booleans import NO_BOOLEAN
 
@@ -271,7 +270,7 @@ def mapping_of(content: str, path: Path) -> RecordMapping:
         InputError: it is no TOML, or has an unknown key or a wrong value.
     """
     try:
-        mapping = RecordMapping.model_validate(tomllib.loads(content))
+        mapping = RecordMapping.model_validate(toml_of(content))
     except ValidationError as error:
         raise _explained(error, str(path)) from None
     except (ValueError, RecursionError) as error:

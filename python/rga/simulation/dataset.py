@@ -24,6 +24,8 @@ from rga.simulation.simulator import Simulator
 
 #: rows of a part: a power of two keeps the sequence of the contexts balanced
 CHUNK = 16_384
+#: rows that no disk holds
+MOST_ROWS = 2**62
 ELSEWHERE = "give another place, or make room: what is there is gone on from"
 
 
@@ -87,7 +89,8 @@ def write_dataset(
     parts = path.with_name(f"{path.name}.parts")
     if not parts.exists():
         # The parts and the whole, of numbers that hardly compress.
-        check_room(path, 2.0 * rows * 8 * (len(model.context) + len(model.sensors)))
+        columns = len(model.context) + len(model.sensors)
+        check_room(path, 16.0 * min(rows, MOST_ROWS) * columns)
     content = [repr(model), metadata, rows, CHUNK]
     tasks = [
         _Part(model, seed, noise, begin, min(CHUNK, rows - begin))

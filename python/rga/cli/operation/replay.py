@@ -14,7 +14,8 @@ Place = Annotated[
     str, typer.Argument(metavar="DIR", help="Directory of a run, or a database by URL.")
 ]
 Row = Annotated[
-    int | None, typer.Option("--row", min=0, help="As the twin stood at this row of the record.")
+    int | None,
+    typer.Option("--row", min=0, max=2**53, help="As it stood at this row of the record."),
 ]
 Time = Annotated[
     str | None,
@@ -46,6 +47,9 @@ def replay(
     if row is not None and time is not None:
         raise InputError("both --row and --time are given", "options", "give one of them")
     proved = _proved(place) if check else ""
+    if check and not _played(place):
+        typer.echo(f"{proved} No repository is beside it.")
+        return
     with Twin.open(place) as twin:
         if row is not None or time is not None:
             twin = twin.as_of(row=row, time=None if time is None else _moment(time))
@@ -83,9 +87,12 @@ def _proved(place: str) -> str:
     from rga.twin.repository.faults import Damaged
     from rga.twin.repository.proof import Proof
 
+    played = _played(place)
     try:
-        with Repository.open(place, read_only=True) as repository:
-            proof = repository.check()
+        proof = Proof(0, ())
+        if played:
+            with Repository.open(place, read_only=True) as repository:
+                proof = repository.check()
         if Path(place, INBOX).is_file():
             with closing(Inbox(Path(place), read_only=True)) as inbox:
                 waiting = inbox.check()
@@ -93,13 +100,22 @@ def _proved(place: str) -> str:
     except Damaged as error:
         proof = Proof(0, (error.what,))
     if not proof.damage:
-        return f"The repository is whole: all {proof.entries} entries are what was written."
+        what = "repository" if played else "inbox"
+        return f"The {what} is whole: all {proof.entries} entries are what was written."
     listed, more = "; ".join(proof.damage[:MOST]), len(proof.damage) - MOST
     raise InputError(
         f"it is not whole: {listed}{f'; and {more} more' if more > 0 else ''}",
         place,
         "restore it from a copy; rga export saves rows that were taken in and can be read",
     )
+
+
+def _played(place: str) -> bool:
+    """False where rows wait for a twin that has not taken any in."""
+    from rga.twin.hardware.inbox import INBOX
+    from rga.twin.repository.database import FILE_NAME
+
+    return not Path(place, INBOX).is_file() or Path(place, FILE_NAME).exists()
 
 
 def _moment(text: str) -> float | str:

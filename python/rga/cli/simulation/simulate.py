@@ -38,9 +38,9 @@ def simulate(model: ModelFile, contexts: ContextFile, output: OutputFile) -> Non
     readings = Simulator(structure).predict(given.values)
     sensors = [pl.Series(name, readings[:, k]) for k, name in enumerate(structure.sensors)]
     frame = given.frame.with_columns(sensors)
-    with whole_file(output) as draft:
+    with whole_file(output) as draft, draft.open("wb") as file:
         if suffix == ".csv":
-            frame.write_csv(draft)
+            frame.write_csv(file)
         else:
-            frame.write_parquet(draft)
+            frame.write_parquet(file)
     typer.echo(f"{counted(frame.height, 'row')} of {len(sensors)} sensors are in {output}.")

@@ -9,6 +9,7 @@ from typing import Any
 
 from rga.bounded_files import fault_of
 from rga.errors import InputError
+from rga.importing.draft import FARTHEST
 from rga.importing.reading import read_bytes
 from rga.lazy import needing_extras
 
@@ -91,6 +92,8 @@ def _add(drawing: Drawing, entity: Any) -> None:
 def _line(drawing: Drawing, start: Any, end: Any, layer: str, where: str) -> None:
     if len(drawing.lines) >= MOST_LINES:
         raise InputError(f"there are more than {MOST_LINES} lines", where, "give fewer")
+    if not all(abs(value) <= FARTHEST for value in (*start, *end)):
+        raise InputError("a line ends farther away than any drawing reaches", where, "correct it")
     drawing.lines.append(Line(start, end, layer, where))
 
 

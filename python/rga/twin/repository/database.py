@@ -58,4 +58,5 @@ def database(place: str | Path, read_only: bool, patience: float = PATIENCE) -> 
             raise InputError(f"no repository is kept in {url.drivername!r}", where, remedy)
         return PostgreSQL(url.set(drivername="postgresql+psycopg"), read_only, patience)
     path = Path(place)
-    return SQLite(path / FILE_NAME if path.is_dir() else path, read_only, patience)
+    held = path.is_dir() and path.name != FILE_NAME
+    return SQLite(path / FILE_NAME if held else path, read_only, patience)

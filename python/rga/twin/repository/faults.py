@@ -62,6 +62,9 @@ def as_input_errors(where: str) -> Iterator[None]:
         yield
     except NotWhole as error:
         raise _damaged(str(error), where) from error
+    except UnicodeDecodeError as error:
+        # SQLite tells of damage in words that hold it.
+        raise _damaged("what it is built of cannot be read", where) from error
     except DBAPIError as error:
         name = getattr(error.orig, "sqlite_errorname", None)
         name = name or getattr(error.orig, "sqlstate", None) or ""

@@ -40,6 +40,8 @@ class SQLite:
         self.where = f"repository {path}"
         self.read_only = read_only
         self._path, self._patience, self._journal = path, patience, journal
+        if path.is_dir():
+            raise InputError("this is a directory", self.where, "name a file, or its directory")
         if read_only and not path.is_file():
             raise InputError("there is no such file", self.where, "name a repository of a run")
         if not read_only and not os.access(path if path.exists() else path.parent, os.W_OK):
@@ -60,6 +62,14 @@ class SQLite:
             isolation_level=None,
             check_same_thread=False,
         )
+        try:
+            self._set_up(connection)
+        except BaseException:
+            connection.close()
+            raise
+        return connection
+
+    def _set_up(self, connection: sqlite3.Connection) -> None:
         if not self.read_only:
             # Of a new file: less of its last page is left empty by what a step stores.
             connection.execute("PRAGMA page_size = 2048")
@@ -68,7 +78,6 @@ class SQLite:
         connection.execute("PRAGMA synchronous = FULL")
         connection.execute("PRAGMA fullfsync = ON")
         connection.execute("PRAGMA foreign_keys = ON")
-        return connection
 
     @property
     def _log(self) -> Path:
