@@ -31,6 +31,20 @@ def cannot_write(error: OSError, path: Path) -> CannotWrite:
     return CannotWrite(f"the output cannot be written, {reason}", str(path))
 
 
+def check_place(path: Path) -> None:
+    """Refuse a device or a pipe as the place of a file, which would be gone then.
+
+    Raises:
+        CannotWrite: it is one.
+
+    >>> check_place(Path("/dev/null"))
+    Traceback (most recent call last):
+    rga.files.CannotWrite: the output is no file of a disk (/dev/null): give another place
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise CannotWrite("the output is no file of a disk", str(path))
+
+
 def made_directory(directory: Path) -> Path:
     """The directory, made where it is missing.
 
@@ -65,6 +79,7 @@ def write_whole(files: Mapping[Path, bytes]) -> None:
     path, made = next(iter(files), Path()), list[Path]()
     try:
         for path, draft in drafts.items():
+            check_place(path)
             if path.is_dir():
                 raise IsADirectoryError(EISDIR, "it is a directory")
             made += [one for one in path.parents if not one.exists()]

@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from rga.errors import InputError
-from rga.files import CannotWrite, cannot_write
+from rga.files import CannotWrite, cannot_write, check_place
 
 
 @contextmanager
@@ -23,6 +23,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     """
     if path.is_dir():
         raise InputError("the output is a directory", str(path), "give a file")
+    check_place(path)
     with _scratch(path) as scratch:
         draft = scratch / path.name
         yield draft

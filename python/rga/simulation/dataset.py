@@ -16,7 +16,7 @@ from scipy.stats import qmc
 from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
-from rga.files import CannotWrite, cannot_write, check_room, write_whole
+from rga.files import CannotWrite, cannot_write, check_place, check_room, write_whole
 from rga.model import Model
 from rga.one_writer import only_writer
 from rga.parallel import finished
@@ -79,6 +79,7 @@ def write_dataset(
     path = Path(path)
     if path.is_dir():
         raise CannotWrite("the output cannot be written, it is a directory", str(path))
+    check_place(path)
     metadata = {
         "seed": str(seed),
         "noise": str(noise).lower(),

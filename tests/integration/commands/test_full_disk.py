@@ -1,9 +1,11 @@
 """A disk that fills and places that cannot be written to: a line, and nothing is left."""
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -82,3 +84,25 @@ def test_an_output_that_takes_nothing(more: tuple[str, ...], model_file: Path) -
     assert (
         done.stderr == "error: no space left on device (the output): give another file or place\n"
     )
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("schema", "model", "--json"),
+        ("draw", "{}/model.json", "-o"),
+        ("simulate", "{}/model.json", "{}/contexts.csv", "-o"),
+        ("dataset", "{}/model.json", "-n", "3", "-o"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_file_takes_the_place_of_no_pipe(
+    words: tuple[str, ...], rga: Callable[..., Any], model_file: Path, tmp_path: Path
+) -> None:
+    pipe = tmp_path / ("pipe.svg" if words[0] == "draw" else "pipe.parquet")
+    os.mkfifo(pipe)
+    (model_file.parent / "contexts.csv").write_text("temperature,load\n3,5\n", "utf-8")
+    done = rga(*(word.replace("{}", str(model_file.parent)) for word in words), pipe)
+    assert (done.code, done.err.count("\n")) == (2, 1), done.err
+    assert "no file of a disk" in done.err
+    assert pipe.is_fifo()
