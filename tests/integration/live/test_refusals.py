@@ -83,7 +83,7 @@ def without(record: Record, context: str) -> Record:
         (
             lambda r: r,
             lambda r: replace(r, sensors=("D9", *r.sensors[1:])),
-            "the first rows had no D9",
+            "the model has no sensor 'D9'",
         ),
     ],
 )
@@ -107,7 +107,7 @@ def test_later_rows_are_like_the_first(
 def test_the_first_rows_are_of_the_model(sound: Given, tmp_path: Path) -> None:
     model, record = sound
     with rga.live(model, tmp_path, settings=SETTINGS) as twin:
-        with pytest.raises(InputError, match="it has no sensor D9"):
+        with pytest.raises(InputError, match="the model has no sensor 'D9'"):
             twin.feed(replace(record, sensors=("D9", *record.sensors[1:])))
         with pytest.raises(InputError, match="the rows hold no sensor"):
             twin.feed(record.channels(()))

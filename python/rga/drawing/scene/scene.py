@@ -62,7 +62,7 @@ def make_scene(model: Model) -> Scene:
     """The arrays of a model.
 
     Raises:
-        InputError: the model has no member, or is too large for any number.
+        InputError: the model has no member.
 
     >>> from rga.model import Model
     >>> bar = {"nodes": ("a", "b"), "section": "s", "material": "m", "groups": ["chord"]}
@@ -74,13 +74,6 @@ def make_scene(model: Model) -> Scene:
     if not model.members:
         raise InputError("there is nothing to draw", f"model {model.name!r}", "give it members")
     points = np.array(list(model.nodes.values()), dtype=float).reshape(-1, 3)
-    with np.errstate(over="ignore"):
-        if not np.isfinite(np.linalg.norm(np.ptp(points, axis=0))):
-            raise InputError(
-                "the structure is too large to draw",
-                f"nodes of model {model.name!r}",
-                "give their places in metres",
-            )
     nodes = {name: number for number, name in enumerate(model.nodes)}
     members = list(model.members.values())
     ends = np.array([[nodes[node] for node in one.nodes] for one in members], dtype=np.int64)
