@@ -16,6 +16,8 @@ from rga.diagnosis.noise.row_covariance import RowCovariance
 
 #: courses of as many sensors at a time are put on the contexts' errors
 TOGETHER = 1024
+#: shares that are gathered at a time for columns on a few channels
+GATHERED = 2**22
 
 
 @dataclass(frozen=True)
@@ -109,8 +111,13 @@ class _Effects:
         count, few, courses = columns.shape
         found = np.zeros((self.count + 1, count))
         each = columns.reshape(count, 1, few * courses)
-        of_channels = self._by_sensor[channels].reshape(count, few * courses, len(self.shares))
-        found[self.several] = np.matmul(each, of_channels)[:, 0].T
+        step = max(1, GATHERED // max(1, few * courses * len(self.shares)))
+        for first in range(0, count, step):
+            part = slice(first, min(first + step, count))
+            of_channels = self._by_sensor[channels[part]]
+            shape = (len(of_channels), few * courses, len(self.shares))
+            of_channels = of_channels.reshape(shape)
+            found[self.several, part] = np.matmul(each[part], of_channels)[:, 0].T
         own = np.matmul(self.own[channels], columns[..., None])[..., 0]
         for place in range(few):
             found[self.alone[channels[:, place]], np.arange(count)[:, None]] += own[:, place]
