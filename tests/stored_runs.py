@@ -44,7 +44,7 @@ def alter(place: str, statement: str) -> None:
     opened = database(place, read_only=False)
     with opened.engine.begin() as connection:
         connection.execute(text(statement))
-    opened.engine.dispose()
+    opened.close()
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rga.errors import InputError
+from rga.inputs import remember
 
 #: bytes of the largest text that describes something
 LARGEST = 64 * 2**20
@@ -40,6 +41,7 @@ def bytes_of(
         mode = path.stat().st_mode
         ordinary = stat.S_ISREG(mode) or stat.S_ISDIR(mode)
         content = b"" if not ordinary else _first(path, largest + 1)
+        remember(path)
     # A name that holds a zero byte is none.
     except (OSError, ValueError) as error:
         reason = (getattr(error, "strerror", None) or str(error)).lower()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from unicodedata import category
 
 
 class InputError(ValueError):
@@ -17,7 +18,7 @@ class InputError(ValueError):
         super().__init__(what, where, remedy)
 
     def __str__(self) -> str:
-        return f"{self.what} ({self.where}): {self.remedy}"
+        return in_a_line(f"{self.what} ({self.where}): {self.remedy}")
 
 
 class SeveralMistakes(InputError):
@@ -37,7 +38,7 @@ class SeveralMistakes(InputError):
 
     def __init__(self, mistakes: Sequence[str], where: str, remedy: str) -> None:
         super().__init__(f"{len(mistakes)} mistakes", where, remedy)
-        self.mistakes = tuple(" ".join(one.split()) for one in mistakes)
+        self.mistakes = tuple(map(in_a_line, mistakes))
         self.args = (self.mistakes, where, remedy)
 
     def __str__(self) -> str:
@@ -78,6 +79,16 @@ class ReportError(RuntimeError):
         return f"the report could not be drawn ({self.reason}): {findings} and {model} are whole"
 
 
+def in_a_line(text: str) -> str:
+    r"""A text in one line, its control characters as escapes: a terminal would follow them.
+
+    >>> print(in_a_line("no\n such column: 'a\x1b[2J'"))
+    no such column: 'a\x1b[2J'
+    """
+    line = " ".join(text.split())
+    return "".join(ascii(one)[1:-1] if category(one)[0] == "C" else one for one in line)
+
+
 def kind_of(given: object) -> str:
     """The kind of a thing that is not what was wanted, with its article.
 
@@ -99,5 +110,5 @@ def in_short(error: Exception) -> str:
     >>> in_short(InputError("the span is 0", "model", "give another"))
     'the span is 0 (model): give another'
     """
-    said = " ".join(str(error).split())
+    said = in_a_line(str(error))
     return said if isinstance(error, InputError) else f"{type(error).__name__}: {said}"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rga.errors import InputError
+from rga.inputs import is_input
 
 if TYPE_CHECKING:
     import polars as pl
@@ -32,7 +33,7 @@ def cannot_write(error: OSError, path: Path) -> CannotWrite:
 
 
 def check_place(path: Path) -> None:
-    """Refuse a device or a pipe as the place of a file, which would be gone then.
+    """Refuse as the place of a file what would be gone then: a device, a pipe, an input.
 
     Raises:
         CannotWrite: it is one.
@@ -43,6 +44,8 @@ def check_place(path: Path) -> None:
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise CannotWrite("the output is no file of a disk", str(path))
+    if is_input(path):
+        raise CannotWrite("the output would replace a file that was read", str(path))
 
 
 def made_directory(directory: Path) -> Path:

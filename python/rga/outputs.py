@@ -9,12 +9,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rga.errors import ReportError, in_short
-from rga.files import CannotWrite, write_whole
+from rga.files import CannotWrite, check_place, write_whole
 from rga.findings import Findings
 from rga.model.io import model_text
 
 if TYPE_CHECKING:
     from rga.twin.outcome import Outcome
+
+
+FINDINGS, MODEL, REPORT = "findings.json", "model.json", "report.html"
+
+
+def check_outputs(directory: Path) -> None:
+    """Refuse a directory in which the results of a diagnosis would replace its inputs.
+
+    Raises:
+        CannotWrite: they would.
+    """
+    for name in (FINDINGS, MODEL, REPORT):
+        check_place(directory / name)
 
 
 def write_findings(
@@ -41,11 +54,11 @@ def write_findings(
     extended = findings.account.extended
     write_whole(
         {
-            directory / "model.json": model_text(extended).encode(),
-            directory / "findings.json": (findings.to_json() + "\n").encode(),
+            directory / MODEL: model_text(extended).encode(),
+            directory / FINDINGS: (findings.to_json() + "\n").encode(),
         }
     )
-    shown = directory / "report.html"
+    shown = directory / REPORT
     try:
         return (report or _write_report)(findings, shown)
     except CannotWrite:

@@ -31,7 +31,14 @@ from rga.cli.simulation.results import results
 from rga.cli.simulation.simulate import simulate
 from rga.cli.simulation.verify import verify
 from rga.cli.simulation.whatif import whatif
-from rga.errors import InputError, MissingPackageError, ReportError, SeveralMistakes
+from rga.errors import (
+    InputError,
+    MissingPackageError,
+    ReportError,
+    SeveralMistakes,
+    in_a_line,
+)
+from rga.inputs import protected_inputs
 from rga.lazy import needing_extras
 
 app = typer.Typer(
@@ -77,7 +84,7 @@ def run_command(arguments: Sequence[str]) -> None:
             # Names that the terminal's encoding cannot show are told in its letters.
             stream.reconfigure(errors="backslashreplace")
     try:
-        with needing_extras(), _written_out():
+        with needing_extras(), _written_out(), protected_inputs():
             app(args=_json_with_target(arguments), prog_name="rga")
     except (InputError, MissingPackageError, ReportError) as error:
         typer.echo(f"error: {_words(error)}", err=True)
@@ -105,7 +112,7 @@ def _written_out() -> Iterator[None]:
 
 def _words(error: Exception) -> str:
     """One line, or the list of several mistakes."""
-    return str(error) if isinstance(error, SeveralMistakes) else " ".join(str(error).split())
+    return str(error) if isinstance(error, SeveralMistakes) else in_a_line(str(error))
 
 
 def _json_with_target(arguments: Sequence[str]) -> list[str]:

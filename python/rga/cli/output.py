@@ -54,6 +54,7 @@ def whole_directory(path: Path) -> Iterator[Path]:
             if file.is_dir():
                 target.mkdir(exist_ok=True)
             else:
+                check_place(target)
                 file.replace(target)
 
 

@@ -10,13 +10,15 @@ import polars as pl
 
 from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
-from rga.files import made_directory, write_whole
+from rga.files import check_place, made_directory, write_whole
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.phrases import effect_words
 from rga.given import as_record
+from rga.inputs import remember
 from rga.model import Model, as_model
 from rga.one_writer import only_writer
+from rga.outputs import check_outputs
 from rga.parallel import finished
 from rga.records import Record
 from rga.records.read import read_table
@@ -110,6 +112,14 @@ def diagnose_many(
     """
     listed, chosen = _listed(bridges), as_criteria(criteria)
     output = made_directory(Path(output))
+    for bridge in listed:
+        for given in (bridge.model, bridge.record, bridge.mapping):
+            if isinstance(given, str | Path):
+                # It is read after others were written.
+                remember(Path(given))
+    check_place(output / SUMMARY)
+    for bridge in listed:
+        check_outputs(output / bridge.name)
     errors: dict[str, Exception] = {}
     faults: list[ReportError] = []
     summary_of: dict[str, Summary] = {}

@@ -8,7 +8,7 @@ from rga.errors import InputError
 from rga.files import made_directory
 from rga.given import as_record
 from rga.model import Model, as_model
-from rga.outputs import write_run
+from rga.outputs import check_outputs, write_run
 from rga.records import Record, RecordMapping, RecordSource
 from rga.twin.calibration.estimator import Learn
 from rga.twin.hardware.inbox import INBOX
@@ -63,6 +63,7 @@ def run(
     record, settings = as_record(record, model, mapping), as_settings(settings)
     check_length(record, settings.criteria.record)
     directory = made_directory(Path(directory))
+    check_outputs(directory)
     if (directory / INBOX).exists():
         raise InputError(
             "a twin that goes on is here", str(directory), "give another directory for this run"

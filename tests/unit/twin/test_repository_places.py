@@ -4,6 +4,7 @@ import os
 import sqlite3
 import stat
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -28,7 +29,7 @@ def test_migrations_make_the_tables_of_the_code(place: str) -> None:
         assert compare_metadata(context, tables.metadata) == []
         connection.execute(text("DROP TABLE kept"))
         assert compare_metadata(context, tables.metadata) != []
-    opened.engine.dispose()
+    opened.close()
 
 
 def test_an_older_repository_is_brought_up_to_date_with_a_copy_beside_it(
@@ -107,12 +108,37 @@ def test_a_directory_holds_twin_sqlite(tmp_path: Path) -> None:
     Repository.open(tmp_path / "twin.sqlite", read_only=True).close()
 
 
+@pytest.mark.parametrize("damaged", [False, True])
+def test_a_reader_leaves_nothing_behind(damaged: bool, tmp_path: Path) -> None:
+    path = tmp_path / "twin.sqlite"
+    Repository.open(path).close()
+    if damaged:
+        content = bytearray(path.read_bytes())
+        content[100:130] = bytes(30)
+        path.write_bytes(content)
+    before = {one.name: one.read_bytes() for one in tmp_path.iterdir()}
+    with pytest.raises(InputError) if damaged else nullcontext():
+        Repository.open(path, read_only=True).close()
+    assert {one.name: one.read_bytes() for one in tmp_path.iterdir()} == before
+
+
+def test_a_reader_leaves_what_is_a_writers(tmp_path: Path) -> None:
+    path = tmp_path / "twin.sqlite"
+    with Repository.open(path, read_only=False) as writer:
+        reader = Repository.open(path, read_only=True)
+        writer.run(IDENTITY)
+        log = tmp_path / "twin.sqlite-wal"
+        length = log.stat().st_size
+        reader.close()
+        assert log.stat().st_size == length > 0
+
+
 def test_sqlite_is_durable(tmp_path: Path) -> None:
     opened = database(tmp_path, read_only=False)
     with opened.engine.connect() as connection:
         assert connection.scalar(text("PRAGMA journal_mode")) == "wal"
         assert connection.scalar(text("PRAGMA synchronous")) == 2
-    opened.engine.dispose()
+    opened.close()
 
 
 def test_a_file_that_is_no_database(tmp_path: Path) -> None:

@@ -49,10 +49,12 @@ def diagnose_into(
     from rga.cli.reading import read_record
     from rga.findings.criteria import load_criteria
     from rga.model import load_model
+    from rga.outputs import check_outputs
 
     structure = load_model(model)
     chosen = None if criteria is None else load_criteria(criteria)
     measured = read_record(record, structure, mapping)
+    check_outputs(output)
     # Not needed before the input is known to be good, and slow to import.
     from rga.diagnosis import diagnose
     from rga.report.pdf import write_pdf

@@ -104,9 +104,12 @@ def _replaced(output: Path, model: "Model", record: "Record", seed: int) -> list
     """In words, that a directory holds the results of another run."""
     from rga.errors import InputError
     from rga.findings.load import load_findings
+    from rga.inputs import protected_inputs
 
     try:
-        kept = load_findings(output / "findings.json")
+        # They are no input of this run, which may replace them.
+        with protected_inputs():
+            kept = load_findings(output / "findings.json")
     except InputError:
         return []
     of_both = {

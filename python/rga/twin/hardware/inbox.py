@@ -122,7 +122,7 @@ class Inbox:
 
     def close(self) -> None:
         """Close the file; it opens again where it is asked more."""
-        self._database.engine.dispose()
+        self._database.close()
 
     @property
     def addressee(self) -> Addressee | None:

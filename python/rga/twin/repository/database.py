@@ -25,6 +25,9 @@ class Database(Protocol):
     def writer(self, key: str) -> AbstractContextManager[Connection]:
         """A connection that only one process holds at a time."""
 
+    def close(self) -> None:
+        """Close all connections, and leave no file that was not there."""
+
     def begin(self, fill: Callable[[Connection], None]) -> None:
         """Make what holds the tables where that is this package's business, and fill it."""
 

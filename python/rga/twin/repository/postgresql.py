@@ -54,6 +54,10 @@ class PostgreSQL:
                 connection.execute(text("SET synchronous_commit = on"))
             yield connection
 
+    def close(self) -> None:
+        """Close all connections."""
+        self.engine.dispose()
+
     def begin(self, fill: Callable[[Connection], None]) -> None:
         """Nothing: whoever runs a server makes its databases."""
 

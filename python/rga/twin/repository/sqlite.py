@@ -5,12 +5,13 @@ import logging
 import os
 import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 
 from sqlalchemy import Connection, QueuePool, create_engine, event
 
 from rga.errors import InputError
+from rga.inputs import remember
 from rga.one_writer import Held, only_writer
 from rga.twin.repository.faults import InUse
 
@@ -47,6 +48,7 @@ class SQLite:
         if not read_only and not os.access(path if path.exists() else path.parent, os.W_OK):
             remedy = "name a file in a directory that exists and can be written"
             raise InputError("the repository cannot be written", self.where, remedy)
+        self._begun_by_another = self._log.exists()
         self.engine = create_engine("sqlite://", creator=self._connect, poolclass=QueuePool)
         event.listen(self.engine, "begin", _begin)
 
@@ -55,19 +57,31 @@ class SQLite:
         if self.read_only and not (self._log.exists() or os.access(self._path.parent, os.W_OK)):
             # SQLite cannot put its files beside a database on a medium that is read-only.
             query += "&immutable=1"
-        connection = sqlite3.connect(
-            f"{self._path.absolute().as_uri()}?{query}",
-            uri=True,
-            timeout=PATIENCE,
-            isolation_level=None,
-            check_same_thread=False,
-        )
+        connection = self._opened(query)
+        remember(self._path)
         try:
             self._set_up(connection)
         except BaseException:
             connection.close()
             raise
         return connection
+
+    def _opened(self, query: str) -> sqlite3.Connection:
+        return sqlite3.connect(
+            f"{self._path.absolute().as_uri()}?{query}",
+            uri=True,
+            timeout=PATIENCE,
+            isolation_level=None,
+            check_same_thread=False,
+        )
+
+    def close(self) -> None:
+        """Close all connections, and leave no file that was not there."""
+        self.engine.dispose()
+        if self.read_only and not self._begun_by_another and self._log.exists():
+            # SQLite removes its own files with the last connection, unless that only reads.
+            with suppress(sqlite3.Error), closing(self._opened("mode=rw")) as connection:
+                connection.execute("SELECT * FROM sqlite_master")
 
     def _set_up(self, connection: sqlite3.Connection) -> None:
         if not self.read_only:
@@ -106,11 +120,11 @@ class SQLite:
             try:
                 with draft.engine.begin() as connection:
                     fill(connection)
-                draft.engine.dispose()
+                draft.close()
                 if not self._path.exists():
                     draft._path.replace(self._path)
             finally:
-                draft.engine.dispose()
+                draft.close()
                 draft._remove()
 
     def _remove(self) -> None:

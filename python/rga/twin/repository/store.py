@@ -98,7 +98,7 @@ class Repository:
         self._held = ExitStack()
         if kept_in.read_only:
             # Nothing but connections goes with it: Python may close what nobody has closed.
-            finalize(self, kept_in.engine.dispose)
+            finalize(self, kept_in.close)
 
     @classmethod
     def open(
@@ -183,7 +183,7 @@ class Repository:
     def close(self) -> None:
         """Close all connections; the lock of a run goes with them."""
         self._held.close()
-        self._database.engine.dispose()
+        self._database.close()
 
     def __enter__(self) -> Self:
         return self
