@@ -1,6 +1,7 @@
 """A model in the making, in SI units."""
 
 from collections.abc import Collection, Mapping, Sequence, Sized
+from math import dist
 from typing import Any, Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from rga.importing.notes import Acceptance, ImportRefused, Notes
 from rga.importing.stability import free_motions
 from rga.model import Model, read_model
 from rga.model.axes import member_axes
+from rga.model.references import SHORTEST
 from rga.model.schema import DOFS
 
 #: axes of a source whose y points up, in axes whose z does: a quarter turn about x
@@ -85,8 +87,8 @@ class ModelDraft:
         self.nodes[name] = self.vector(place)
 
     def has_length(self, first: str, last: str) -> bool:
-        """Whether two nodes are apart."""
-        return not np.allclose(self.nodes[first], self.nodes[last], rtol=0, atol=1e-12)
+        """Whether two nodes are far enough apart for a member of a model."""
+        return dist(self.nodes[first], self.nodes[last]) >= SHORTEST
 
     def material(self, label: str, **properties: float) -> str:
         """The name of a material with these properties, added where there was none."""
