@@ -212,7 +212,7 @@ def diagnosis_speed(quick: Small = False, seed: Seed = 0) -> Experiment[Any]:
     return SpeedExperiment.of(seed, quick=quick)
 
 
-@_experiment(WRITTEN)
+@_experiment(KEPT)
 def limits(quick: Smallest = False, seed: Seed = 0) -> Experiment[Any]:
     """Time and memory of a diagnosis up to a million rows, 500 sensors and 5 000 members."""
     from rga_bench.limits.experiment import LimitsExperiment

@@ -15,12 +15,14 @@ from rga.model.io import model_text
 from rga.records import load_record
 from rga_bench.speed.sized_case import SizedCase
 
+#: panels of a span, of 46 m
+OF_A_SPAN = 10
 MODEL, PART = "model.json", "part {:02}.parquet"
 
 
 def draw(folder: Path, rows: int, sensors: int, panels: int, seed: int) -> None:
     """Write a model and a record in which nothing is hidden."""
-    case = SizedCase(rows, sensors, panels, "nothing", seed)
+    case = SizedCase(rows, sensors, panels, "nothing", seed, spans=panels // OF_A_SPAN)
     model = case.model()
     (folder / MODEL).write_text(model_text(model), "utf-8")
     for number, table in enumerate(case.tables(model)):

@@ -35,6 +35,7 @@ class SizedCase:
         rows, sensors, panels: how many there are; a panel has eleven members.
         hidden: what the model does not have.
         seed: of scatter, contexts and noise.
+        spans: of the bridge, of as many panels each.
     """
 
     rows: int
@@ -42,13 +43,14 @@ class SizedCase:
     panels: int
     hidden: Hidden
     seed: int
+    spans: int = 1
 
     def model(self) -> Model:
         """The model as given, with as many sensors."""
         draft = drafted(f"footbridge of {self.panels} panels")
-        steelwork(draft, self.panels)
-        contexts(draft)
-        actions(draft, self.panels)
+        steelwork(draft, self.panels, self.spans)
+        contexts(draft, self.spans)
+        actions(draft, self.panels, self.spans)
         moved = [f"{side} z{i}" for side in SIDES for i in range(1, self.panels)]
         for name in moved[: self.sensors // 3]:
             side, number = name.split(" z")

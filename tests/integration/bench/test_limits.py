@@ -17,6 +17,10 @@ def test_a_small_size_is_measured(rga: Callable[..., Any], tmp_path: Path) -> No
     assert 0 < float(cells[4]) < 600
     assert 0.1 < float(cells[5]) < 4
     assert cells[6] == "nothing_wrong"
+    # What is kept is not measured again.
+    again = rga("benchmark", "limits", "--quick", "-o", tmp_path / "out")
+    assert again.code == 0, again.err
+    assert row in (tmp_path / "out" / "limits.md").read_text("utf-8").splitlines()
 
 
 def test_what_did_not_end_is_told() -> None:

@@ -65,10 +65,13 @@ def test_a_full_disk_is_told_in_a_line(name: str, files: Path, tmp_path: Path) -
 
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("place", ["x" * 300, "model.json/out"], ids=["too long", "in a file"])
-def test_a_place_that_cannot_be_written(place: str, name: str, files: Path, tmp_path: Path) -> None:
+def test_a_place_that_cannot_be_written(
+    place: str, name: str, files: Path, tmp_path: Path, rga: Callable[..., Any]
+) -> None:
     (tmp_path / "model.json").write_text("{}", "utf-8")
-    plain = "import sys\nfrom rga.cli import main\nmain(sys.argv[1:])"
-    refused(plain, *words(name, files, tmp_path / place))
+    done = rga(*words(name, files, tmp_path / place))
+    assert (done.code, done.err.count("\n")) == (2, 1), done.err
+    assert done.err.startswith("error: ")
     assert [path.name for path in tmp_path.iterdir()] == ["model.json"]
 
 

@@ -55,17 +55,19 @@ def drafted(name: str) -> Draft:
     )
 
 
-def steelwork(draft: Draft, panels: int) -> None:
-    """Nodes, members and supports; any even number of panels."""
+def steelwork(draft: Draft, panels: int, spans: int = 1) -> None:
+    """Nodes, members and supports; any even number of panels, over spans of as many each."""
+    panel, ends = spans * SPAN / panels, range(0, panels + 1, panels // spans)
     for side, y in SIDES.items():
         for i in range(panels + 1):
-            draft.node(low(side, i), i * SPAN / panels, y, 0.0)
+            draft.node(low(side, i), i * panel, y, 0.0)
         for i in range(1, panels):
-            draft.node(top(side, i), i * SPAN / panels, y, HEIGHT)
+            draft.node(top(side, i), i * panel, y, HEIGHT)
     for side in SIDES:
         _truss(draft, side, panels)
     _deck(draft, panels)
-    for end, i in (("west", 0), ("east", panels)):
+    for i in ends:
+        end = {0: "west", panels: "east"}.get(i, f"pier {i}")
         for side in SIDES:
             fixed = ["uz", *(["ux"] if i == 0 else []), *(["uy"] if side == "south" else [])]
             draft.support(f"{end} {side}", low(side, i), *fixed)
@@ -113,18 +115,18 @@ def _deck(draft: Draft, panels: int) -> None:
             draft.member(ends, "rod", ["bracing"], name=f"brace {i} {one}")
 
 
-def contexts(draft: Draft) -> None:
+def contexts(draft: Draft, spans: int = 1) -> None:
     """Temperature, sunshine, crowd and wind, with their ranges."""
     draft.context("temperature", "K", -30.0, 30.0)
     draft.model["context"]["temperature"]["noise"] = 0.3
     draft.context("gradient", "K", -5.0, 15.0)
     draft.context("crowd", "kPa", 0.3, 5.0)
-    draft.context("position", "m", 0.2 * SPAN, 0.8 * SPAN)
+    draft.context("position", "m", 0.2 * spans * SPAN, 0.8 * spans * SPAN)
     draft.context("eccentricity", "-", -0.6, 0.6)
     draft.context("wind", "kPa", -1.0, 1.0)
 
 
-def actions(draft: Draft, panels: int) -> None:
+def actions(draft: Draft, panels: int, spans: int = 1) -> None:
     """Warmth, sunshine, the crowd and the wind, each driven by its context."""
     effects = draft.model["effects"]
     groups = {m["groups"][0]: 1.0 for m in draft.model["members"].values()}
@@ -151,7 +153,7 @@ def actions(draft: Draft, panels: int) -> None:
         "effect": crowds,
         "share": {"context": "eccentricity"},
     }
-    push = round(1e3 * _SOLID * (SPAN / panels) * HEIGHT / 2.0, 3)  # on a node per kPa
+    push = round(1e3 * _SOLID * (spans * SPAN / panels) * HEIGHT / 2.0, 3)  # on a node per kPa
     effects["wind"] = {
         "kind": "nodal_load",
         "forces": {node: [0, push, 0] for node in draft.model["nodes"]},
