@@ -34,10 +34,17 @@ def until(process: subprocess.Popen[str], there: Callable[[], bool]) -> None:
         assert process.poll() is None, process.communicate()
 
 
-@pytest.mark.parametrize("number", ENDED)
-@pytest.mark.parametrize("whom", ["the process", "its group"])
+@pytest.mark.parametrize(
+    ("whom", "number"),
+    [
+        ("the process", signal.SIGTERM),
+        ("its group", signal.SIGINT),
+        pytest.param("the process", signal.SIGINT, marks=pytest.mark.thorough),
+        pytest.param("its group", signal.SIGTERM, marks=pytest.mark.thorough),
+    ],
+)
 def test_a_dataset_goes_on_where_a_signal_stopped_it(
-    number: signal.Signals, whom: str, model_file: Path, tmp_path: Path
+    whom: str, number: signal.Signals, model_file: Path, tmp_path: Path
 ) -> None:
     target = tmp_path / "set.parquet"
     parts = tmp_path / "set.parquet.parts"
