@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from unicodedata import category
 
+#: letters of each part of an error that are shown
+LONGEST = 1000
+
 
 class InputError(ValueError):
     """Input that cannot be used: what is wrong, where, and how to mend it.
@@ -18,7 +21,8 @@ class InputError(ValueError):
         super().__init__(what, where, remedy)
 
     def __str__(self) -> str:
-        return in_a_line(f"{self.what} ({self.where}): {self.remedy}")
+        what, where, remedy = map(in_a_line, (self.what, self.where, self.remedy))
+        return f"{what} ({where}): {remedy}"
 
 
 class SeveralMistakes(InputError):
@@ -80,12 +84,14 @@ class ReportError(RuntimeError):
 
 
 def in_a_line(text: str) -> str:
-    r"""A text in one line, its control characters as escapes: a terminal would follow them.
+    r"""A text in one line, not too long, its control characters as escapes for a terminal.
 
     >>> print(in_a_line("no\n such column: 'a\x1b[2J'"))
     no such column: 'a\x1b[2J'
     """
-    line = " ".join(text.split())
+    line = " ".join(text[: 2 * LONGEST].split())
+    if len(line) > LONGEST or len(text) > 2 * LONGEST:
+        line = f"{line[: LONGEST - 4]} ..."
     return "".join(ascii(one)[1:-1] if category(one)[0] == "C" else one for one in line)
 
 

@@ -58,6 +58,16 @@ def whole_directory(path: Path) -> Iterator[Path]:
                 file.replace(target)
 
 
+def check_target(target: str | None) -> None:
+    """Refuse a target of JSON that would replace what was read, before the work is done.
+
+    Raises:
+        CannotWrite: it would, or is a device or a pipe.
+    """
+    if target is not None and target != "-":
+        check_place(Path(target))
+
+
 def write_json(content: Any, target: str) -> None:
     """Write JSON to a file, or to the standard output where the target is "-"."""
     text = json.dumps(content, indent=1, allow_nan=False) + "\n"

@@ -8,6 +8,7 @@ from typing import Any
 import polars as pl
 
 from rga.errors import InputError, kind_of
+from rga.records.column_types import readable
 from rga.records.table import Table
 
 #: what a record is read from: a file, several in time, a folder, a mapping, or a data frame
@@ -35,11 +36,16 @@ def table_of_frame(given: Any) -> Table:
         raise InputError("there are no rows in the data frame", "record", "give at least one row")
     digest = sha256()
     for name, kind in frame.schema.items():
-        if kind.is_nested() or kind == pl.Object:
+        if kind.is_nested() or kind in (pl.Object, pl.Binary):
             what = f"the column {name!r} holds {str(kind).lower()[:40]}, and no numbers"
             raise InputError(what, "data frame", "leave it out, or make columns of its parts")
+    frame = readable(frame, "data frame")
+    for name in frame.columns:
         digest.update(name.encode())
-        digest.update(frame.select(name).write_csv().encode())
+        column = frame.select(name)
+        if isinstance(frame.schema[name], pl.Duration):
+            column = column.select(pl.all().to_physical())
+        digest.update(column.write_csv().encode())
     return Table(
         Path("data frame"), frame, "row", 1, sha256=digest.hexdigest(), format="data frame"
     )

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.errors import InputError
 from rga.files import write_table
 from rga.model.effect import seconds
 from rga.notebook import short_html
@@ -69,10 +70,21 @@ class Record:
         return time_label(self.start, elapsed)
 
     def rows(self, chosen: NDArray[np.bool_] | NDArray[np.int64] | slice) -> "Record":
-        """The chosen rows; time still counts from the first row of the file."""
+        """The chosen rows; time still counts from the first row of the file.
+
+        Raises:
+            InputError: there are no such rows, or their times do not rise.
+        """
+        try:
+            time = self.time[chosen]
+        except (IndexError, ValueError) as error:
+            what = f"there are no such rows: {error}"
+            raise InputError(what, "record", "choose others") from None
+        if (np.diff(time) <= 0).any():
+            raise InputError("the times of the rows do not rise", "record", "keep their order")
         return replace(
             self,
-            time=self.time[chosen],
+            time=time,
             readings=self.readings[chosen],
             contexts={name: values[chosen] for name, values in self.contexts.items()},
         )

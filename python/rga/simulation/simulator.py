@@ -361,7 +361,11 @@ class Simulator:
 
 def _numbers(name: str, value: ArrayLike) -> FloatArray:
     try:
-        return np.atleast_1d(np.asarray(value, dtype=float))
-    except (TypeError, ValueError):
+        given = np.atleast_1d(np.asarray(value))
+        # Numbers that Python holds as objects do as well; dates, switches and texts are none.
+        if given.dtype.kind not in "iufO":
+            raise TypeError
+        return given.astype(float)
+    except (TypeError, ValueError, OverflowError):
         remedy = "give a number, or one a row"
         raise InputError(f"the context {name!r} holds no numbers", "contexts", remedy) from None

@@ -139,6 +139,16 @@ def test_mapping_is_looked_up_beside_the_record_then_beside_the_model(
     assert first("record", tmp_path / "given" / "import.toml") == -10
 
 
+@pytest.mark.parametrize(
+    "chosen",
+    [np.array([3]), np.array([True]), slice(None, None, -1), np.array([1, 0]), slice(0, 3, 0)],
+)
+def test_rows_that_are_none_or_out_of_order(chosen: Any) -> None:
+    record = Record(np.arange(3.0), 0.0, "seconds", ("A",), np.zeros((3, 1)))
+    with pytest.raises(InputError, match=r"no such rows|do not rise"):
+        record.rows(chosen)
+
+
 def test_rows_and_channels_keep_what_belongs_together() -> None:
     readings = np.arange(6.0).reshape(3, 2)
     record = Record(

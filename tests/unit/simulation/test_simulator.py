@@ -168,6 +168,13 @@ def test_contexts_that_are_missing_or_not_finite() -> None:
         simulator.predict({"pull": [1.0, float("nan")], "temperature": 1.0})
 
 
+@pytest.mark.parametrize("pull", [np.array(["2020"], "datetime64[D]"), ["1"], [True], [10**400]])
+def test_contexts_that_are_no_numbers(pull: object) -> None:
+    simulator = Simulator(read_model(bar(), "test"))
+    with pytest.raises(InputError, match="'pull' holds no numbers"):
+        simulator.predict({"pull": pull, "temperature": 1.0})  # type: ignore[dict-item]
+
+
 def test_same_bits_again() -> None:
     simulator = Simulator(read_model(bar(), "test"))
     contexts = {"pull": np.linspace(0, 1e5, 50), "temperature": np.linspace(-10, 30, 50)}

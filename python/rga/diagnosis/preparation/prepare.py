@@ -15,6 +15,7 @@ from rga.diagnosis.preparation.bad_contexts import (
     without_limits,
 )
 from rga.diagnosis.preparation.context_search import guess_lines, guess_rows
+from rga.diagnosis.preparation.context_steps import shown_by_steps
 from rga.diagnosis.preparation.logger_faults import ended_channels, without_repeated, without_silent
 from rga.diagnosis.preparation.missing_codes import missing_codes
 from rga.diagnosis.preparation.sensor_faults.beside_other_channels import (
@@ -194,14 +195,20 @@ def _broken(simulator: Simulator, data: Data, record: Record) -> list[BrokenChan
         structural = [one for one in candidates if not one.kind.on_sensors]
         return _beyond_loads(data, simulator, structural, basis)
 
+    simulated = data.predict(simulator)
+
+    def rounding() -> FloatArray:
+        return shown_by_steps(simulator, data, record, simulated)
+
     return broken_channels(
         simulator.model,
         data.sensors,
         data.readings,
         data.observed,
-        data.predict(simulator),
+        simulated,
         basis,
         effects,
+        rounding,
         not data.belief.passing,
         data.criteria.channels,
     )

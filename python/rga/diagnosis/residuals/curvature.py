@@ -91,6 +91,8 @@ def curves(problem: Problem) -> list[Curve]:
         seen = size > LEFT * (white[:, known : known + len(tried)] ** 2).sum(0)
         product = along[:, seen].T @ reading
         variance = (reading**2).sum() / free
+        if variance == 0.0:
+            continue
         sizes[sensor, seen] = product / size[seen] / problem.noise.sigma[sensor]
         squared[sensor, seen] = product**2 / size[seen] / variance
         count[sensor, seen] = 1

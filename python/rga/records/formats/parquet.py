@@ -1,11 +1,22 @@
 """Parquet files."""
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryFile
 
 import polars as pl
 
 from rga.errors import InputError
+from rga.records.column_types import readable
 from rga.records.table import Table
+
+#: bytes of what a file says of itself behind its values
+LARGEST_FOOTER = 16 * 2**20
+#: values, and how many a byte of the file, beyond which it holds no measurement
+MOST_VALUES, MOST_A_BYTE = 10_000_000, 100
 
 
 def is_parquet(data: bytes, path: Path) -> bool:
@@ -17,15 +28,51 @@ def read_parquet(data: bytes, path: Path) -> Table:
     """Read a Parquet file.
 
     Raises:
-        InputError: it is no complete Parquet file.
+        InputError: it is no complete Parquet file, holds far more values than its size lets
+            measurements be, or times beyond the calendar.
     """
+    if (footer := int.from_bytes(data[-8:-4], "little")) > LARGEST_FOOTER and footer < len(data):
+        what = f"the file has {footer / 2**20:.0f} MiB of its own description"
+        raise InputError(what, str(path), "write it again with fewer groups of rows")
     try:
-        frame = pl.read_parquet(data)
-    except (pl.exceptions.PolarsError, OSError) as error:
+        with _untold_panics():
+            scanned = pl.scan_parquet(BytesIO(data))
+            rows = scanned.select(pl.len()).collect().item()
+            values = rows * len(scanned.collect_schema())
+            if values <= max(MOST_VALUES, MOST_A_BYTE * len(data)):
+                return Table(
+                    path, readable(pl.read_parquet(data), str(path)), "row", 1, format="Parquet"
+                )
+    except (pl.exceptions.PolarsError, OSError, pl.exceptions.PanicException) as error:
         problem = next(iter(str(error).splitlines()), type(error).__name__)
+        if isinstance(error, pl.exceptions.PanicException):
+            problem = "its parts do not fit together"
         raise InputError(
             f"this is no complete Parquet file: {problem}",
             str(path),
             "write it again, or copy it again in full",
         ) from None
-    return Table(path, frame, "row", 1, format="Parquet")
+    what = f"the file says that it has {values:.3g} values, in {len(data):,} bytes"
+    raise InputError(what, str(path), "give what was measured: noise does not compress so far")
+
+
+@contextmanager
+def _untold_panics() -> Iterator[None]:
+    """What the library writes to the standard error as it panics is left out."""
+    try:
+        kept = os.dup(2)
+    except OSError:  # there is none
+        yield
+        return
+    with TemporaryFile() as aside:
+        os.dup2(aside.fileno(), 2)
+        try:
+            yield
+        except pl.exceptions.PanicException:
+            aside.truncate(0)
+            raise
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            aside.seek(0)
+            os.write(2, aside.read())

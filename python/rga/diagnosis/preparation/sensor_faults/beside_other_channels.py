@@ -44,6 +44,8 @@ PARTS = np.arange(0.3, 0.96, 0.05)
 #: moments at which another response is tried, and the share of the rows before the first
 MOMENTS, MARGIN = 40, 0.05
 
+#: times what the steps of contexts may show, up to which they are what a channel shows
+ROUNDED = 2.0
 #: modes that may begin at any row
 PARTIAL = ("spiking", "erratic")
 
@@ -56,6 +58,7 @@ def broken_channels(
     simulated: FloatArray,
     basis: FloatArray,
     effects: Callable[[], Sequence[FloatArray]],
+    rounding: Callable[[], FloatArray],
     onsets: bool,
     criteria: ChannelCriteria,
 ) -> list[BrokenChannel]:
@@ -70,6 +73,8 @@ def broken_channels(
         basis: courses of the loads, float[rows, courses].
         effects: called where a channel is suspect: what effects of the structure change that no
             time history of the loads shows, float[rows, sensors] each.
+        rounding: called there as well: what the steps in which contexts are given may show on each
+            channel, as a standard deviation, float[sensors].
         onsets: whether a search for causes may say that something begins late.
         criteria: when a channel is broken.
     """
@@ -81,6 +86,8 @@ def broken_channels(
         and _too_large(parts, readings, observed, number, criteria)
     ]
     possible = effects() if suspects else []
+    rounded = rounding() if suspects else np.zeros(len(sensors))
+    size = root_mean_square(parts.own)
     of_channels = answers(readings, observed, simulated, criteria)
     faults = []
     for number, sensor in enumerate(sensors):
@@ -93,7 +100,8 @@ def broken_channels(
             or scaled(model, sensors, of_channels, number, criteria)
             or dead(sensor, readings[seen, number], simulated[seen, number], criteria)
         )
-        if found is None and number in suspects:
+        # A channel that alone goes with a context shows how coarsely it is given.
+        if found is None and number in suspects and size[number] > ROUNDED * rounded[number]:
             others = [k for k in range(len(sensors)) if k == number or k not in suspects]
             if not _explained(parts, possible, number, others, criteria):
                 found = _erratic(

@@ -29,6 +29,7 @@ def broken(
         simulated,
         basis,
         lambda: effects,
+        lambda: np.zeros(len(data.sensors)),
         onsets,
         data.criteria.channels,
     )
