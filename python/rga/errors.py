@@ -116,5 +116,6 @@ def in_short(error: Exception) -> str:
     >>> in_short(InputError("the span is 0", "model", "give another"))
     'the span is 0 (model): give another'
     """
-    said = in_a_line(str(error))
-    return said if isinstance(error, InputError) else f"{type(error).__name__}: {said}"
+    if isinstance(error, InputError):
+        return " ".join(str(error).split())
+    return f"{type(error).__name__}: {in_a_line(str(error))}"

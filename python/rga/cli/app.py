@@ -31,13 +31,7 @@ from rga.cli.simulation.results import results
 from rga.cli.simulation.simulate import simulate
 from rga.cli.simulation.verify import verify
 from rga.cli.simulation.whatif import whatif
-from rga.errors import (
-    InputError,
-    MissingPackageError,
-    ReportError,
-    SeveralMistakes,
-    in_a_line,
-)
+from rga.errors import InputError, MissingPackageError, ReportError, in_a_line
 from rga.inputs import protected_inputs
 from rga.lazy import needing_extras
 
@@ -112,7 +106,7 @@ def _written_out() -> Iterator[None]:
 
 def _words(error: Exception) -> str:
     """One line, or the list of several mistakes."""
-    return str(error) if isinstance(error, SeveralMistakes) else in_a_line(str(error))
+    return str(error) if isinstance(error, InputError) else in_a_line(str(error))
 
 
 def _json_with_target(arguments: Sequence[str]) -> list[str]:

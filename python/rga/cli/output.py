@@ -58,14 +58,15 @@ def whole_directory(path: Path) -> Iterator[Path]:
                 file.replace(target)
 
 
-def check_target(target: str | None) -> None:
-    """Refuse a target of JSON that would replace what was read, before the work is done.
+def check_targets(*targets: str | None) -> None:
+    """Refuse targets of JSON that would replace what was read, before the work is done.
 
     Raises:
-        CannotWrite: it would, or is a device or a pipe.
+        CannotWrite: one would, or is a device or a pipe.
     """
-    if target is not None and target != "-":
-        check_place(Path(target))
+    for target in targets:
+        if target is not None and target != "-":
+            check_place(Path(target))
 
 
 def write_json(content: Any, target: str) -> None:

@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from rga_bench.experiment import Execution, Experiment
 from rga_bench.ledger import Ledger, task_versions
+from rga_bench.limits.one_size import measure
 from rga_bench.machine import machine, versions
 from rga_bench.page import MarkdownPage
 from rga_bench.text_table import TextTable
@@ -91,7 +92,7 @@ class LimitsExperiment(Experiment[Sequence[SizeOutcome]]):
         """One after the other, each in processes of its own; none larger than what did not end."""
         ledger: Ledger[SizeOutcome] | None = None
         if execution.folder is not None:
-            seeded = task_versions(_measured) | {"seed": str(self.seed)}
+            seeded = task_versions(measure) | {"seed": str(self.seed)}
             ledger = Ledger(execution.folder, SizeOutcome, seeded)
         found: list[SizeOutcome] = []
         for number, size in enumerate(self.sizes):

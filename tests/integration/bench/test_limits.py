@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from rga_bench.ledger import NAME
 from rga_bench.limits.experiment import SizeOutcome, _row
 
 
@@ -18,8 +19,10 @@ def test_a_small_size_is_measured(rga: Callable[..., Any], tmp_path: Path) -> No
     assert 0.1 < float(cells[5]) < 4
     assert cells[6] == "nothing_wrong"
     # What is kept is not measured again.
+    kept = (tmp_path / "out" / NAME).read_text("utf-8")
     again = rga("benchmark", "limits", "--quick", "-o", tmp_path / "out")
     assert again.code == 0, again.err
+    assert (tmp_path / "out" / NAME).read_text("utf-8") == kept
     assert row in (tmp_path / "out" / "limits.md").read_text("utf-8").splitlines()
 
 

@@ -22,16 +22,15 @@ def frame() -> pl.DataFrame:
     return pl.DataFrame({"time": time.cast(pl.Datetime("us")), **readings})
 
 
-@pytest.mark.parametrize("first", [0, ROWS])
 def test_bits_of_the_footer(
-    first: int, frame: pl.DataFrame, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    frame: pl.DataFrame, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "record.parquet"
     frame.write_parquet(path)
     whole = path.read_bytes()
     footer = int.from_bytes(whole[-8:-4], "little") + 8
-    draw, told = random.Random(first), list[str]()
-    for _ in range(150):
+    draw, told = random.Random(0), list[str]()
+    for _ in range(300):
         damaged = bytearray(whole)
         damaged[-draw.randrange(1, footer + 1)] ^= 1 << draw.randrange(8)
         path.write_bytes(damaged)
@@ -39,7 +38,7 @@ def test_bits_of_the_footer(
             read_table(path)
         except InputError as error:
             told.append(str(error))
-    assert len(told) > 20
+    assert any("do not fit together" in one for one in told)
     assert not [one for one in told if "\n" in one]
     assert capfd.readouterr().err == ""
 

@@ -44,7 +44,7 @@ def diagnose_into(
     """Write findings, extended model and report, and say the verdict."""
     import json
 
-    from rga.cli.output import check_target, whole_directory, write_json
+    from rga.cli.output import check_targets, whole_directory, write_json
     from rga.cli.progress import shown_progress
     from rga.cli.reading import read_record
     from rga.findings.criteria import load_criteria
@@ -55,7 +55,7 @@ def diagnose_into(
     chosen = None if criteria is None else load_criteria(criteria)
     measured = read_record(record, structure, mapping)
     check_outputs(output)
-    check_target(target)
+    check_targets(target)
     # Not needed before the input is known to be good, and slow to import.
     from rga.diagnosis import diagnose
     from rga.report.pdf import write_pdf

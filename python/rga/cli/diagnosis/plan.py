@@ -50,7 +50,7 @@ def plan(
     json: JsonTarget = None,
 ) -> None:
     """Choose the sensors and load tests that best separate a cause from its rivals."""
-    from rga.cli.output import check_target, write_json
+    from rga.cli.output import check_targets, write_json
     from rga.cli.progress import shown_progress
     from rga.model import load_model
 
@@ -59,8 +59,7 @@ def plan(
     from rga.planning.planner import plan as choose
 
     read = load_findings(findings)
-    check_target(json)
-    check_target(None if output is None else str(output))
+    check_targets(json, None if output is None else str(output))
     paths = [[node.strip() for node in one.split(",")] for one in path or []]
     with shown_progress() as progress:
         result = choose(

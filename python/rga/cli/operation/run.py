@@ -60,7 +60,7 @@ def run(
     A run that was interrupted goes on where it stood; one that had ended is not done again.
     """
     from rga.cli.operation.settings import read_settings
-    from rga.cli.output import check_target, write_json
+    from rga.cli.output import check_targets, write_json
     from rga.cli.progress import shown_progress
     from rga.cli.reading import read_record
     from rga.model import load_model
@@ -68,7 +68,7 @@ def run(
     structure = load_model(model)
     measured = read_record(record, structure, mapping)
     chosen = read_settings(settings, level)
-    check_target(json)
+    check_targets(json)
     for warning in _replaced(output, structure, measured, seed):
         typer.echo(f"warning: {warning}", err=True)
     # Not needed before the input is known to be good, and slow to import.

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from tempfile import TemporaryFile
+from threading import Lock
 
 import polars as pl
 
@@ -17,6 +17,8 @@ from rga.records.table import Table
 LARGEST_FOOTER = 16 * 2**20
 #: values, and how many a byte of the file, beyond which it holds no measurement
 MOST_VALUES, MOST_A_BYTE = 10_000_000, 100
+#: the standard error is that of all threads
+_STANDARD_ERROR = Lock()
 
 
 def is_parquet(data: bytes, path: Path) -> bool:
@@ -58,21 +60,18 @@ def read_parquet(data: bytes, path: Path) -> Table:
 
 @contextmanager
 def _untold_panics() -> Iterator[None]:
-    """What the library writes to the standard error as it panics is left out."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # there is none
-        yield
-        return
-    with TemporaryFile() as aside:
-        os.dup2(aside.fileno(), 2)
+    """What the library tells of its panics in pages on the standard error is left out."""
+    with _STANDARD_ERROR:
         try:
+            kept = os.dup(2)
+        except OSError:  # there is none
             yield
-        except pl.exceptions.PanicException:
-            aside.truncate(0)
-            raise
+            return
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        try:
+            os.dup2(nowhere, 2)
+            yield
         finally:
             os.dup2(kept, 2)
             os.close(kept)
-            aside.seek(0)
-            os.write(2, aside.read())
+            os.close(nowhere)

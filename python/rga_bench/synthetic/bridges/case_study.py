@@ -57,16 +57,15 @@ def drafted(name: str) -> Draft:
 
 def steelwork(draft: Draft, panels: int, spans: int = 1) -> None:
     """Nodes, members and supports; any even number of panels, over spans of as many each."""
-    panel, ends = spans * SPAN / panels, range(0, panels + 1, panels // spans)
     for side, y in SIDES.items():
         for i in range(panels + 1):
-            draft.node(low(side, i), i * panel, y, 0.0)
+            draft.node(low(side, i), i * spans * SPAN / panels, y, 0.0)
         for i in range(1, panels):
-            draft.node(top(side, i), i * panel, y, HEIGHT)
+            draft.node(top(side, i), i * spans * SPAN / panels, y, HEIGHT)
     for side in SIDES:
         _truss(draft, side, panels)
     _deck(draft, panels)
-    for i in ends:
+    for i in range(0, panels + 1, panels // spans):
         end = {0: "west", panels: "east"}.get(i, f"pier {i}")
         for side in SIDES:
             fixed = ["uz", *(["ux"] if i == 0 else []), *(["uy"] if side == "south" else [])]
