@@ -1,7 +1,6 @@
 """Formats of which no public file is at hand, made up after what is known of them."""
 
 import json
-import struct
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import pytest
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
+from hostile.logger_files import catman_binary
 from rga.errors import InputError
 from rga.records import RecordMapping
 from rga.records.mapping import TimeColumns
@@ -74,31 +74,6 @@ def test_catman_rates_are_blocks(tmp_path: Path) -> None:
     slow = table(tmp_path / "r.asc", content, block=2)
     assert begin(slow)[1] == [0, 0.1]
     assert slow.numbers("T [°C]").tolist() == [20.1, 20.2]
-
-
-def catman_binary(channels: list[tuple[str, str, int, list[float]]]) -> bytes:
-    """A catman file of version 5012: name, unit, bytes of a number and numbers of each channel."""
-
-    def text(value: str, kind: str = "<h") -> bytes:
-        return struct.pack(kind, len(value)) + value.encode("cp1252")
-
-    heads, data = b"", b""
-    for number, (name, unit, width, values) in enumerate(channels):
-        extended = bytearray(148)
-        struct.pack_into("<dd", extended, 0, 45323.5, 10.0)
-        extended[140] = {8: 0, 4: 1, 2: 2}[width]
-        heads += struct.pack("<hi", number, len(values)) + text(name) + text(unit) + text("")
-        heads += struct.pack("<hhdi", 0, 8, 45323.5, 148) + bytes(extended)
-        heads += bytes(3) + struct.pack("<h", 0) + text("") + text("", "<i")
-        if width == 2:
-            low, high = min(values), max(values)
-            steps = [round((value - low) / (high - low or 1) * 32767) for value in values]
-            data += struct.pack("<dd", low, high) + np.array(steps, "<u2").tobytes()
-        else:
-            data += np.array(values, f"<f{width}").tobytes()
-    head = text("") + text("") * 32 + struct.pack("<hi", len(channels), 0)
-    head += bytes(4 * len(channels)) + bytes(4) + heads
-    return struct.pack("<hi", 5012, 6 + len(head)) + head + data
 
 
 @pytest.mark.parametrize("width", [2, 4, 8])
@@ -180,6 +155,30 @@ def test_tdms_groups_of_two_rates(tmp_path: Path) -> None:
     assert "the file is not whole" in " ".join(cut.warnings)
 
 
+@pytest.mark.parametrize(
+    ("said", "found"),
+    [
+        ({"wf_start_time": "noon"}, (0.0, [0, 0.5])),
+        ({"wf_start_offset": float("nan")}, (0.0, [0, 0.5])),
+        ({"wf_increment": "x"}, "nan s lie between its rows"),
+        ({"wf_increment": -1.0}, "-1 s lie between its rows"),
+        ({"wf_increment": float("inf")}, "inf s lie between its rows"),
+    ],
+)
+def test_tdms_times_that_are_none(said: dict[str, Any], found: Any, tmp_path: Path) -> None:
+    times = {"wf_start_time": np.datetime64("2024-02-01T10:00:00"), "wf_increment": 0.5}
+    with TdmsWriter(tmp_path / "w.tdms") as writer:
+        writer.write_segment([ChannelObject("g", "S1", np.arange(2.0), times | said)])
+    read = read_table(tmp_path / "w.tdms")
+    if isinstance(found, str):
+        with pytest.raises(InputError, match=found):
+            begin(read)
+        assert read_clock(read, TimeColumns(sampling_rate_hz=4)).seconds.tolist() == [0, 0.25]
+    else:
+        assert begin(read) == found
+        assert "cannot be read" in " ".join(read.notes)
+
+
 def test_matlab_variables_are_channels(tmp_path: Path) -> None:
     time = np.arange(5) / 10
     values = {"t": time, "S1": time * 2, "acc": np.ones((5, 2)), "short": np.arange(3), "name": "x"}
@@ -208,6 +207,7 @@ def test_line_protocol_with_escapes_types_and_precisions(tmp_path: Path) -> None
     assert found.numbers("bridge a b S1").tolist() == [1.5, 2.5]
     assert found.numbers("bridge a b n").tolist() == [3, 4]
     np.testing.assert_array_equal(found.numbers("wind c v"), [np.nan, 9])
+    assert found.names["wind c v"] == "v"
     assert begin(found) == ("2024-02-01T00:00:00+00:00", [0, 1])
     assert "times are taken as ms" in " ".join(found.notes)
     with pytest.raises(InputError, match=r"has no time.*line 2"):

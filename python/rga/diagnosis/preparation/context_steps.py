@@ -11,6 +11,8 @@ from rga.simulation import Simulator
 BESIDE = 1e-3
 #: levels of a context that is given in steps; a switch has two
 FEWEST = 3
+#: steps between two levels, beyond which they are none
+MOST = 1e9
 
 
 def step_of(values: FloatArray) -> float:
@@ -27,6 +29,8 @@ def step_of(values: FloatArray) -> float:
         return 0.0
     apart = np.diff(levels)
     step = float(apart.min())
+    if step * MOST < apart.max():
+        return 0.0
     whole = apart / step
     return step if np.abs(whole - np.round(whole)).max() < BESIDE else 0.0
 

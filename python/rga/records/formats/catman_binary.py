@@ -87,7 +87,8 @@ def read_catman_binary(data: bytes, path: Path, mapping: FileMapping) -> Table:
     """
     try:
         begin, channels = _heads(_Bytes(data))
-        values = _values(_Bytes(data, begin), channels)
+        with np.errstate(over="ignore", invalid="ignore"):  # of what is damaged
+            values = _values(_Bytes(data, begin), channels)
     except (struct.error, ValueError, OverflowError):
         raise InputError(
             "the catman file ends before its data do, or is damaged",
@@ -175,8 +176,7 @@ def _values(file: _Bytes, channels: Sequence[_Channel]) -> list[FloatArray]:
         elif channel.width == 2:
             low, high = file.number("d"), file.number("d")
             steps = np.frombuffer(file.part(2 * channel.length), "<u2")
-            with np.errstate(over="ignore", invalid="ignore"):  # of a damaged head
-                found.append(low + (high - low) / 32767 * steps)
+            found.append(low + (high - low) / 32767 * steps)
         else:
             kind = f"<f{channel.width}"
             held = np.frombuffer(file.part(channel.width * channel.length), kind)

@@ -88,13 +88,17 @@ def read_line_protocol(text: Text) -> Table:
         raise InputError("a field has no value", f"{text.path}, line {number}", "write field=value")
     points = fields.select(
         "time",
+        _plain(pl.col("field")).alias("field"),
         (pl.col("series") + pl.lit(" ") + _plain(pl.col("field")))
         .str.strip_chars()
         .alias("channel"),
         pl.col("value").str.replace(r"^(-?\d+)[iu]$", "$1").cast(pl.Float64, strict=False),
     )
+    own = points.select("channel", "field").unique(maintain_order=True)
+    names = dict(own.filter(own["field"].is_unique()).iter_rows())
+    points = points.drop("field")
     notes = [*text.notes, f"times are taken as {precision} since 1970 (UTC)", "no units are stated"]
-    return table_of_points(text.path, points, "InfluxDB line protocol", {}, {}, notes)
+    return table_of_points(text.path, points, "InfluxDB line protocol", {}, names, notes)
 
 
 def _called(series: str, several: bool) -> str:

@@ -1,7 +1,5 @@
-"""MATLAB files (.mat), by SciPy: variables as channels."""
+"""MATLAB files (.mat): variables as channels."""
 
-from collections.abc import Iterator
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +8,7 @@ import polars as pl
 
 from rga.errors import InputError
 from rga.records.formats.blocks import chosen_block
+from rga.records.formats.matlab_file import Arrays, arrays_of
 from rga.records.mapping import FileMapping
 from rga.records.table import StatedTime, Table
 
@@ -42,26 +41,20 @@ def read_matlab(data: bytes, path: Path, mapping: FileMapping) -> Table:
             str(path),
             "save it in MATLAB by save(..., '-v7'), or write a table by writetable",
         )
-    from scipy.io import loadmat
-
+    vectors: dict[int, dict[str, np.ndarray[Any, Any]]] = {}
+    scalars: dict[str, float] = {}
     try:
-        content = loadmat(BytesIO(data), squeeze_me=True, struct_as_record=False)
-    except MemoryError:
-        raise
-    except Exception as error:  # SciPy says what is damaged in many ways
+        for name, value in _channels(data):
+            if value.ndim == 0:
+                scalars[name.rsplit(".", 1)[-1]] = float(value)
+            elif value.ndim == 1 and len(value) > 1:
+                vectors.setdefault(len(value), {})[name] = value
+    except ValueError as error:
         raise InputError(
-            f"the MATLAB file is damaged: {' '.join(str(error).split()) or type(error).__name__}",
+            f"the MATLAB file is damaged: {error}",
             str(path),
             "save it again, or write a table by writetable",
         ) from None
-    variables = {key: value for key, value in content.items() if not key.startswith("__")}
-    vectors: dict[int, dict[str, np.ndarray[Any, Any]]] = {}
-    scalars: dict[str, float] = {}
-    for name, value in _arrays(variables):
-        if value.ndim == 0:
-            scalars[name.rsplit(".", 1)[-1]] = float(value)
-        elif value.ndim == 1 and len(value) > 1:
-            vectors.setdefault(len(value), {})[name] = value
     if not vectors:
         raise InputError("no vector of numbers is in the file", str(path), "give another file")
     blocks = sorted(vectors.values(), key=lambda one: -len(one))
@@ -80,18 +73,9 @@ def read_matlab(data: bytes, path: Path, mapping: FileMapping) -> Table:
     )
 
 
-def _arrays(variables: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Real arrays with their names, out of structs and matrices as well."""
-    for key, value in variables.items():
-        name = f"{prefix}{key}"
-        if hasattr(value, "_fieldnames"):
-            inner = {field: getattr(value, field) for field in value._fieldnames}
-            if prefix.count(".") < 4:
-                yield from _arrays(inner, f"{name}.")
-            continue
-        array = np.asarray(value)
-        if array.dtype.kind not in "iufb":
-            continue
+def _channels(data: bytes) -> Arrays:
+    """Arrays by their names, matrices as columns."""
+    for name, array in arrays_of(data):
         if array.ndim < 2:
             yield name, array
         elif array.ndim == 2 and min(array.shape) <= _MOST_COLUMNS:
@@ -108,7 +92,7 @@ def _time(
     named = next((name for one in _TIMES for name in frame.columns if last[name] == one), None)
     if named is not None:
         values = frame[named].to_numpy()
-        if _DAYS[0] < values[0] < _DAYS[1]:
+        if np.all((_DAYS[0] < values) & (values < _DAYS[1])):
             # Such a number tells no less than 10 microseconds apart.
             stamps = 10 * np.round((values - _DAY_1970) * 86400e5).astype("int64")
             moments = pl.Series(named, stamps).cast(pl.Datetime("us"))

@@ -118,14 +118,18 @@ def _time(
     channel: "TdmsChannel", frame: pl.DataFrame, units: dict[str, str]
 ) -> tuple[StatedTime | None, list[str]]:
     """Time of a waveform by its properties, else of a channel that has it."""
-    step = channel.properties.get("wf_increment")
-    if step:
-        start = channel.properties.get("wf_start_time")
-        offset = float(channel.properties.get("wf_start_offset") or 0.0)
+    said = channel.properties
+    if step := said.get("wf_increment"):
+        seconds = float(step) if isinstance(step, int | float) else np.nan
+        start = said.get("wf_start_time")
         if start is None:
-            return StatedTime(step=float(step)), ["the waveform has no start: seconds are taken"]
-        begin = np.datetime64(start, "us") + np.timedelta64(round(offset * 1e6), "us")
-        return StatedTime(start=f"{begin}+00:00", step=float(step)), []
+            return StatedTime(step=seconds), ["the waveform has no start: seconds are taken"]
+        try:
+            offset = round(float(said.get("wf_start_offset") or 0.0) * 1e6)
+            begin = np.datetime64(start, "us") + np.timedelta64(offset, "us")
+        except (TypeError, ValueError, OverflowError):
+            return StatedTime(step=seconds), ["its start cannot be read: seconds are taken"]
+        return StatedTime(start=f"{begin}+00:00", step=seconds), []
     for name in frame.columns:
         if frame[name].dtype.is_temporal():
             return StatedTime((name,)), [f"{name} is the time (UTC)"]

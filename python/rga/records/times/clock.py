@@ -64,7 +64,14 @@ def read_clock(table: Table, time: TimeColumns) -> Clock:
     if time.sampling_rate_hz is not None:
         return replace(clock, seconds=np.asarray(rows / time.sampling_rate_hz))
     if not stated.columns:
-        return replace(clock, seconds=np.asarray(rows * (stated.step or 0.0)))
+        step = 0.0 if stated.step is None else stated.step
+        if not SHORTEST <= step <= LONGEST_STEP:
+            raise InputError(
+                f"the file says that {step:g} s lie between its rows",
+                str(table.path),
+                "state [time] sampling_rate_hz in import.toml",
+            )
+        return replace(clock, seconds=np.asarray(rows * step))
     _check_order(clock, table, " + ".join(stated.columns))
     return clock
 
@@ -96,6 +103,8 @@ def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
 NO_TIMES = (pl.Time, pl.Boolean, pl.Binary)
 #: span of a record, below which no row can be told from another [s]
 SHORTEST = 1e-6
+#: seconds between two rows, beyond which nothing counts them
+LONGEST_STEP = 1e9
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,177 @@
+"""What is in a MATLAB file of version 4 to 7: its real arrays of numbers, by name.
+
+Source: the layout that MathWorks publishes as "MAT-File Format". SciPy reads such files as well,
+but ends the process at types that it does not know, and unpacks without a bound.
+"""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from math import prod
+from typing import Any
+
+import numpy as np
+
+#: bytes that a variable may have once it is unpacked, and how many for each packed one, beyond
+#: which it holds no measurement
+LARGEST_SMALL, MOST_A_BYTE = 64 * 2**20, 100
+#: structs within structs, beyond which nothing is read
+_DEEPEST = 5
+#: dimensions, beyond which it is no array that MATLAB writes
+_MOST_DIMENSIONS = 32
+#: types of elements, those of numbers as NumPy writes them
+_TYPES = {
+    1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8",
+}  # fmt: skip
+_MATRIX, _PACKED = 14, 15
+#: orders of bytes, by how the end of the head is written
+_ORDERS = {b"IM": "<", b"MI": ">"}
+#: classes of arrays: structs, and from doubles to integers of eight bytes
+_STRUCT, _NUMBERS = 2, range(6, 16)
+_COMPLEX = 0x800
+#: the same of version 4: types, the order of bytes, and a matrix that is full
+_OLD_TYPES = {0: "f8", 1: "f4", 2: "i4", 3: "i2", 4: "u2", 5: "u1"}
+_OLD_ORDERS = {0: "<", 1: ">"}
+_FULL = 0
+#: heads of version 4 begin with smaller numbers, in one of two orders
+_OLD_HEADS = 5000
+
+Elements = Iterator[tuple[int, memoryview]]
+Arrays = Iterator[tuple[str, np.ndarray[Any, Any]]]
+
+
+def arrays_of(data: bytes) -> Arrays:
+    """Real arrays of numbers in a file, those in structs as `struct.field`.
+
+    Args:
+        data: the file.
+
+    Returns:
+        Names, and arrays without dimensions of one element. Complex and sparse arrays, words,
+        cells and arrays of structs are left out.
+
+    Raises:
+        ValueError: the file is damaged, or holds far more than its size lets measurements be.
+
+    >>> import io
+    >>> from scipy.io import savemat
+    >>> file = io.BytesIO()
+    >>> savemat(file, {"S1": [1.0, 2.0], "about": {"fs": 50.0}, "word": "x"})
+    >>> [(name, array.tolist()) for name, array in arrays_of(file.getvalue())]
+    [('S1', [1.0, 2.0]), ('about.fs', 50.0)]
+    """
+    view = memoryview(data)
+    try:
+        yield from _version_4(view) if 0 in data[:4] else _version_5(view)
+    except (struct.error, KeyError, zlib.error):
+        raise ValueError("its parts do not fit together") from None
+
+
+def _version_5(data: memoryview) -> Arrays:
+    order = _ORDERS.get(bytes(data[126:128]))
+    if order is None:
+        raise ValueError("its head does not say how its numbers are written")
+    room = max(LARGEST_SMALL, MOST_A_BYTE * len(data))
+    for kind, content in _elements(data[128:], order):
+        if kind == _PACKED:
+            content = _unpacked(content, room)
+            room -= len(content)
+            kind, content = _following(_elements(content, order))
+        if kind != _MATRIX:
+            raise ValueError("what stands in it is no variable")
+        yield from _matrix(content, order, None, 1)
+
+
+def _elements(data: memoryview, order: str) -> Elements:
+    """Types and contents of elements, one after the other."""
+    place = 0
+    while place < len(data):
+        kind, length = struct.unpack_from(f"{order}II", data, place)
+        begin, end = place + 8, len(data)
+        if kind >> 16:  # four bytes or less stand where the length does
+            kind, length = kind & 0xFFFF, kind >> 16
+            begin, end = place + 4, place + 8
+        if begin + length > end:
+            raise ValueError("it is cut off, or a length in it is damaged")
+        yield kind, data[begin : begin + length]
+        padding = 0 if kind == _PACKED else (place - begin - length) % 8
+        place = begin + length + padding
+
+
+def _following(elements: Elements) -> tuple[int, memoryview]:
+    """The next element, of those that there have to be."""
+    for element in elements:
+        return element
+    raise ValueError("it is cut off")
+
+
+def _unpacked(content: memoryview, room: int) -> memoryview:
+    unpacking = zlib.decompressobj()
+    unpacked = unpacking.decompress(content, room + 1)
+    if len(unpacked) > room:
+        raise ValueError(f"its variables have more than {room:,} bytes when they are unpacked")
+    if not unpacking.eof:
+        raise ValueError("it is cut off")
+    return memoryview(unpacked)
+
+
+def _matrix(content: memoryview, order: str, called: str | None, depth: int) -> Arrays:
+    """Arrays of a matrix, or of the fields of a struct.
+
+    Args:
+        content: its elements.
+        order: of its bytes.
+        called: its name; None: that which stands in it.
+        depth: of structs.
+    """
+    elements = _elements(content, order)
+    (flags,) = struct.unpack_from(f"{order}I", _following(elements)[1])
+    shape = np.frombuffer(_following(elements)[1], f"{order}i4").tolist()
+    own = _text(_following(elements)[1])
+    name = own if called is None else called
+    if not name:
+        return  # MATLAB keeps functions in it
+    if len(shape) > _MOST_DIMENSIONS or min(shape, default=-1) < 0:
+        raise ValueError(f"the shape of {name!r} is damaged")
+    kind = flags & 0xFF
+    if kind == _STRUCT and prod(shape) == 1 and depth <= _DEEPEST:
+        (length,) = struct.unpack_from(f"{order}i", _following(elements)[1])
+        if length < 1:
+            raise ValueError(f"the fields of {name!r} are damaged")
+        fields = _following(elements)[1]
+        for begin in range(0, len(fields), length):
+            inner = _following(elements)[1]
+            if inner:
+                field = _text(fields[begin : begin + length])
+                yield from _matrix(inner, order, f"{name}.{field}", depth + 1)
+    elif kind in _NUMBERS and not flags & _COMPLEX:
+        stored, numbers = _following(elements)
+        yield name, _shaped(numbers, f"{order}{_TYPES[stored]}", shape)
+
+
+def _text(content: memoryview) -> str:
+    return bytes(content).partition(b"\0")[0].decode("latin-1")
+
+
+def _shaped(numbers: memoryview, kind: str, shape: list[int]) -> np.ndarray[Any, Any]:
+    return np.frombuffer(numbers, kind).reshape(shape, order="F").squeeze()
+
+
+def _version_4(data: memoryview) -> Arrays:
+    place = 0
+    while place < len(data):
+        little = int.from_bytes(data[place : place + 4], "little")
+        order = "<" if little < _OLD_HEADS else ">"
+        said, rows, columns, complex_, length = struct.unpack_from(f"{order}5i", data, place)
+        order, kind = _OLD_ORDERS[said // 1000], _OLD_TYPES[said // 10 % 10]
+        begin = place + 20 + length
+        size = rows * columns * np.dtype(kind).itemsize
+        if min(rows, columns, length) < 0 or begin + size > len(data):
+            raise ValueError("it is cut off, or a length in it is damaged")
+        if said % 10 == _FULL and not complex_:
+            numbers = data[begin : begin + size]
+            yield (
+                _text(data[begin - length : begin]),
+                _shaped(numbers, f"{order}{kind}", [rows, columns]),
+            )
+        place = begin + size * (2 if complex_ else 1)

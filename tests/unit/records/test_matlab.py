@@ -1,0 +1,108 @@
+"""What is read from MATLAB files is what SciPy reads, and no file ends the process."""
+
+import io
+import struct
+import zlib
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.io import loadmat, savemat
+from scipy.sparse import csc_array
+
+from rga.errors import InputError
+from rga.records.formats.matlab_file import arrays_of
+from rga.records.read import read_table
+
+DRAW = np.random.default_rng(1)
+VALUES: dict[str, Any] = {
+    "S1": DRAW.standard_normal(50),
+    "row": DRAW.standard_normal((1, 9)),
+    "matrix": DRAW.standard_normal((6, 3)),
+    "tensor": DRAW.standard_normal((2, 3, 4)),
+    "empty": np.zeros((0, 3)),
+    "scalar": 5.5,
+    **{kind: np.arange(7, dtype=kind) for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "f4")},
+    **{kind: np.arange(7, dtype=kind) for kind in ("i8", "u8")},
+    "switch": np.array([True, False]),
+}
+#: what is left out
+OTHERS: dict[str, Any] = {
+    "complex": np.array([1j, 2.0]),
+    "word": "hello",
+    "cell": np.array(["x", 1], dtype=object),
+    "structs": np.zeros(2, dtype=[("a", "f8")]),
+    "sparse": csc_array(np.eye(3)),
+}
+
+
+def saved(values: dict[str, Any], *, packed: bool = False, form: str = "5") -> bytes:
+    file = io.BytesIO()
+    savemat(file, values, do_compression=packed, format=form)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_arrays_are_those_that_scipy_reads(packed: bool) -> None:
+    data = saved(VALUES | OTHERS, packed=packed)
+    known = loadmat(io.BytesIO(data), squeeze_me=True)
+    found = dict(arrays_of(data))
+    assert list(found) == list(VALUES)
+    for name, array in found.items():
+        if array.size:
+            np.testing.assert_array_equal(array, known[name], strict=name != "switch")
+
+
+def test_version_4_and_structs() -> None:
+    old = {name: VALUES[name] for name in ("S1", "row", "matrix", "scalar", "i2", "i4", "u1", "f4")}
+    data = saved(old | {"word": "hello", "complex": OTHERS["complex"]}, form="4")
+    known = loadmat(io.BytesIO(data), squeeze_me=True)
+    found = dict(arrays_of(data))
+    assert list(found) == list(old)
+    for name, array in found.items():
+        np.testing.assert_array_equal(array, known[name])
+    inner = {"a": np.arange(3.0), "deep": {"b": 2.0, "word": "x"}}
+    within = dict(arrays_of(saved({"data": inner})))
+    assert {name: array.tolist() for name, array in within.items()} == {
+        "data.a": [0, 1, 2],
+        "data.deep.b": 2,
+    }
+
+
+def test_bytes_in_the_other_order() -> None:
+    numbers = struct.pack(">II3d", 9, 24, 1.0, 2.0, 3.0)
+    head = struct.pack(">IIII", 6, 8, 6, 0) + struct.pack(">IIii", 5, 8, 3, 1)
+    matrix = head + struct.pack(">HH", 2, 1) + b"S1\0\0" + numbers
+    data = b"MATLAB 5.0".ljust(124) + b"\x01\x00MI" + struct.pack(">II", 14, len(matrix)) + matrix
+    ((name, array),) = arrays_of(data)
+    assert (name, array.tolist()) == ("S1", [1.0, 2.0, 3.0])
+    old = struct.pack(">5i", 1000, 1, 2, 0, 2) + b"T\0" + struct.pack(">2d", 4.0, 5.0)
+    ((name, array),) = arrays_of(old)
+    assert (name, array.tolist()) == ("T", [4.0, 5.0])
+
+
+@pytest.mark.parametrize("place", range(128, 220))
+def test_any_changed_byte_is_told_or_changes_what_is_read(place: int, tmp_path: Path) -> None:
+    data = bytearray(saved({"S1": np.arange(4.0), "t": np.arange(4.0)}))
+    data[place] ^= 0xFF
+    (tmp_path / "r.mat").write_bytes(data)
+    with suppress(InputError):
+        table = read_table(tmp_path / "r.mat")
+        assert table.frame.height <= 4
+
+
+def test_what_unpacks_without_end_is_refused(tmp_path: Path) -> None:
+    matrix = saved({"S1": np.zeros(20_000_000)})[128:]
+    packed = zlib.compress(matrix, 9)
+    data = b"MATLAB 5.0".ljust(124) + b"\x00\x01IM" + struct.pack("<II", 15, len(packed)) + packed
+    (tmp_path / "bomb.mat").write_bytes(data)
+    with pytest.raises(InputError, match=r"more than 67,108,864 bytes"):
+        read_table(tmp_path / "bomb.mat")
+
+
+def test_day_numbers_are_those_of_all_rows(tmp_path: Path) -> None:
+    days = 739283 + np.array([0.0, np.nan, 1.0])
+    savemat(tmp_path / "r.mat", {"time": days, "S1": np.arange(3.0)})
+    assert "is taken as the time in seconds" in " ".join(read_table(tmp_path / "r.mat").notes)
