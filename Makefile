@@ -7,6 +7,9 @@ INSTALL := -m pip install --quiet --no-compile
 .DEFAULT_GOAL := help
 .PHONY: help run dev quick docs test thorough crates lint tests clean wheel installed
 
+# What is compiled on import is kept, whatever the environment says: tests begin hundreds of processes.
+export PYTHONDONTWRITEBYTECODE =
+
 # Every core has its process of the tests: products in several threads would wait for each other.
 quick tests thorough: export OMP_NUM_THREADS = 1
 
