@@ -195,6 +195,7 @@ def given(sound: Path, tmp_path: Path) -> Callable[..., Case]:
         for file in sound.iterdir():
             (folder / file.name).write_bytes(file.read_bytes())
         for name, own in files.items():
+            (folder / name).parent.mkdir(exist_ok=True)
             (folder / name).write_bytes(own)
         (folder / "out").mkdir()
         return Case(words, folder, folder / "out")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from hostile.spoiling import damaged, respelled, spoiled
+from unit.importing.saf_frame import frame
 
 Given, Judged = Callable[..., Any], Callable[[Any], Any]
 #: cases of a test, and how many tests there are at full length
@@ -137,6 +138,8 @@ SCRIPTS: tuple[tuple[str, str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("frame.s2k", TABLES, TABLE_LINES, ()),
     ("drawing.dxf", "", ("0", "LINE", "10", "  0\nLINE\n 10\n1e300"), BARS),
     ("book.xlsx", "", (), ()),
+    ("saf.xlsx", "", (), ()),
+    ("tables", "", (), ()),
 )
 
 
@@ -159,6 +162,11 @@ def book(sheets: dict[str, Any]) -> bytes:
     return content.getvalue()
 
 
+def comma_separated(rows: list[list[Any]]) -> str:
+    """Rows as text; no cell of them has a comma."""
+    return "\n".join(",".join("" if one is None else str(one) for one in row) for row in rows)
+
+
 def drawing() -> bytes:
     """A triangle."""
     ezdxf = pytest.importorskip("ezdxf")
@@ -176,14 +184,23 @@ def drawn(number: int) -> tuple[tuple[str, ...], dict[str, bytes]]:
     """The command line of a case, and the file that it is spoiled by."""
     draw = np.random.default_rng(number)
     name, text, lines, options = SCRIPTS[draw.integers(len(SCRIPTS))]
-    given = drawing().decode() if name == "drawing.dxf" else text
-    if name == "book.xlsx":
-        content = book(spoiled(BOOK, draw))
+    words = ("import", f"{{}}/{name}", "-o", "{}/out/model.json", *options)
+    if name == "tables":
+        tables = {f"tables/{sheet}.csv": comma_separated(rows) for sheet, rows in BOOK.items()}
+        spoilt = list(tables)[draw.integers(len(tables))]
+        text = respelled(tables[spoilt], draw, ("", '"', ",,", "a,b"))
+        return words, {
+            one: text.encode("utf-8", "surrogatepass") if one == spoilt else whole.encode()
+            for one, whole in tables.items()
+        }
+    if name.endswith(".xlsx"):
+        content = book(spoiled(BOOK if name == "book.xlsx" else frame(), draw))
     else:
+        given = drawing().decode() if name == "drawing.dxf" else text
         content = respelled(given, draw, lines).encode("utf-8", "surrogatepass")
     if draw.random() < 0.15:
         content = damaged(content, draw)
-    return ("import", f"{{}}/{name}", "-o", "{}/out/model.json", *options), {name: content}
+    return words, {name: content}
 
 
 def test_some_spoiled_models(judged_all: Callable[..., None]) -> None:

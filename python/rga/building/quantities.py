@@ -34,6 +34,10 @@ _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?[\d.]+,\d")
 #: a digit right behind a letter is a power (mm2), and Nm is no unit of yarn but N m
 _POWER = re.compile(r"(?<=[A-Za-z])(?=[2-4]\b)")
+#: letters that may have a power of a digit, products and quotients
+_UNIT = re.compile(
+    r"(?:[^\W\d](?:\d|[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]{1,2}|\s*(?:\*\*|\^)\s*[+-]?\d)?|[°%'\"\s()*/·]|1(?!\d))*"
+)
 _MOMENT = re.compile(r"\b([kMG]?N)m\b")
 
 
@@ -146,7 +150,18 @@ def _converted(value: WithUnit, unit: str, where: str, shown: str) -> float:
 
 
 def _unit(text: str) -> Any:
+    if not may_be_unit(text):
+        raise ValueError(text)
     return _registry().parse_units(_as_pint_writes(text))
+
+
+def may_be_unit(text: str) -> bool:
+    """Whether a text is written as units are: pint reckons whatever else is in it, without end.
+
+    >>> may_be_unit("kg/m3"), may_be_unit("m**-2"), may_be_unit("9**9**9"), may_be_unit("m/0")
+    (True, True, False, False)
+    """
+    return len(text) <= LONGEST and _UNIT.fullmatch(text) is not None
 
 
 def _as_pint_writes(unit: str) -> str:

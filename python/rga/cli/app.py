@@ -83,6 +83,10 @@ def run_command(arguments: Sequence[str]) -> None:
     except (InputError, MissingPackageError, ReportError) as error:
         typer.echo(f"error: {_words(error)}", err=True)
         sys.exit(1 if isinstance(error, ReportError) else 2)
+    except MemoryError:
+        remedy = "give fewer rows or channels, or take a machine with more"
+        typer.echo(f"error: there is not enough memory: {remedy}", err=True)
+        sys.exit(2)
     except OSError as error:
         # What the system refuses: a name that is too long, an output that takes no more.
         reason, where = (error.strerror or "refused").lower(), error.filename

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from rga.building.quantities import may_be_unit
 from rga.errors import InputError
 
 #: newtons, and metres, in units as programs and people name them
@@ -122,15 +123,15 @@ def to_si(unit: str, si: str, where: str) -> float:
 
 @cache
 def _factor(unit: str, si: str) -> float | None:
-    import pint
-
+    if not may_be_unit(unit):
+        return None
     text = re.sub(r"\bkips\b", "kip", _powers(RUN_TOGETHER.sub(r"\1*\2", unit)))
     for candidate in (text, re.sub(r"\blbs?\b", "lbf", text)):
         try:
             found = _registry().parse_units(candidate) if candidate != "1" else None
             one: Any = _registry().Quantity(1.0, found)
             return float(f"{one.to(_powers(si)).magnitude:.15g}")
-        except (pint.errors.PintError, ValueError, TypeError, AttributeError, SyntaxError):
+        except Exception:  # pint says in many ways that it knows no such unit
             continue
     return None
 

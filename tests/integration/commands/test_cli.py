@@ -37,6 +37,18 @@ def test_help_and_version(rga: Rga) -> None:
     assert rga("--version").out.startswith("rga 0.")
 
 
+def test_where_memory_ends_a_line_says_so(
+    rga: Rga, model_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("rga.checking.check", full)
+    done = rga("check", model_file)
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "not enough memory" in done.err
+
+
 def test_unknown_option_is_bad_input(rga: Rga, model_file: Path) -> None:
     assert rga("whatif", model_file, "--speed", "3").code == 2
 

@@ -33,10 +33,14 @@ def test_a_repository_that_is_lost_is_told_of(sound: Given, taken_in: Callable[.
     assert not (place / "twin.sqlite").exists()
 
 
-def test_an_inbox_that_is_lost_is_told_of(sound: Given, taken_in: Callable[..., Path]) -> None:
+def test_an_inbox_that_is_lost_is_told_of(
+    sound: Given, taken_in: Callable[..., Path], rga: Callable[..., Any]
+) -> None:
     place = taken_in(sound, 50)
+    assert "inbox" not in rga("replay", place, "--check").out
     for file in place.glob("inbox.sqlite*"):
         file.unlink()
+    assert "inbox.sqlite is not there" in rga("replay", place, "--check").out
     with package.live(sound[0], place, settings=SETTINGS) as twin:
         with pytest.raises(InputError, match="not those that the twin began with"):
             twin.feed(sound[1].rows(slice(50, 100)))

@@ -99,6 +99,17 @@ def test_an_answer_is_right_or_one_line_says_what_is_damaged(
     assert seen > 2
 
 
+def test_words_of_the_database_that_are_no_text(ended: Ended, rga: Rga, tmp_path: Path) -> None:
+    content = (ended.directory / "twin.sqlite").read_bytes()
+    broken = content.replace(b"CREATE TABLE gap", b"CREATE TABL\xf2 gap")
+    assert broken != content
+    (tmp_path / "twin.sqlite").write_bytes(broken)
+    for words in (("replay", "--check"), *COMMANDS.values()):
+        code, _, err = asked(rga, words, tmp_path)
+        assert (code, err.count("\n")) == (2, 1), err
+    assert [file.name for file in tmp_path.iterdir()] == ["twin.sqlite"]
+
+
 def test_a_repository_that_was_tampered_with_is_reported(directory: Path, tmp_path: Path) -> None:
     """Also where whoever did it knows of checksums: the log has hashes of what was answered."""
     shutil.copytree(directory, tmp_path, dirs_exist_ok=True)

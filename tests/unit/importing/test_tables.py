@@ -108,6 +108,12 @@ class TestTables:
             ("nodes", "name,x [kg],z [m]\nA,0,0\n", "'kg' is no unit that becomes m"),
             (
                 "nodes",
+                "name,x [9**9**9],z [m]\nA,0,0\n",
+                r"'9\*\*9\*\*9' is no unit that becomes m",
+            ),
+            ("nodes", "name,x [m/0],z [m]\nA,0,0\n", "'m/0' is no unit that becomes m"),
+            (
+                "nodes",
                 "name,x [m],z [m]\nA,0,none\n",
                 r"'z' is 'none', no number \(nodes.csv, row 2 \(A\)\)",
             ),

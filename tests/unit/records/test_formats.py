@@ -156,6 +156,32 @@ def test_tdms_groups_of_two_rates(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ([{"S1": 5, "S2": 5}, {"S1": 5, "S2": 5}], None),
+        ([{"S1": 5, "S2": 5}, {"S1": 5}, {"S1": 5, "S2": 10}], "part 2 of .* 0 rows of 'S2' and 5"),
+        ([{"S1": 5, "wf_start_time": np.datetime64("2024-03-01")}, {"S1": 5}], "other starts"),
+        ([{"S1": 5, "wf_increment": 2.0}, {"S1": 5}], "other steps of time"),
+    ],
+)
+def test_tdms_parts_belong_together(parts: Any, said: str | None, tmp_path: Path) -> None:
+    times = {"wf_start_time": np.datetime64("2024-02-01T10:00:00"), "wf_increment": 0.5}
+    with TdmsWriter(tmp_path / "w.tdms") as writer:
+        for part in parts:
+            own = {name: part.get(name, value) for name, value in times.items()}
+            writer.write_segment(
+                ChannelObject("g", name, np.arange(float(rows)), own)
+                for name, rows in part.items()
+                if name not in times
+            )
+    if said is None:
+        assert len(read_table(tmp_path / "w.tdms").frame) == 10
+    else:
+        with pytest.raises(InputError, match=said):
+            read_table(tmp_path / "w.tdms")
+
+
+@pytest.mark.parametrize(
     ("said", "found"),
     [
         ({"wf_start_time": "noon"}, (0.0, [0, 0.5])),

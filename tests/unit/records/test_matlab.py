@@ -93,13 +93,49 @@ def test_any_changed_byte_is_told_or_changes_what_is_read(place: int, tmp_path: 
         assert table.frame.height <= 4
 
 
-def test_what_unpacks_without_end_is_refused(tmp_path: Path) -> None:
-    matrix = saved({"S1": np.zeros(20_000_000)})[128:]
-    packed = zlib.compress(matrix, 9)
-    data = b"MATLAB 5.0".ljust(124) + b"\x00\x01IM" + struct.pack("<II", 15, len(packed)) + packed
-    (tmp_path / "bomb.mat").write_bytes(data)
-    with pytest.raises(InputError, match=r"more than 67,108,864 bytes"):
-        read_table(tmp_path / "bomb.mat")
+def packed(*variables: bytes) -> bytes:
+    """A file of one packed element."""
+    content = zlib.compress(b"".join(one[128:] for one in variables), 9)
+    head = b"MATLAB 5.0".ljust(124) + b"\x00\x01IM"
+    return head + struct.pack("<II", 15, len(content)) + content
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (packed(saved({"S1": np.zeros(20_000_000)})), "unpacks to far more"),
+        (packed(saved({"S1": np.zeros((60_000, 1000), "u1")})), "far more numbers than its size"),
+        (packed(saved({f"a{k}": 1.0 for k in range(60_000)})), "more than 200,000 parts"),
+        (saved({"S1": 1.0}, form="4") * 200_001, "twice"),
+        (bytes(2_000_000), "a length in it is damaged"),
+        (saved({"S1": [1.0, 2.0]}) + saved({"S1": [3.0, 4.0]})[128:], "'S1' stands twice"),
+    ],
+    ids=["bytes", "numbers", "parts", "variables", "zeros", "names"],
+)
+def test_what_no_measurement_is_is_refused(data: bytes, said: str, tmp_path: Path) -> None:
+    (tmp_path / "r.mat").write_bytes(data)
+    with pytest.raises(InputError, match=said):
+        read_table(tmp_path / "r.mat")
+
+
+def test_all_variables_of_a_packed_element_are_read() -> None:
+    data = packed(saved({"S1": [1.0, 2.0]}), saved({"S2": [3.0, 4.0]}))
+    assert {name: array.tolist() for name, array in arrays_of(data)} == {
+        "S1": [1, 2],
+        "S2": [3, 4],
+    }
+
+
+def test_rates_that_differ_are_no_rate(tmp_path: Path) -> None:
+    values = {"S1": np.arange(3.0), "fs": 50.0}
+    savemat(tmp_path / "r.mat", values | {"camera": {"fs": 50.0}})
+    table = read_table(tmp_path / "r.mat")
+    assert table.time is not None
+    assert table.time.step == 0.02
+    savemat(tmp_path / "r.mat", values | {"camera": {"fs": 25.0}})
+    table = read_table(tmp_path / "r.mat")
+    assert table.time is None
+    assert "fs = 50 and camera.fs = 25 differ" in " ".join(table.notes)
 
 
 def test_day_numbers_are_those_of_all_rows(tmp_path: Path) -> None:

@@ -83,17 +83,22 @@ def _proved(place: str) -> str:
 
     from rga.errors import InputError
     from rga.twin.hardware.inbox import INBOX, Inbox
+    from rga.twin.hardware.interface import LIVE
     from rga.twin.repository import Repository
     from rga.twin.repository.faults import Damaged
     from rga.twin.repository.proof import Proof
 
-    played = _played(place)
+    played, waits = _played(place), Path(place, INBOX).is_file()
+    alone = ""
     try:
         proof = Proof(0, ())
         if played:
             with Repository.open(place, read_only=True) as repository:
                 proof = repository.check()
-        if Path(place, INBOX).is_file():
+                fed = any(run.identity.source.startswith(LIVE) for run in repository.runs())
+            if fed and not waits:
+                alone = f" Its {INBOX} is not there: rows that waited in it are not proved."
+        if waits:
             with closing(Inbox(Path(place), read_only=True)) as inbox:
                 waiting = inbox.check()
             proof = Proof(proof.entries + waiting.entries, (*proof.damage, *waiting.damage))
@@ -101,7 +106,7 @@ def _proved(place: str) -> str:
         proof = Proof(0, (error.what,))
     if not proof.damage:
         what = "repository" if played else "inbox"
-        return f"The {what} is whole: all {proof.entries} entries are what was written."
+        return f"The {what} is whole: all {proof.entries} entries are what was written.{alone}"
     listed, more = "; ".join(proof.damage[:MOST]), len(proof.damage) - MOST
     raise InputError(
         f"it is not whole: {listed}{f'; and {more} more' if more > 0 else ''}",

@@ -111,9 +111,12 @@ def read_catman_binary(data: bytes, path: Path, mapping: FileMapping) -> Table:
         )
     start, more = _start(channels[own[0]], path)
     timed = bool(TIME.fullmatch(names[0]))
-    step = None if timed else 1.0
+    step: float | None = None
+    warnings = []
     if not timed:
-        more.append("no channel is the time: rows are counted, state [time] sampling_rate_hz")
+        step = 1.0
+        what = "no channel is the time: rows are counted as seconds"
+        warnings.append(f"{what}, unless import.toml has [time] sampling_rate_hz")
     return Table(
         path=path,
         frame=pl.DataFrame({channels[k].name: values[k] for k in own}),
@@ -124,6 +127,7 @@ def read_catman_binary(data: bytes, path: Path, mapping: FileMapping) -> Table:
         time=StatedTime(tuple(names[:1]) if timed else (), start=start, step=step),
         bookkeeping=tuple(name for name in names if _HARDWARE_TIME.fullmatch(name)),
         missing=(OVERFLOW,),
+        warnings=tuple(warnings),
         notes=(*notes, *more, f"{OVERFLOW} is catman's overflow: missing"),
     )
 

@@ -46,7 +46,7 @@ def read_matlab(data: bytes, path: Path, mapping: FileMapping) -> Table:
     try:
         for name, value in _channels(data):
             if value.ndim == 0:
-                scalars[name.rsplit(".", 1)[-1]] = float(value)
+                scalars[name] = float(value)
             elif value.ndim == 1 and len(value) > 1:
                 vectors.setdefault(len(value), {})[name] = value
     except ValueError as error:
@@ -100,8 +100,16 @@ def _time(
                 f"{named} is read as MATLAB's day numbers, without a time zone"
             ]  # fmt: skip
         return frame, StatedTime((named,)), [f"{named} is taken as the time in seconds"]
-    found = next((name for name in (*_RATES, *_STEPS) if scalars.get(name, 0) > 0), None)
-    if found is not None:
-        step = 1 / scalars[found] if found in _RATES else scalars[found]
-        return frame, StatedTime(step=step), [f"rows are counted by {found} = {scalars[found]:g}"]
+    for known in (_RATES, _STEPS):
+        found = {
+            name: value
+            for name, value in scalars.items()
+            if name.rsplit(".", 1)[-1] in known and value > 0
+        }
+        said = " and ".join(f"{name} = {value:g}" for name, value in found.items())
+        if len(set(found.values())) > 1:
+            return frame, None, [f"{said} differ: state [time] sampling_rate_hz"]
+        for value in found.values():
+            step = 1 / value if known is _RATES else value
+            return frame, StatedTime(step=step), [f"rows are counted by {said}"]
     return frame, None, ["the file states no time: name it, or state [time] sampling_rate_hz"]

@@ -12,9 +12,11 @@ from typing import Any
 
 import numpy as np
 
-#: bytes that a variable may have once it is unpacked, and how many for each packed one, beyond
-#: which it holds no measurement
-LARGEST_SMALL, MOST_A_BYTE = 64 * 2**20, 100
+#: bytes that variables may have once they are unpacked, and how many for each of the file, beyond
+#: which they hold no measurements; the same of numbers
+LARGEST_SMALL, MOST_A_BYTE, MOST_NUMBERS = 64 * 2**20, 100, 10_000_000
+#: variables, fields and what they are made of, beyond which nobody measured them
+MOST_PARTS = 200_000
 #: structs within structs, beyond which nothing is read
 _DEEPEST = 5
 #: dimensions, beyond which it is no array that MATLAB writes
@@ -51,7 +53,8 @@ def arrays_of(data: bytes) -> Arrays:
         cells and arrays of structs are left out.
 
     Raises:
-        ValueError: the file is damaged, or holds far more than its size lets measurements be.
+        ValueError: the file is damaged, repeats a name, or holds far more than its size lets
+            measurements be.
 
     >>> import io
     >>> from scipy.io import savemat
@@ -60,93 +63,133 @@ def arrays_of(data: bytes) -> Arrays:
     >>> [(name, array.tolist()) for name, array in arrays_of(file.getvalue())]
     [('S1', [1.0, 2.0]), ('about.fs', 50.0)]
     """
-    view = memoryview(data)
+    file = _File(memoryview(data))
+    room = max(MOST_NUMBERS, MOST_A_BYTE * len(data))
+    known: set[str] = set()
     try:
-        yield from _version_4(view) if 0 in data[:4] else _version_5(view)
+        for name, array in file.version_4() if 0 in data[:4] else file.version_5():
+            if name in known:
+                raise ValueError(f"the variable {name!r} stands twice")
+            known.add(name)
+            room -= array.size
+            if room < 0:
+                raise ValueError("it has far more numbers than its size lets measurements be")
+            yield name, array
     except (struct.error, KeyError, zlib.error):
         raise ValueError("its parts do not fit together") from None
 
 
-def _version_5(data: memoryview) -> Arrays:
-    order = _ORDERS.get(bytes(data[126:128]))
-    if order is None:
-        raise ValueError("its head does not say how its numbers are written")
-    room = max(LARGEST_SMALL, MOST_A_BYTE * len(data))
-    for kind, content in _elements(data[128:], order):
-        if kind == _PACKED:
-            content = _unpacked(content, room)
-            room -= len(content)
-            kind, content = _following(_elements(content, order))
-        if kind != _MATRIX:
-            raise ValueError("what stands in it is no variable")
-        yield from _matrix(content, order, None, 1)
+class _File:
+    """The bytes of a file, and how many parts of it have been read."""
+
+    def __init__(self, data: memoryview) -> None:
+        self.data = data
+        self.room = max(LARGEST_SMALL, MOST_A_BYTE * len(data))
+        self.parts = 0
+
+    def count(self) -> None:
+        self.parts += 1
+        if self.parts > MOST_PARTS:
+            raise ValueError(f"it has more than {MOST_PARTS:,} parts")
+
+    def version_5(self) -> Arrays:
+        order = _ORDERS.get(bytes(self.data[126:128]))
+        if order is None:
+            raise ValueError("its head does not say how its numbers are written")
+        for kind, content in self.elements(self.data[128:], order):
+            inner = iter([(kind, content)])
+            if kind == _PACKED:
+                inner = self.elements(self.unpacked(content), order)
+            for what, variable in inner:
+                if what != _MATRIX:
+                    raise ValueError("what stands in it is no variable")
+                yield from self.matrix(variable, order, None, 1)
+
+    def elements(self, data: memoryview, order: str) -> Elements:
+        """Types and contents of elements, one after the other."""
+        place = 0
+        while place < len(data):
+            self.count()
+            kind, length = struct.unpack_from(f"{order}II", data, place)
+            begin, end = place + 8, len(data)
+            if kind >> 16:  # four bytes or less stand where the length does
+                kind, length = kind & 0xFFFF, kind >> 16
+                begin, end = place + 4, place + 8
+            if begin + length > end:
+                raise ValueError("it is cut off, or a length in it is damaged")
+            yield kind, data[begin : begin + length]
+            padding = 0 if kind == _PACKED else (place - begin - length) % 8
+            place = begin + length + padding
+
+    def unpacked(self, content: memoryview) -> memoryview:
+        unpacking = zlib.decompressobj()
+        unpacked = unpacking.decompress(content, self.room + 1)
+        self.room -= len(unpacked)
+        if self.room < 0:
+            raise ValueError("it unpacks to far more than its size lets measurements be")
+        if not unpacking.eof:
+            raise ValueError("it is cut off")
+        return memoryview(unpacked)
+
+    def matrix(self, content: memoryview, order: str, called: str | None, depth: int) -> Arrays:
+        """Arrays of a matrix, or of the fields of a struct.
+
+        Args:
+            content: its elements.
+            order: of its bytes.
+            called: its name; None: that which stands in it.
+            depth: of structs.
+        """
+        elements = self.elements(content, order)
+        (flags,) = struct.unpack_from(f"{order}I", _following(elements))
+        shape = np.frombuffer(_following(elements), f"{order}i4").tolist()
+        own = _text(_following(elements))
+        name = own if called is None else called
+        if not name:
+            return  # MATLAB keeps functions in it
+        if len(shape) > _MOST_DIMENSIONS or min(shape, default=-1) < 0:
+            raise ValueError(f"the shape of {name!r} is damaged")
+        kind = flags & 0xFF
+        if kind == _STRUCT and prod(shape) == 1 and depth <= _DEEPEST:
+            (length,) = struct.unpack_from(f"{order}i", _following(elements))
+            if length < 1:
+                raise ValueError(f"the fields of {name!r} are damaged")
+            fields = _following(elements)
+            for begin in range(0, len(fields), length):
+                inner = _following(elements)
+                if inner:
+                    field = _text(fields[begin : begin + length])
+                    yield from self.matrix(inner, order, f"{name}.{field}", depth + 1)
+        elif kind in _NUMBERS and not flags & _COMPLEX:
+            for stored, numbers in elements:
+                yield name, _shaped(numbers, f"{order}{_TYPES[stored]}", shape)
+                return
+            raise ValueError(f"the numbers of {name!r} are missing")
+
+    def version_4(self) -> Arrays:
+        data, place = self.data, 0
+        while place < len(data):
+            self.count()
+            little = int.from_bytes(data[place : place + 4], "little")
+            order = "<" if little < _OLD_HEADS else ">"
+            said, rows, columns, complex_, length = struct.unpack_from(f"{order}5i", data, place)
+            order, kind = _OLD_ORDERS[said // 1000], _OLD_TYPES[said // 10 % 10]
+            begin = place + 20 + length
+            size = rows * columns * np.dtype(kind).itemsize
+            # A name ends in a zero.
+            if min(rows, columns) < 0 or length < 2 or begin + size > len(data):
+                raise ValueError("it is cut off, or a length in it is damaged")
+            if said % 10 == _FULL and not complex_:
+                name, numbers = _text(data[begin - length : begin]), data[begin : begin + size]
+                yield name, _shaped(numbers, f"{order}{kind}", [rows, columns])
+            place = begin + size * (2 if complex_ else 1)
 
 
-def _elements(data: memoryview, order: str) -> Elements:
-    """Types and contents of elements, one after the other."""
-    place = 0
-    while place < len(data):
-        kind, length = struct.unpack_from(f"{order}II", data, place)
-        begin, end = place + 8, len(data)
-        if kind >> 16:  # four bytes or less stand where the length does
-            kind, length = kind & 0xFFFF, kind >> 16
-            begin, end = place + 4, place + 8
-        if begin + length > end:
-            raise ValueError("it is cut off, or a length in it is damaged")
-        yield kind, data[begin : begin + length]
-        padding = 0 if kind == _PACKED else (place - begin - length) % 8
-        place = begin + length + padding
-
-
-def _following(elements: Elements) -> tuple[int, memoryview]:
-    """The next element, of those that there have to be."""
-    for element in elements:
-        return element
+def _following(elements: Elements) -> memoryview:
+    """What is in the next element, of those that there have to be."""
+    for _, content in elements:
+        return content
     raise ValueError("it is cut off")
-
-
-def _unpacked(content: memoryview, room: int) -> memoryview:
-    unpacking = zlib.decompressobj()
-    unpacked = unpacking.decompress(content, room + 1)
-    if len(unpacked) > room:
-        raise ValueError(f"its variables have more than {room:,} bytes when they are unpacked")
-    if not unpacking.eof:
-        raise ValueError("it is cut off")
-    return memoryview(unpacked)
-
-
-def _matrix(content: memoryview, order: str, called: str | None, depth: int) -> Arrays:
-    """Arrays of a matrix, or of the fields of a struct.
-
-    Args:
-        content: its elements.
-        order: of its bytes.
-        called: its name; None: that which stands in it.
-        depth: of structs.
-    """
-    elements = _elements(content, order)
-    (flags,) = struct.unpack_from(f"{order}I", _following(elements)[1])
-    shape = np.frombuffer(_following(elements)[1], f"{order}i4").tolist()
-    own = _text(_following(elements)[1])
-    name = own if called is None else called
-    if not name:
-        return  # MATLAB keeps functions in it
-    if len(shape) > _MOST_DIMENSIONS or min(shape, default=-1) < 0:
-        raise ValueError(f"the shape of {name!r} is damaged")
-    kind = flags & 0xFF
-    if kind == _STRUCT and prod(shape) == 1 and depth <= _DEEPEST:
-        (length,) = struct.unpack_from(f"{order}i", _following(elements)[1])
-        if length < 1:
-            raise ValueError(f"the fields of {name!r} are damaged")
-        fields = _following(elements)[1]
-        for begin in range(0, len(fields), length):
-            inner = _following(elements)[1]
-            if inner:
-                field = _text(fields[begin : begin + length])
-                yield from _matrix(inner, order, f"{name}.{field}", depth + 1)
-    elif kind in _NUMBERS and not flags & _COMPLEX:
-        stored, numbers = _following(elements)
-        yield name, _shaped(numbers, f"{order}{_TYPES[stored]}", shape)
 
 
 def _text(content: memoryview) -> str:
@@ -155,23 +198,3 @@ def _text(content: memoryview) -> str:
 
 def _shaped(numbers: memoryview, kind: str, shape: list[int]) -> np.ndarray[Any, Any]:
     return np.frombuffer(numbers, kind).reshape(shape, order="F").squeeze()
-
-
-def _version_4(data: memoryview) -> Arrays:
-    place = 0
-    while place < len(data):
-        little = int.from_bytes(data[place : place + 4], "little")
-        order = "<" if little < _OLD_HEADS else ">"
-        said, rows, columns, complex_, length = struct.unpack_from(f"{order}5i", data, place)
-        order, kind = _OLD_ORDERS[said // 1000], _OLD_TYPES[said // 10 % 10]
-        begin = place + 20 + length
-        size = rows * columns * np.dtype(kind).itemsize
-        if min(rows, columns, length) < 0 or begin + size > len(data):
-            raise ValueError("it is cut off, or a length in it is damaged")
-        if said % 10 == _FULL and not complex_:
-            numbers = data[begin : begin + size]
-            yield (
-                _text(data[begin - length : begin]),
-                _shaped(numbers, f"{order}{kind}", [rows, columns]),
-            )
-        place = begin + size * (2 if complex_ else 1)

@@ -14,6 +14,7 @@ import polars as pl
 from rga.errors import InputError
 from rga.lazy import needing_extras
 from rga.records.formats.blocks import chosen_block
+from rga.records.formats.tdms_parts import check_parts, check_restarts, rows_of_parts
 from rga.records.mapping import FileMapping
 from rga.records.table import StatedTime, Table
 from rga.records.times.named import time_of
@@ -31,7 +32,8 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
     """Read a TDMS file: the first channels of one length and start, unless `block` is stated.
 
     Raises:
-        InputError: it is damaged, or has no channel with numbers.
+        InputError: it is damaged, has no channel with numbers, or was written in parts whose
+            rows do not belong together.
         MissingPackageError: npTDMS is not installed.
     """
     with needing_extras():
@@ -41,9 +43,10 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
     try:
         with _listening(heard):
             file = TdmsFile.read(BytesIO(data))
-            channels = [channel for group in file.groups() for channel in group.channels()]
-            channels = [channel for channel in channels if len(channel)]
+            known = [channel for group in file.groups() for channel in group.channels()]
+            channels = [channel for channel in known if len(channel)]
             values = {channel.path: np.asarray(channel[:]) for channel in channels}
+            parts = rows_of_parts(data) if data.count(MARK) > 1 else []
     except MemoryError:
         raise
     except Exception as error:  # npTDMS says what is damaged in many ways
@@ -61,6 +64,8 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
         raise InputError("no channel with numbers is in the file", str(path), "give another file")
     said = [f"{len(one)} channels of {len(one[0])} rows" for one in blocks.values()]
     chosen, notes = chosen_block(list(blocks.values()), said, mapping.block, path)
+    check_parts(parts, chosen, path)
+    check_restarts(data, known, path)
     plain = Counter(channel.name for channel in chosen)
     names = {
         channel.path: channel.name

@@ -22,6 +22,8 @@ from rga.model.schema import Model
 from rga.quantities import duration, scale, short
 
 COLUMNS, MEANS = 3, 8
+#: letters of a name above a panel
+TITLE = 10
 
 
 def draw_contrast(one: Contrast, model: Model, smooth: bool, name: str) -> Markup:
@@ -44,7 +46,9 @@ def draw_contrast(one: Contrast, model: Model, smooth: bool, name: str) -> Marku
             measured, predicted = one.measured[:, place], one.predicted[:, place]
             largest = float(np.nanmax(np.abs([*measured, *predicted, 0.0])))
             factor, unit = scale(model.sensors[channel].unit, largest)
-            axes.set_title(f"{label(channel)}: {short(one.size[place], 2)} times its noise apart")
+            axes.set_title(
+                f"{label(channel, TITLE)}: {short(one.size[place], 2)} times its noise apart"
+            )
             if smooth:
                 _over_time(axes, one.time, measured * factor, predicted * factor, unit)
             else:

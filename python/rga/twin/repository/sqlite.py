@@ -80,7 +80,9 @@ class SQLite:
         self.engine.dispose()
         if self.read_only and not self._begun_by_another and self._log.exists():
             # SQLite removes its own files with the last connection, unless that only reads.
-            with suppress(sqlite3.Error), closing(self._opened("mode=rw")) as connection:
+            # Of what is damaged, SQLite tells in words that may not be text.
+            told = (sqlite3.Error, UnicodeDecodeError)
+            with suppress(*told), closing(self._opened("mode=rw")) as connection:
                 connection.execute("SELECT * FROM sqlite_master")
 
     def _set_up(self, connection: sqlite3.Connection) -> None:
