@@ -12,8 +12,8 @@ from hostile.spoiling import damaged, dumped, spoiled, toml
 
 #: model and record of a folder
 MODEL, RECORD = "{}/model.json", "{}/record.csv"
-#: cases of a test, and how many tests there are at full length
-CASES, TESTS = 60, 80
+#: cases in every run; and cases of a test, and how many tests there are, at full length
+FEW, CASES, TESTS = 20, 60, 80
 
 SETTINGS: dict[str, Any] = {
     "calibration_rows": 20, "packet": 10, "settle": 10, "detector": "window", "window": 30,
@@ -123,7 +123,7 @@ def drawn(number: int, sound: Path) -> tuple[tuple[str, ...], dict[str, bytes]]:
 
 
 def test_some_spoiled_files(sound: Path, judged_all: Callable[..., None]) -> None:
-    judged_all(range(CASES), lambda number: drawn(number, sound))
+    judged_all(range(FEW), lambda number: drawn(number, sound))
 
 
 @pytest.mark.thorough

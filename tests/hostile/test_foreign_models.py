@@ -12,8 +12,8 @@ from hostile.spoiling import damaged, respelled, spoiled
 from unit.importing.saf_frame import frame
 
 Given, Judged = Callable[..., Any], Callable[[Any], Any]
-#: cases of a test, and how many tests there are at full length
-CASES, TESTS = 60, 10
+#: cases in every run; and cases of a test, and how many tests there are, at full length
+FEW, CASES, TESTS = 20, 60, 10
 TCL = """model basic -ndm 2 -ndf 2
 set k 1.5
 proc bar {tag i j} { element truss $tag $i $j 10 1 }
@@ -204,7 +204,7 @@ def drawn(number: int) -> tuple[tuple[str, ...], dict[str, bytes]]:
 
 
 def test_some_spoiled_models(judged_all: Callable[..., None]) -> None:
-    judged_all(range(CASES), drawn)
+    judged_all(range(FEW), drawn)
 
 
 @pytest.mark.thorough

@@ -1,10 +1,15 @@
 """Ctrl-C, and the signal by which a system ends a process, as an error that cleans up."""
 
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import current_thread, main_thread
 from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
 
 #: signals that end a command, in words
 ENDING = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
@@ -56,9 +61,15 @@ def stopping(to_the_end: bool = False) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, AGAIN, AGAIN)
         raise Stopped(number)
 
+    def untold(passed_over: "UnraisableHookArgs") -> None:
+        # Where Python passes an error over, the signal comes again: there is nothing to tell.
+        if not isinstance(passed_over.exc_value, Stopped):
+            told(passed_over)
+
     def again(_number: int, _frame: FrameType | None) -> None:
         raise Stopped(came[0])
 
+    told, sys.unraisablehook = sys.unraisablehook, untold
     before = {number: signal.signal(number, stop) for number in ENDING}
     try:
         yield
@@ -68,6 +79,7 @@ def stopping(to_the_end: bool = False) -> Iterator[None]:
         # Libraries in C, as they begin, make another error of it.
         raise Stopped(came[0]) from error
     finally:
+        sys.unraisablehook = told
         if came and hasattr(signal, "setitimer"):
             signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before.items():

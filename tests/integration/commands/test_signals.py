@@ -94,3 +94,33 @@ def test_what_a_library_swallowed_comes_again(monkeypatch: pytest.MonkeyPatch) -
             pass
     assert stopped.value.code == 143
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+def test_a_signal_where_python_passes_errors_over_comes_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Ended:
+        def __init__(self, error: type[BaseException] | None) -> None:
+            self.error = error
+
+        def __del__(self) -> None:
+            if self.error is not None:
+                raise self.error
+            signal.raise_signal(signal.SIGTERM)
+
+    told: list[type[BaseException]] = []
+    monkeypatch.setattr("sys.unraisablehook", lambda one: told.append(one.exc_type))
+    monkeypatch.setattr("rga.cli.signals.AGAIN", 0.2)
+    reached = False
+
+    def passed_over() -> None:
+        nonlocal reached
+        Ended(ValueError)
+        Ended(None)
+        reached = True
+        time.sleep(10)
+
+    with pytest.raises(Stopped), stopping():
+        passed_over()
+    assert reached
+    assert told == [ValueError]

@@ -29,7 +29,7 @@ def commands(small_stream: Callable[..., Path], bridges: Path) -> dict[str, list
     settings = ("--settings", stream / "settings.json", "-o", "out")
     return {
         "run": ["run", model, stream / "record.csv", *settings],
-        "dataset": ["dataset", model, "-n", "1000000", "-o", "out.parquet", "--workers", "2"],
+        "dataset": ["dataset", model, "-n", "400000", "-o", "out.parquet", "--workers", "2"],
         "diagnose-many": ["diagnose-many", bridges, "-o", "out", "--workers", "2"],
     }
 
