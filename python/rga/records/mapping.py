@@ -51,7 +51,8 @@ class TimeColumns(_Table):
             spreadsheet, `unix`, `unix_ms`, `unix_us` or `unix_ns` for time since 1970, `seconds`
             for seconds of any size; None: ISO 8601, seconds, or what the file itself tells beyond
             doubt.
-        sampling_rate_hz: counts time by rows instead, from the first stamp on.
+        sampling_rate_hz: counts time by rows instead, from the first stamp on; a file without a
+            time needs nothing else.
         zone: of stamps without one: a name such as "Europe/Berlin", or "+01:00".
     """
 

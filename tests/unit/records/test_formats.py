@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nptdms import ChannelObject, TdmsWriter
+from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from scipy.io import savemat
 
 from hostile.logger_files import catman_binary
@@ -94,6 +94,15 @@ def test_catman_numbers_of_every_width(width: int, tmp_path: Path) -> None:
     assert begin(table(tmp_path / "r.bin", data, block=2))[1] == slow
 
 
+@pytest.mark.parametrize("timed", [False, True])
+def test_catman_without_a_time_counts_seconds_and_says_so(timed: bool, tmp_path: Path) -> None:
+    time = [("Time  1 - default sample rate", "s", 8, [0.0, 0.5, 1.0])]
+    data = catman_binary([*time * timed, ("MS1", "µm/m", 8, [1.0, 2.0, 3.0])])
+    found = table(tmp_path / "r.bin", data)
+    assert begin(found)[1] == ([0, 0.5, 1] if timed else [0, 1, 2])
+    assert ("no channel is the time" in " ".join(found.warnings)) != timed
+
+
 LVM = (
     "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\t{x}\n"
     "***End_of_Header***\t\n\n"
@@ -159,7 +168,7 @@ def test_tdms_groups_of_two_rates(tmp_path: Path) -> None:
     ("parts", "said"),
     [
         ([{"S1": 5, "S2": 5}, {"S1": 5, "S2": 5}], None),
-        ([{"S1": 5, "S2": 5}, {"S1": 5}, {"S1": 5, "S2": 10}], "part 2 of .* 0 rows of 'S2' and 5"),
+        ([{"S1": 5, "S2": 5}, {"S1": 5}, {"S1": 5, "S2": 10}], "part 2 of .* 0 rows of 'g/S2' and 5"),
         ([{"S1": 5, "wf_start_time": np.datetime64("2024-03-01")}, {"S1": 5}], "other starts"),
         ([{"S1": 5, "wf_increment": 2.0}, {"S1": 5}], "other steps of time"),
     ],
@@ -181,6 +190,29 @@ def test_tdms_parts_belong_together(parts: Any, said: str | None, tmp_path: Path
             read_table(tmp_path / "w.tdms")
 
 
+@pytest.mark.parametrize("late", [False, True])
+def test_tdms_channels_of_one_name_are_counted_by_their_groups(late: bool, tmp_path: Path) -> None:
+    with TdmsWriter(tmp_path / "w.tdms") as writer:
+        for rows in ([("a", 5), ("b", 0 if late else 5)], [("a", 5), ("b", 10 if late else 5)]):
+            writer.write_segment(
+                [ChannelObject(group, "S1", np.arange(float(count))) for group, count in rows]
+            )
+    if late:
+        with pytest.raises(InputError, match="part 1 of the file has 0 rows of 'b/S1' and 5"):
+            read_table(tmp_path / "w.tdms")
+    else:
+        assert read_table(tmp_path / "w.tdms").frame.columns == ["a/S1", "b/S1"]
+
+
+def test_tdms_groups_and_the_file_may_state_times_of_their_own(tmp_path: Path) -> None:
+    begins = [{"wf_start_time": np.datetime64(f"2024-0{k}-01T10:00:00")} for k in (1, 2, 3)]
+    channel = ChannelObject("g", "S1", np.arange(4.0), begins[2] | {"wf_increment": 0.5})
+    with TdmsWriter(tmp_path / "w.tdms") as writer:
+        writer.write_segment([RootObject(begins[0]), GroupObject("g", begins[1]), channel])
+    found = read_table(tmp_path / "w.tdms")
+    assert begin(found) == ("2024-03-01T10:00:00+00:00", [0, 0.5, 1, 1.5])
+
+
 @pytest.mark.parametrize(
     ("said", "found"),
     [
@@ -188,6 +220,9 @@ def test_tdms_parts_belong_together(parts: Any, said: str | None, tmp_path: Path
         ({"wf_start_offset": float("nan")}, (0.0, [0, 0.5])),
         ({"wf_increment": "x"}, "nan s lie between its rows"),
         ({"wf_increment": -1.0}, "-1 s lie between its rows"),
+        ({"wf_increment": 0.0}, "there is no time column 'time'"),
+        ({"wf_increment": 1e-12}, "1e-12 s lie between its rows"),
+        ({"wf_increment": 5e-7}, ("2024-02-01T10:00:00+00:00", [0, 5e-7])),
         ({"wf_increment": float("inf")}, "inf s lie between its rows"),
     ],
 )
@@ -202,7 +237,7 @@ def test_tdms_times_that_are_none(said: dict[str, Any], found: Any, tmp_path: Pa
         assert read_clock(read, TimeColumns(sampling_rate_hz=4)).seconds.tolist() == [0, 0.25]
     else:
         assert begin(read) == found
-        assert "cannot be read" in " ".join(read.notes)
+        assert ("cannot be read" in " ".join(read.notes)) == (found[0] == 0.0)
 
 
 def test_matlab_variables_are_channels(tmp_path: Path) -> None:
@@ -234,8 +269,11 @@ def test_line_protocol_with_escapes_types_and_precisions(tmp_path: Path) -> None
     assert found.numbers("bridge a b n").tolist() == [3, 4]
     np.testing.assert_array_equal(found.numbers("wind c v"), [np.nan, 9])
     assert found.names["wind c v"] == "v"
+    assert found.names["bridge a b S1"] == "S1"
     assert begin(found) == ("2024-02-01T00:00:00+00:00", [0, 1])
     assert "times are taken as ms" in " ".join(found.notes)
+    shared = table(tmp_path / "r.lp", "a,n=1 S1=1,T=9 1706745600\na,n=2 S1=2 1706745600\n")
+    assert shared.names == {"1 T": "T"}
     with pytest.raises(InputError, match=r"has no time.*line 2"):
         table(tmp_path / "r.lp", "a,n=1 S1=1 1706745600\na,n=1 S1=1\n")
     with pytest.raises(InputError, match="has two values"):

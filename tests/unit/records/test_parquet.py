@@ -8,7 +8,7 @@ import polars as pl
 import pytest
 
 from rga.errors import InputError
-from rga.records.formats import parquet
+from rga.records.formats import bounds
 from rga.records.frames import table_of_frame
 from rga.records.read import read_table
 
@@ -70,7 +70,7 @@ def test_categories_are_texts(frame: pl.DataFrame, tmp_path: Path) -> None:
 def test_more_values_than_measurements_compress_to(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(parquet, "MOST_VALUES", 100_000)
+    monkeypatch.setattr(bounds, "MOST_VALUES", 100_000)
     draw = np.random.default_rng(1)
     for name, values in (("zeros", np.zeros(600_000)), ("noise", draw.normal(size=600_000))):
         pl.DataFrame({"D1": values}).write_parquet(tmp_path / f"{name}.parquet")

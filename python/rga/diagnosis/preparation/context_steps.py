@@ -23,6 +23,8 @@ def step_of(values: FloatArray) -> float:
 
     >>> step_of(np.array([5.0, 15.0, np.nan, 10.0, 25.0])), step_of(np.array([1.0, 1.3, 2.718]))
     (5.0, 0.0)
+    >>> step_of(np.array([0.0, 1e-300, 1e300]))
+    0.0
     """
     levels = np.unique(values[np.isfinite(values)])
     if len(levels) < FEWEST:

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-#: bytes that variables may have once they are unpacked, and how many for each of the file, beyond
-#: which they hold no measurements; the same of numbers
-LARGEST_SMALL, MOST_A_BYTE, MOST_NUMBERS = 64 * 2**20, 100, 10_000_000
+from rga.records.formats.bounds import MOST_A_BYTE, most_values
+
+#: bytes that the variables of any file may have once they are unpacked
+LARGEST_SMALL = 64 * 2**20
 #: variables, fields and what they are made of, beyond which nobody measured them
 MOST_PARTS = 200_000
 #: structs within structs, beyond which nothing is read
@@ -64,7 +65,7 @@ def arrays_of(data: bytes) -> Arrays:
     [('S1', [1.0, 2.0]), ('about.fs', 50.0)]
     """
     file = _File(memoryview(data))
-    room = max(MOST_NUMBERS, MOST_A_BYTE * len(data))
+    room = most_values(len(data))
     known: set[str] = set()
     try:
         for name, array in file.version_4() if 0 in data[:4] else file.version_5():
@@ -141,9 +142,9 @@ class _File:
             depth: of structs.
         """
         elements = self.elements(content, order)
-        (flags,) = struct.unpack_from(f"{order}I", _following(elements))
-        shape = np.frombuffer(_following(elements), f"{order}i4").tolist()
-        own = _text(_following(elements))
+        (flags,) = struct.unpack_from(f"{order}I", _following(elements)[1])
+        shape = np.frombuffer(_following(elements)[1], f"{order}i4").tolist()
+        own = _text(_following(elements)[1])
         name = own if called is None else called
         if not name:
             return  # MATLAB keeps functions in it
@@ -151,20 +152,18 @@ class _File:
             raise ValueError(f"the shape of {name!r} is damaged")
         kind = flags & 0xFF
         if kind == _STRUCT and prod(shape) == 1 and depth <= _DEEPEST:
-            (length,) = struct.unpack_from(f"{order}i", _following(elements))
+            (length,) = struct.unpack_from(f"{order}i", _following(elements)[1])
             if length < 1:
                 raise ValueError(f"the fields of {name!r} are damaged")
-            fields = _following(elements)
+            fields = _following(elements)[1]
             for begin in range(0, len(fields), length):
-                inner = _following(elements)
+                inner = _following(elements)[1]
                 if inner:
                     field = _text(fields[begin : begin + length])
                     yield from self.matrix(inner, order, f"{name}.{field}", depth + 1)
         elif kind in _NUMBERS and not flags & _COMPLEX:
-            for stored, numbers in elements:
-                yield name, _shaped(numbers, f"{order}{_TYPES[stored]}", shape)
-                return
-            raise ValueError(f"the numbers of {name!r} are missing")
+            stored, numbers = _following(elements)
+            yield name, _shaped(numbers, f"{order}{_TYPES[stored]}", shape)
 
     def version_4(self) -> Arrays:
         data, place = self.data, 0
@@ -185,10 +184,10 @@ class _File:
             place = begin + size * (2 if complex_ else 1)
 
 
-def _following(elements: Elements) -> memoryview:
-    """What is in the next element, of those that there have to be."""
-    for _, content in elements:
-        return content
+def _following(elements: Elements) -> tuple[int, memoryview]:
+    """The next element, of those that there have to be."""
+    for element in elements:
+        return element
     raise ValueError("it is cut off")
 
 

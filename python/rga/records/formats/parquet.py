@@ -11,12 +11,11 @@ import polars as pl
 
 from rga.errors import InputError
 from rga.records.column_types import readable
+from rga.records.formats.bounds import most_values
 from rga.records.table import Table
 
 #: bytes of what a file says of itself behind its values
 LARGEST_FOOTER = 16 * 2**20
-#: values, and how many a byte of the file, beyond which it holds no measurement
-MOST_VALUES, MOST_A_BYTE = 10_000_000, 100
 #: the standard error is that of all threads
 _STANDARD_ERROR = Lock()
 
@@ -41,7 +40,7 @@ def read_parquet(data: bytes, path: Path) -> Table:
             scanned = pl.scan_parquet(BytesIO(data))
             rows = scanned.select(pl.len()).collect().item()
             values = rows * len(scanned.collect_schema())
-            if values <= max(MOST_VALUES, MOST_A_BYTE * len(data)):
+            if values <= most_values(len(data)):
                 return Table(
                     path, readable(pl.read_parquet(data), str(path)), "row", 1, format="Parquet"
                 )

@@ -43,7 +43,9 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
     try:
         with _listening(heard):
             file = TdmsFile.read(BytesIO(data))
-            known = [channel for group in file.groups() for channel in group.channels()]
+            groups = file.groups()
+            known = [channel for group in groups for channel in group.channels()]
+            stated = [one.properties for one in (file, *groups, *known)]
             channels = [channel for channel in known if len(channel)]
             values = {channel.path: np.asarray(channel[:]) for channel in channels}
             parts = rows_of_parts(data) if data.count(MARK) > 1 else []
@@ -65,7 +67,7 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
     said = [f"{len(one)} channels of {len(one[0])} rows" for one in blocks.values()]
     chosen, notes = chosen_block(list(blocks.values()), said, mapping.block, path)
     check_parts(parts, chosen, path)
-    check_restarts(data, known, path)
+    check_restarts(data, stated, path)
     plain = Counter(channel.name for channel in chosen)
     names = {
         channel.path: channel.name

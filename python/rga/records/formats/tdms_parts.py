@@ -1,10 +1,10 @@
 """Parts in which a TDMS file was written: whether their rows belong together."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rga.errors import InputError
 
@@ -41,27 +41,28 @@ def check_parts(
         InputError: one has rows in a part in which another has none, or fewer.
     """
     for number, part in enumerate(parts, 1):
-        rows = {one.name: part.get((one.group_name, one.name), 0) for one in chosen}
+        rows = {(one.group_name, one.name): 0 for one in chosen}
+        rows |= {channel: count for channel, count in part.items() if channel in rows}
         fewest, most = min(rows, key=rows.__getitem__), max(rows, key=rows.__getitem__)
         if rows[fewest] < rows[most]:
             raise InputError(
-                f"part {number} of the file has {rows[fewest]} rows of {fewest!r} and "
-                f"{rows[most]} of {most!r}: they were not taken at the same times",
+                f"part {number} of the file has {rows[fewest]} rows of {'/'.join(fewest)!r} and "
+                f"{rows[most]} of {'/'.join(most)!r}: they were not taken at the same times",
                 str(path),
                 "export it as CSV, with the time of every row",
             )
 
 
-def check_restarts(data: bytes, channels: "Sequence[TdmsChannel]", path: Path) -> None:
+def check_restarts(data: bytes, stated: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Refuse waveforms that begin again, or change their step, from one part to the next.
 
     Args:
         data: the file.
-        channels: all of it, with the last start and step that is stated of each.
+        stated: properties of the file, its groups and its channels, as they are at its end.
         path: the file.
 
     Raises:
-        InputError: more starts or steps are stated than channels have.
+        InputError: more starts or steps are written than there are at its end.
     """
     for key, what in _TIMES.items():
         values = set()
@@ -69,7 +70,7 @@ def check_restarts(data: bytes, channels: "Sequence[TdmsChannel]", path: Path) -
             # The type is a number in either order of bytes. The last eight of a start, which it
             # is compared by, are its seconds.
             values.add(found[2][: _LENGTHS.get(max(found[1]), 0)][-8:])
-        if len(values) > len({str(one.properties.get(key.decode())) for one in channels}):
+        if len(values) > len({str(one[key.decode()]) for one in stated if key.decode() in one}):
             raise InputError(
                 f"parts of the file state other {what} than its last part does",
                 str(path),

@@ -64,8 +64,8 @@ def read_clock(table: Table, time: TimeColumns) -> Clock:
     if time.sampling_rate_hz is not None:
         return replace(clock, seconds=np.asarray(rows / time.sampling_rate_hz))
     if not stated.columns:
-        step = 0.0 if stated.step is None else stated.step
-        if not SHORTEST <= step <= LONGEST_STEP:
+        step = stated.step or 0.0
+        if not SHORTEST_STEP <= step <= LONGEST_STEP:
             raise InputError(
                 f"the file says that {step:g} s lie between its rows",
                 str(table.path),
@@ -84,6 +84,8 @@ def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
             notes.append("the time stands in " + " and ".join(map(repr, own.columns)))
         return replace(own, format=time.format or own.format)
     columns = tuple(time.columns)
+    if "columns" not in time.model_fields_set and time.sampling_rate_hz is not None:
+        columns = tuple(column for column in columns if column in table.frame.columns)
     for column in columns:
         named, said = name_and_unit(column)[1], table.units.get(column)
         if named and said and contradict(named, said):
@@ -103,8 +105,8 @@ def _stated(table: Table, time: TimeColumns, notes: list[str]) -> StatedTime:
 NO_TIMES = (pl.Time, pl.Boolean, pl.Binary)
 #: span of a record, below which no row can be told from another [s]
 SHORTEST = 1e-6
-#: seconds between two rows, beyond which nothing counts them
-LONGEST_STEP = 1e9
+#: steps of rows that are counted, within which loggers take them [s]
+SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e9
 
 
 @dataclass(frozen=True)
