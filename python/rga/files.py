@@ -5,10 +5,11 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from errno import EISDIR
 from io import BytesIO
+from os import PathLike, sep
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.inputs import is_input
 
 if TYPE_CHECKING:
@@ -32,6 +33,43 @@ def cannot_write(error: OSError, path: Path) -> CannotWrite:
     return CannotWrite(f"the output cannot be written, {reason}", str(path))
 
 
+def as_path(given: object, where: str) -> Path:
+    """A path as a caller gives it.
+
+    Args:
+        given: it.
+        where: it is given, for an error.
+
+    Raises:
+        InputError: this is none.
+
+    >>> as_path(None, "directory")
+    Traceback (most recent call last):
+    rga.errors.InputError: None is no path (directory): give that of a file or a directory
+    """
+    if not isinstance(given, str | PathLike):
+        what = f"{kind_of(given)} is no path"
+        raise InputError(what, where, "give that of a file or a directory")
+    return Path(given)
+
+
+def as_file(given: object, where: str = "output") -> Path:
+    """The path of a file to write, as a caller gives it.
+
+    Raises:
+        InputError: this is none, or that of a directory, which a path itself does not show.
+
+    >>> as_file("rows.csv/")
+    Traceback (most recent call last):
+    rga.errors.InputError: 'rows.csv/' names a directory (output): leave out the slash at its end
+    """
+    path = as_path(given, where)
+    if str(given).endswith(("/", sep)):
+        what = f"{str(given)!r} names a directory"
+        raise InputError(what, where, "leave out the slash at its end")
+    return path
+
+
 def check_place(path: Path) -> None:
     """Refuse as the place of a file what would be gone then: a device, a pipe, an input.
 
@@ -48,12 +86,14 @@ def check_place(path: Path) -> None:
         raise CannotWrite("the output would replace a file that was read", str(path))
 
 
-def made_directory(directory: Path) -> Path:
+def made_directory(directory: str | Path) -> Path:
     """The directory, made where it is missing.
 
     Raises:
-        CannotWrite: it cannot be.
+        InputError: this is no path.
+        CannotWrite: it cannot be made.
     """
+    directory = as_path(directory, "directory")
     if directory.exists() and not directory.is_dir():
         raise CannotWrite("the output cannot be written, it is a file", str(directory))
     try:
@@ -146,7 +186,7 @@ def write_table(table: "pl.DataFrame", path: str | Path) -> None:
     Raises:
         InputError: another ending, or a place that cannot be written to.
     """
-    path, content = Path(path), BytesIO()
+    path, content = as_file(path), BytesIO()
     if path.suffix.lower() == ".csv":
         table.write_csv(content)
     elif path.suffix.lower() == ".parquet":

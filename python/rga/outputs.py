@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rga.errors import ReportError, in_short
-from rga.files import CannotWrite, check_place, write_whole
+from rga.files import CannotWrite, as_path, check_place, write_whole
 from rga.findings import Findings
 from rga.model.io import model_text
 
@@ -50,7 +50,7 @@ def write_findings(
         ReportError: the report could not be drawn. Findings and model are there, and a line that
             says so in the place of the report.
     """
-    directory = Path(directory)
+    directory = as_path(directory, "directory")
     extended = findings.account.extended
     write_whole(
         {

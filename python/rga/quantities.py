@@ -118,6 +118,23 @@ def quantity(value: float, unit: str, ci90: Sequence[float] | None = None) -> st
     return f"{shown_values[0]}{after} [{shown_values[1]}, {shown_values[2]}]"
 
 
+def plain(text: str) -> str:
+    """A text of a number that has no digits but 0 to 9, and nothing between them.
+
+    Raises:
+        ValueError: Python would take it for a number all the same, which nobody writes.
+
+    >>> float(plain("1e3"))
+    1000.0
+    >>> plain("1_0")
+    Traceback (most recent call last):
+    ValueError: '1_0' is no number
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError(f"{text!r} is no number")
+    return text
+
+
 def counted(count: int, what: str) -> str:
     """A number of things.
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
-from rga.cli.options import DaskAddress, JsonTarget, Seed, Workers
+from rga.cli.options import DaskAddress, JsonTarget, Seed, Workers, decimal, whole
 from rga.cli.output import whole_directory, write_json
 from rga.cli.progress import shown_progress
 from rga.errors import InputError
@@ -25,10 +25,20 @@ WIDTH = 140
 benchmark = typer.Typer(help="Measure what rga can do.", no_args_is_help=True)
 
 Draws = Annotated[
-    int, typer.Option("-n", "--draws", min=1, help="Hidden effects; each beside its null twin.")
+    int,
+    typer.Option(
+        "-n",
+        "--draws",
+        metavar="N",
+        parser=whole(1),
+        help="Hidden effects; each beside its null twin.",
+    ),
 ]
 Minutes = Annotated[
-    float | None, typer.Option("--minutes", min=0.0, help="Begin no further draw after these.")
+    float | None,
+    typer.Option(
+        "--minutes", metavar="M", parser=decimal(0.0), help="Begin no further draw after these."
+    ),
 ]
 KeptIn = Annotated[
     Path | None,
@@ -57,14 +67,22 @@ Generator = Annotated[
         help="What makes the cases: bridges, or field (other structures, welded, tared, broken).",
     ),
 ]
-Splits = Annotated[int, typer.Option("--splits", min=1, help="Random splits of the full gap.")]
+Splits = Annotated[
+    int,
+    typer.Option("--splits", metavar="N", parser=whole(1), help="Random splits of the full gap."),
+]
 Quick = Annotated[bool, typer.Option("--quick", help="Eight draws only.")]
 Shorter = Annotated[bool, typer.Option("--quick", help="Fewer rows, and less time for each.")]
 FewStreams = Annotated[bool, typer.Option("--quick", help="One stream of each sort.")]
 Fewer = Annotated[bool, typer.Option("--quick", help="Few streams, with many false alarms.")]
 Least = Annotated[bool, typer.Option("--quick", help="One split, few methods and drifts.")]
 Fewest = Annotated[bool, typer.Option("--quick", help="18 broken records of 100 rows.")]
-Broken = Annotated[int, typer.Option("-n", "--draws", min=1, help="Records with broken channels.")]
+Broken = Annotated[
+    int,
+    typer.Option(
+        "-n", "--draws", metavar="N", parser=whole(1), help="Records with broken channels."
+    ),
+]
 Foreign = Annotated[
     Path | None,
     typer.Option(

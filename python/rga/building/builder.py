@@ -11,6 +11,7 @@ from rga.building.quantities import Amount, amount, amounts, difference, kelvin
 from rga.building.sensors import SensorKind, sensor_name, sensor_part
 from rga.building.structure_builder import StructureBuilder
 from rga.errors import InputError, kind_of
+from rga.files import as_file
 from rga.model.io import model_content, write_model
 from rga.model.schema import ContextVariable, Model, Sensor
 
@@ -232,7 +233,7 @@ class ModelBuilder(StructureBuilder):
         Raises:
             InputError: what does not fit together, or a file that cannot be written.
         """
-        path = Path(path)
+        path = as_file(path)
         if path.suffix.lower() != ".json":
             raise InputError("models are written as JSON", str(path), "give a name in .json")
         model = self.build()

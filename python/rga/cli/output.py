@@ -11,7 +11,7 @@ from typing import Any
 import typer
 
 from rga.errors import InputError
-from rga.files import CannotWrite, cannot_write, check_place
+from rga.files import CannotWrite, as_file, cannot_write, check_place
 
 
 @contextmanager
@@ -66,7 +66,7 @@ def check_targets(*targets: str | None) -> None:
     """
     for target in targets:
         if target is not None and target != "-":
-            check_place(Path(target))
+            check_place(as_file(target))
 
 
 def write_json(content: Any, target: str) -> None:
@@ -75,7 +75,7 @@ def write_json(content: Any, target: str) -> None:
     if target == "-":
         typer.echo(text, nl=False)
         return
-    with whole_file(Path(target)) as draft:
+    with whole_file(as_file(target)) as draft:
         draft.write_text(text, encoding="utf-8")
 
 

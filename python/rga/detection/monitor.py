@@ -18,6 +18,7 @@ from rga.detection.rows import table, within
 from rga.detection.statistic import STATISTICS
 from rga.detection.thresholds import TailModel, calibration, memory_of, simulated_memory
 from rga.errors import InputError
+from rga.numerics.seeds import as_seed
 
 #: latest rows that an alarm is explained by
 ROWS_KEPT = 2048
@@ -57,7 +58,7 @@ class SyncMonitor:
     Raises:
         InputError: the baseline is no table of numbers, has a number of names that is not that of
             its sensors, or no sensor with 30 readings that are not all alike; a number beyond 1e60
-            in size; `arl0` below 100 or above 1e12; a seed below 0.
+            in size; `arl0` below 100 or above 1e12; a seed that is none.
 
     Examples:
         >>> import numpy as np
@@ -92,7 +93,7 @@ class SyncMonitor:
         reference = Reference.learn(rows)
         memory, length = memory_of(reference.weights), _rounded(len(rows))
         simulated = calibration(
-            rows.shape[1], length, simulated_memory(memory), _arl0(arl0), _seed(seed)
+            rows.shape[1], length, simulated_memory(memory), _arl0(arl0), as_seed(seed)
         )
         self._begin(reference, simulated, arl0, seed)
         watched = [called[column] for column in np.flatnonzero(self._watched).tolist()]
@@ -108,14 +109,14 @@ class SyncMonitor:
             seed: of the simulation of thresholds.
 
         Raises:
-            InputError: no sensor; `arl0` below 100 or above 1e12; a seed below 0.
+            InputError: no sensor; `arl0` below 100 or above 1e12; a seed that is none.
         """
         if not (isinstance(n_sensors, int | np.integer) and 1 <= n_sensors <= MOST_SENSORS):
             remedy = f"give a whole number from 1 to {MOST_SENSORS}"
             raise InputError(f"{n_sensors!r} sensors", "n_sensors", remedy)
         monitor = cls.__new__(cls)
         monitor._watched, monitor._unwatched = np.ones(n_sensors, dtype=bool), {}
-        simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), _seed(seed))
+        simulated = calibration(n_sensors, None, 0.0, _arl0(arl0), as_seed(seed))
         monitor._begin(Reference.known(n_sensors), simulated, arl0, seed)
         return monitor
 
@@ -277,12 +278,6 @@ def _arl0(value: float) -> float:
         remedy = f"give {LEAST:g} to {MOST:g} rows between false alarms"
         raise InputError(f"arl0 is {value!r}", "arl0", remedy)
     return float(value)
-
-
-def _seed(value: int) -> int:
-    if not isinstance(value, int | np.integer) or value < 0:
-        raise InputError(f"the seed is {value!r}", "seed", "give a whole number from 0 on")
-    return int(value)
 
 
 def _rounded(rows: int) -> int:

@@ -50,6 +50,7 @@ from rga.findings.arrays import DiagnosisArrays
 from rga.findings.criteria import Criteria, as_criteria
 from rga.given import as_record
 from rga.model import Model, as_model
+from rga.numerics.seeds import as_seed
 from rga.provenance import versions
 from rga.records import Record, RecordMapping, RecordSource
 from rga.simulation import Simulator
@@ -88,11 +89,11 @@ def diagnose(
         Findings with verdict, causes, gain, and what stays unexplained.
 
     Raises:
-        InputError: a file cannot be used, the record is too short, or the model cannot be
-            simulated.
+        InputError: a file cannot be used, the record is too short, the model cannot be simulated,
+            or the seed is none.
     """
     tell_progress = progress or (lambda stage, done: None)
-    model = as_model(model)
+    model, seed = as_model(model), as_seed(seed)
     record, chosen = as_record(record, model, mapping), as_criteria(criteria)
     with threadpool_limits(1):
         return _diagnose(model, parts or model, record, calm, chosen, seed, tell_progress)

@@ -13,7 +13,7 @@ from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of
 from rga.drawing.views import views_of
 from rga.errors import InputError
-from rga.files import write_whole, wrong_ending
+from rga.files import as_file, write_whole, wrong_ending
 from rga.model import as_model
 from rga.model.schema import Model
 from rga.simulation import Results
@@ -47,7 +47,7 @@ def draw(
             cannot be written.
         UnstableStructureError: a deformed shape or forces of a structure that can move.
     """
-    model, path, shown = as_model(model), Path(path), asked(options)
+    model, path, shown = as_model(model), as_file(path), asked(options)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise wrong_ending(path, "drawing", SUFFIXES)

@@ -17,6 +17,7 @@ from rga.model.effects.loads.nodal_load import NodalLoad
 from rga.model.parameter import Driven
 from rga.model.schema import Model
 from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.quantities import plain
 
 #: places along a lane at which a truck may stand, at most
 STANDS = 24
@@ -64,8 +65,8 @@ def read_truck(text: str) -> Truck:
     loads, _, spacings = text.partition("@")
     try:
         truck = Truck(
-            tuple(float(x) for x in loads.split(",")),
-            tuple(float(x) for x in spacings.split(",") if spacings.strip()),
+            tuple(float(plain(x)) for x in loads.split(",")),
+            tuple(float(plain(x)) for x in spacings.split(",") if spacings.strip()),
         )
     except ValueError:
         raise InputError(f"{text!r} is no truck", "--truck", WRITTEN) from None

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from rga.bounded_files import bytes_of, fault_of
 from rga.errors import InputError, kind_of
+from rga.files import as_path
 from rga.findings.schema import Findings
 
 
@@ -34,7 +35,7 @@ def load_findings(path: str | Path) -> Findings:
     Raises:
         InputError: the file is missing or unreadable, or holds no findings.
     """
-    path = Path(path)
+    path = as_path(path, "findings")
     if path.is_dir():
         path = path / "findings.json"
     remedy = "give findings.json of `rga diagnose` or `rga run`, or its directory"

@@ -232,7 +232,7 @@ class Findings(FindingsPart):
         # The writer stands above the findings: it is reached through the front of the package.
         import rga
 
-        return rga.write_findings(self, Path(directory), report)
+        return rga.write_findings(self, directory, report)
 
     def to_json(self) -> str:
         """The content of findings.json."""

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from rga.errors import InputError
+from rga.importing.numerals import float_of
 from rga.importing.units import to_si
 
 #: units of the properties; none: a number without one
@@ -48,15 +49,18 @@ def read_given(text: str, properties: Mapping[str, str], option: str, example: s
         key = ALIASES.get(found[1], found[1]) if found else ""
         if found is None or key not in properties:
             raise InputError(f"{part.strip()!r} is no property", option, f"write {example}")
-        number = float(found[2])
+        try:
+            number = float_of(found[2])
+        except ValueError:
+            raise InputError(f"{found[2]!r} is no number", option, f"write {example}") from None
         if found[3]:
             number *= to_si(found[3], properties[key] or "dimensionless", option)
         elif key not in UNITLESS:
             raise InputError(f"{key} has no unit", option, f"write {example}")
         values[key] = number
     first = next(iter(properties))
-    if values.get(first, 0.0) <= 0:
-        raise InputError(f"{first} is not given, or not above 0", option, f"write {example}")
+    if not 0 < values.get(first, 0.0) < 1e300:
+        raise InputError(f"{first} is not given, or no number above 0", option, f"write {example}")
     return Given(name.strip() if colon else None, values)
 
 

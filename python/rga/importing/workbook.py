@@ -3,41 +3,62 @@
 import csv
 import io
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
 from rga.bounded_files import fault_of
 from rga.errors import InputError
 from rga.importing.reading import read_bytes, read_text
-from rga.importing.sheets import Sheet, sheet_of
+from rga.importing.sheets import UNCOMPUTED, Sheet, sheet_of, uncomputed
 from rga.lazy import needing_extras
+
+if TYPE_CHECKING:
+    from rga.importing.spreadsheet import Worksheet
 
 #: bytes of the largest workbook when it is unpacked
 LARGEST = 256 * 2**20
 
 
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without warnings: a date that is none is told of as a cell that cannot be read."""
+    with catch_warnings():
+        simplefilter("ignore")
+        yield
+
+
+@_quiet()
 def read_workbook(path: Path) -> dict[str, Sheet]:
     """The sheets of a workbook that are not empty, by name.
 
     Raises:
         InputError: it is none, damaged, or larger than any table of a structure.
     """
-    data = read_bytes(path)
-    return {
-        name: sheet
-        for name, rows in _sheets(data, path)
-        if name not in TURNED and (sheet := sheet_of(name, rows)) is not None
-    }
+    found: dict[str, Sheet] = {}
+    for worksheet in _worksheets(path):
+        if worksheet.name in TURNED:
+            continue
+        if (sheet := sheet_of(worksheet.name, _rows(worksheet, path))) is not None:
+            sheet.merge(worksheet.merged)
+            found[worksheet.name] = sheet
+    return found
 
 
+@_quiet()
 def read_properties(path: Path, name: str) -> dict[str, str]:
-    """A sheet with names in its first column and values in its second, in small letters."""
+    """A sheet with names in its first column and values in its second, in small letters.
+
+    Raises:
+        InputError: the workbook is damaged, or one of them is a formula without a value.
+    """
     found: dict[str, str] = {}
-    for title, rows in _sheets(read_bytes(path), path):
-        for row in rows if title == name else ():
+    for worksheet in _worksheets(path):
+        for number, row in _rows(worksheet, path) if worksheet.name == name else ():
+            if UNCOMPUTED in row[:2]:
+                raise uncomputed(f"{name}, row {number}, column {row.index(UNCOMPUTED) + 1}")
             if len(row) > 1 and row[0] is not None and row[1] is not None:
                 found[str(row[0]).strip().lower()] = str(row[1]).strip()
     return found
@@ -47,10 +68,11 @@ def read_properties(path: Path, name: str) -> dict[str, str]:
 TURNED = ("Project", "Model")
 
 
-def _sheets(data: bytes, path: Path) -> Iterator[tuple[str, Iterator[tuple[Any, ...]]]]:
-    """Names of the sheets and their rows, one after the other."""
+def _worksheets(path: Path) -> "Iterator[Worksheet]":
+    """The sheets of a workbook, one after the other."""
+    data = read_bytes(path)
     with needing_extras():
-        import openpyxl
+        from rga.importing.spreadsheet import open_workbook
     with _errors_of(path):
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             size = sum(one.file_size for one in packed.infolist())
@@ -58,19 +80,13 @@ def _sheets(data: bytes, path: Path) -> Iterator[tuple[str, Iterator[tuple[Any, 
             raise InputError(
                 f"the workbook unpacks to {size / 2**20:.0f} MiB", str(path), "give a smaller one"
             )
-        book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
-    for sheet in book.worksheets:
-        yield sheet.title, _rows(sheet, path)
+        worksheets = list(open_workbook(data))
+    yield from worksheets
 
 
-def _rows(sheet: Any, path: Path) -> Iterator[tuple[Any, ...]]:
-    with _errors_of(path), catch_warnings():
-        # A date that is none is told of as a cell that cannot be read.
-        simplefilter("ignore")
-        # What a sheet says of its size may be anything.
-        sheet.reset_dimensions()
-        rows = list(sheet.iter_rows(values_only=True))
-    yield from rows
+def _rows(worksheet: "Worksheet", path: Path) -> Iterator[tuple[int, Sequence[Any]]]:
+    with _errors_of(path):
+        yield from worksheet.rows()
 
 
 @contextmanager
@@ -98,7 +114,7 @@ def read_csv_folder(paths: list[Path]) -> dict[str, Sheet]:
         delimiter = max(",", ";", "\t", key=first.count)
         try:
             rows = csv.reader(io.StringIO(text), delimiter=delimiter, strict=True)
-            sheet = sheet_of(path.name, iter(rows), from_text=True)
+            sheet = sheet_of(path.name, enumerate(rows, start=1), from_text=True)
         except csv.Error as error:
             raise InputError(
                 f"the table cannot be read: {error}", str(path), "mend its quotes"

@@ -10,13 +10,14 @@ import polars as pl
 
 from rga.diagnosis.pipeline import diagnose
 from rga.errors import InputError, ReportError
-from rga.files import check_place, made_directory, write_whole
+from rga.files import as_path, check_place, made_directory, write_whole
 from rga.findings import Findings
 from rga.findings.criteria import Criteria, as_criteria
 from rga.findings.phrases import effect_words
 from rga.given import as_record
 from rga.inputs import remember
 from rga.model import Model, as_model
+from rga.numerics.seeds import as_seed
 from rga.one_writer import only_writer
 from rga.outputs import check_outputs
 from rga.parallel import finished
@@ -107,11 +108,12 @@ def diagnose_many(
         A summary for each bridge, in the order of the list.
 
     Raises:
-        InputError: the list cannot be used, the output cannot be written, or there is no cluster.
+        InputError: the list cannot be used, the output cannot be written, the seed is none, or
+            there is no cluster.
         ReportError: a report could not be drawn; all else is written.
     """
-    listed, chosen = _listed(bridges), as_criteria(criteria)
-    output = made_directory(Path(output))
+    listed, chosen, seed = _listed(bridges), as_criteria(criteria), as_seed(seed)
+    output = made_directory(output)
     for bridge in listed:
         for given in (bridge.model, bridge.record, bridge.mapping):
             if isinstance(given, str | Path):
@@ -190,7 +192,7 @@ def _listed(
     bridges: str | Path | Mapping[str, tuple[Model | str | Path, Record | str | Path]],
 ) -> list[_Bridge]:
     if not isinstance(bridges, Mapping):
-        return _read(Path(bridges))
+        return _read(as_path(bridges, "bridges"))
     seen: dict[str, str] = {}
     for name in bridges:
         where = f"bridge {name!r}"

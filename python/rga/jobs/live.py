@@ -9,10 +9,11 @@ from threading import RLock
 from typing import Self
 
 from rga.errors import InputError
-from rga.files import made_directory
+from rga.files import as_path, made_directory
 from rga.given import as_record
 from rga.jobs.run import FILE, concluded
 from rga.model import Model, as_model, model_of_text
+from rga.numerics.seeds import as_seed
 from rga.records import Record, RecordMapping, RecordSource
 from rga.records.frames import is_frame, table_of_frame
 from rga.records.mapping import read_mapping
@@ -75,7 +76,7 @@ class LiveTwin:
         progress: Progress | None = None,
         patience: float = PATIENCE,
     ) -> None:
-        self._directory = Path(directory)
+        self._directory = as_path(directory, "directory")
         if not self._directory.is_dir():
             raise InputError("there is no such directory", str(directory), "begin with rga.live")
         if not (self._directory / INBOX).is_file():
@@ -349,17 +350,17 @@ def live(
         progress: called with a stage and the share of it that is done.
 
     Raises:
-        InputError: such a model cannot go on for ever, a setting is missing, or another twin is
-            there.
+        InputError: such a model cannot go on for ever, a setting is missing, the seed is none, or
+            another twin is there.
     """
-    given, chosen = as_model(model), as_settings(settings)
+    given, chosen, seed = as_model(model), as_settings(settings), as_seed(seed)
     check_lives(given)
     chosen.pace(None)
     text, digest = written(given)
     wanted = Addressee(
         name or given.name, text, given.sha256 or digest, chosen.model_dump_json(), seed
     )
-    place = made_directory(Path(directory))
+    place = made_directory(directory)
     _check_holds_no_record(place)
     inbox = Inbox(place)
     try:

@@ -62,7 +62,7 @@ def run(
     model = as_model(model)
     record, settings = as_record(record, model, mapping), as_settings(settings)
     check_length(record, settings.criteria.record)
-    directory = made_directory(Path(directory))
+    directory = made_directory(directory)
     check_outputs(directory)
     if (directory / INBOX).exists():
         raise InputError(

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from rga.errors import InputError
+from rga.files import as_path
 from rga.jobs.live import LiveTwin
 from rga.twin.history import Event
 from rga.twin.repository import InUse
@@ -41,7 +42,7 @@ class Worker:
         kinds: Collection[Kind] = ("watch", "heavy"),
         repository: str | None = None,
     ) -> None:
-        self._directories = [Path(one) for one in directories]
+        self._directories = [as_path(one, "directories") for one in directories]
         self._kinds, self._repository = frozenset(kinds), repository
         self._failures: Counter[Path] = Counter()
         self.failed: dict[Path, str] = {}

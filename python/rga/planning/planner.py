@@ -21,6 +21,7 @@ from rga.findings import Findings
 from rga.findings.criteria import Criteria
 from rga.findings.load import as_findings, findings_sha256
 from rga.model import Model, as_model
+from rga.numerics.seeds import as_seed
 from rga.planning.advised import advised
 from rga.planning.monte_carlo import Checked, checked
 from rga.planning.predictions import planned_sensor, planned_test
@@ -94,9 +95,9 @@ def plan(
 
     Raises:
         InputError: findings of another model, a budget below zero, a truck that is none or does
-            not stand on its path, or explanations that cannot be simulated.
+            not stand on its path, a seed that is none, or explanations that cannot be simulated.
     """
-    model, findings = as_model(model), as_findings(findings)
+    model, findings, seed = as_model(model), as_findings(findings), as_seed(seed)
     for value, option in ((sensors, "sensors"), (positions, "positions")):
         if value < 0:
             raise InputError(f"{option} are {value}", f"--{option}", "give 0 or more")

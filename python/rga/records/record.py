@@ -1,6 +1,6 @@
 """A measured record: time, sensor channels and the contexts that were measured."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
-from rga.errors import InputError
+from rga.errors import InputError, kind_of
 from rga.files import write_table
 from rga.model.effect import seconds
 from rga.notebook import short_html
@@ -38,6 +38,10 @@ class Record:
         notes: what was understood of the files, and what was assumed, in words.
         sha256: hash of the file.
 
+    Raises:
+        InputError: times, readings or contexts are no numbers, are not of these shapes, or times
+            do not rise.
+
     >>> record = Record(np.arange(3.0), 10.0, "seconds", ("D1",), np.zeros((3, 1)))
     >>> record.time_label(1.5)
     11.5
@@ -56,6 +60,25 @@ class Record:
     warnings: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     sha256: str = ""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.contexts, Mapping):
+            what = f"{kind_of(self.contexts)} holds no contexts"
+            raise InputError(what, "record", "give their values by their names")
+        time = _floats(self.time, "time")
+        rows, columns = (time.size,), (len(self.sensors),)
+        found = {
+            "time": _shaped(time, rows, "time"),
+            "readings": _shaped(_floats(self.readings, "readings"), rows + columns, "readings"),
+            "contexts": {
+                name: _shaped(_floats(values, f"context {name!r}"), rows, f"context {name!r}")
+                for name, values in self.contexts.items()
+            },
+        }
+        for name, given in found.items():
+            object.__setattr__(self, name, given)
+        if not (np.isfinite(self.time).all() and (np.diff(self.time) > 0).all()):
+            raise InputError("the times do not rise", "record", "sort the rows, each with its time")
 
     def __len__(self) -> int:
         return len(self.time)
@@ -80,8 +103,6 @@ class Record:
         except (IndexError, ValueError) as error:
             what = f"there are no such rows: {error}"
             raise InputError(what, "record", "choose others") from None
-        if (np.diff(time) <= 0).any():
-            raise InputError("the times of the rows do not rise", "record", "keep their order")
         return replace(
             self,
             time=time,
@@ -171,6 +192,35 @@ class Record:
             sensors=tuple(self.sensors[column] for column in columns),
             readings=self.readings[:, columns],
         )
+
+
+def _floats(given: object, name: str) -> FloatArray:
+    """Numbers as they are computed with: the same array where it is one of floats.
+
+    Raises:
+        InputError: these are no numbers.
+    """
+    try:
+        found = np.asarray(given)
+    except (TypeError, ValueError):
+        found = np.asarray(None)
+    # What a mask hides would be read.
+    if found.dtype.kind not in "fiu" or isinstance(given, np.ma.MaskedArray):
+        remedy = "give an array of floats, NaN where a value is missing"
+        raise InputError("these are no plain numbers", f"{name} of the record", remedy)
+    return found.astype(np.float64, copy=False)
+
+
+def _shaped(values: FloatArray, shape: tuple[int, ...], name: str) -> FloatArray:
+    """Values, where there is one for every row, and for every sensor if they are readings.
+
+    Raises:
+        InputError: there is not.
+    """
+    if values.shape != shape:
+        what, where = f"its shape is {values.shape} instead of {shape}", f"{name} of the record"
+        raise InputError(what, where, "give a value for every row and sensor")
+    return values
 
 
 def time_label(start: str | float, elapsed: float) -> str | float:

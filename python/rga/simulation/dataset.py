@@ -16,8 +16,9 @@ from scipy.stats import qmc
 from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
-from rga.files import CannotWrite, cannot_write, check_place, check_room, write_whole
+from rga.files import CannotWrite, as_file, cannot_write, check_place, check_room, write_whole
 from rga.model import Model
+from rga.numerics.seeds import as_seed
 from rga.one_writer import only_writer
 from rga.parallel import finished
 from rga.simulation.simulator import Simulator
@@ -76,7 +77,7 @@ def write_dataset(
                 f"effect {name!r}",
                 "leave it out, or simulate contexts that follow each other",
             )
-    path = Path(path)
+    path, seed = as_file(path), as_seed(seed)
     if path.is_dir():
         raise CannotWrite("the output cannot be written, it is a directory", str(path))
     check_place(path)

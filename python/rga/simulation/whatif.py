@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from rga.arrays import FloatArray
 from rga.bounded_files import bytes_of, fault_of
 from rga.errors import InputError
+from rga.files import as_path
 from rga.model import Effect, Model, as_model, read_effect
 from rga.model.effect import when_all_act
 from rga.model.parameter import Estimated
@@ -191,7 +192,7 @@ def read_effects(path: str | Path) -> dict[str, Effect]:
     Raises:
         InputError: the file cannot be read, or holds no effect of the vocabulary.
     """
-    path = Path(path)
+    path = as_path(path, "effects")
     raw = bytes_of(path, "effect")
     try:
         content = json.loads(raw.decode("utf-8-sig"))

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 from rga.errors import InputError
 from rga.findings import Findings
 from rga.model import Model
+from rga.numerics.seeds import as_seed
 from rga.records import Record
 from rga.twin.analysis import RealityGapAnalysis
 from rga.twin.archive import Archive
@@ -64,10 +65,9 @@ def taken_up(
         patience: how long to wait for another process that plays the run [s].
 
     Raises:
-        InputError: the repository cannot be used.
+        InputError: the repository cannot be used, or the seed is none.
     """
-    if not 0 <= seed < 2**63:
-        raise InputError(f"{seed} is no seed", "seed", "give a whole number from 0 to 2^63 - 1")
+    seed = as_seed(seed)
     digest = model.sha256 or written(model)[1]
     hardware = Recorded(record, model) if isinstance(record, Record) else record
     identity = Identity(digest, hardware.source, seed, settings.model_dump_json())

@@ -174,7 +174,7 @@ def test_other_rates_are_refused(arl0: float) -> None:
 
 
 def test_other_arguments_are_refused() -> None:
-    with pytest.raises(InputError, match="the seed is -1"):
+    with pytest.raises(InputError, match="-1 is no seed"):
         SyncMonitor.known(2, arl0=200, seed=-1)
     with pytest.raises(InputError, match="0 sensors"):
         SyncMonitor.known(0)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from scipy.io import savemat
 
 from hostile.logger_files import catman_binary
@@ -142,102 +141,6 @@ def test_labview_channels_with_an_x_of_their_own(tmp_path: Path) -> None:
     assert found.numbers("B").tolist() == [2, 4]
     assert dict(found.units) == {"A": "mm", "B": "V"}
     assert found.warnings == ()
-
-
-def test_tdms_groups_of_two_rates(tmp_path: Path) -> None:
-    fast = {"wf_start_time": np.datetime64("2024-02-01T10:00:00"), "wf_increment": 0.01}
-    with TdmsWriter(tmp_path / "w.tdms") as writer:
-        writer.write_segment(
-            [
-                ChannelObject("g", "S1", np.arange(4.0), {**fast, "unit_string": "µm/m"}),
-                ChannelObject("g", "S2", np.arange(4.0) * 2, fast),
-                ChannelObject("slow", "T", np.array([20.0, 21.0]), {**fast, "wf_increment": 1.0}),
-            ]
-        )
-    data = (tmp_path / "w.tdms").read_bytes()
-    found = table(tmp_path / "r.tdms", data)
-    assert found.frame.columns == ["S1", "S2"]
-    assert found.units == {"S1": "µm/m"}
-    assert begin(found) == ("2024-02-01T10:00:00+00:00", [0, 0.01, 0.02, 0.03])
-    assert table(tmp_path / "r.tdms", data, block=2).frame.columns == ["T"]
-    cut = table(tmp_path / "r.tdms", data[:-12])
-    assert "the file is not whole" in " ".join(cut.warnings)
-
-
-@pytest.mark.parametrize(
-    ("parts", "said"),
-    [
-        ([{"S1": 5, "S2": 5}, {"S1": 5, "S2": 5}], None),
-        ([{"S1": 5, "S2": 5}, {"S1": 5}, {"S1": 5, "S2": 10}], "part 2 of .* 0 rows of 'g/S2' and 5"),
-        ([{"S1": 5, "wf_start_time": np.datetime64("2024-03-01")}, {"S1": 5}], "other starts"),
-        ([{"S1": 5, "wf_increment": 2.0}, {"S1": 5}], "other steps of time"),
-    ],
-)
-def test_tdms_parts_belong_together(parts: Any, said: str | None, tmp_path: Path) -> None:
-    times = {"wf_start_time": np.datetime64("2024-02-01T10:00:00"), "wf_increment": 0.5}
-    with TdmsWriter(tmp_path / "w.tdms") as writer:
-        for part in parts:
-            own = {name: part.get(name, value) for name, value in times.items()}
-            writer.write_segment(
-                ChannelObject("g", name, np.arange(float(rows)), own)
-                for name, rows in part.items()
-                if name not in times
-            )
-    if said is None:
-        assert len(read_table(tmp_path / "w.tdms").frame) == 10
-    else:
-        with pytest.raises(InputError, match=said):
-            read_table(tmp_path / "w.tdms")
-
-
-@pytest.mark.parametrize("late", [False, True])
-def test_tdms_channels_of_one_name_are_counted_by_their_groups(late: bool, tmp_path: Path) -> None:
-    with TdmsWriter(tmp_path / "w.tdms") as writer:
-        for rows in ([("a", 5), ("b", 0 if late else 5)], [("a", 5), ("b", 10 if late else 5)]):
-            writer.write_segment(
-                [ChannelObject(group, "S1", np.arange(float(count))) for group, count in rows]
-            )
-    if late:
-        with pytest.raises(InputError, match="part 1 of the file has 0 rows of 'b/S1' and 5"):
-            read_table(tmp_path / "w.tdms")
-    else:
-        assert read_table(tmp_path / "w.tdms").frame.columns == ["a/S1", "b/S1"]
-
-
-def test_tdms_groups_and_the_file_may_state_times_of_their_own(tmp_path: Path) -> None:
-    begins = [{"wf_start_time": np.datetime64(f"2024-0{k}-01T10:00:00")} for k in (1, 2, 3)]
-    channel = ChannelObject("g", "S1", np.arange(4.0), begins[2] | {"wf_increment": 0.5})
-    with TdmsWriter(tmp_path / "w.tdms") as writer:
-        writer.write_segment([RootObject(begins[0]), GroupObject("g", begins[1]), channel])
-    found = read_table(tmp_path / "w.tdms")
-    assert begin(found) == ("2024-03-01T10:00:00+00:00", [0, 0.5, 1, 1.5])
-
-
-@pytest.mark.parametrize(
-    ("said", "found"),
-    [
-        ({"wf_start_time": "noon"}, (0.0, [0, 0.5])),
-        ({"wf_start_offset": float("nan")}, (0.0, [0, 0.5])),
-        ({"wf_increment": "x"}, "nan s lie between its rows"),
-        ({"wf_increment": -1.0}, "-1 s lie between its rows"),
-        ({"wf_increment": 0.0}, "there is no time column 'time'"),
-        ({"wf_increment": 1e-12}, "1e-12 s lie between its rows"),
-        ({"wf_increment": 5e-7}, ("2024-02-01T10:00:00+00:00", [0, 5e-7])),
-        ({"wf_increment": float("inf")}, "inf s lie between its rows"),
-    ],
-)
-def test_tdms_times_that_are_none(said: dict[str, Any], found: Any, tmp_path: Path) -> None:
-    times = {"wf_start_time": np.datetime64("2024-02-01T10:00:00"), "wf_increment": 0.5}
-    with TdmsWriter(tmp_path / "w.tdms") as writer:
-        writer.write_segment([ChannelObject("g", "S1", np.arange(2.0), times | said)])
-    read = read_table(tmp_path / "w.tdms")
-    if isinstance(found, str):
-        with pytest.raises(InputError, match=found):
-            begin(read)
-        assert read_clock(read, TimeColumns(sampling_rate_hz=4)).seconds.tolist() == [0, 0.25]
-    else:
-        assert begin(read) == found
-        assert ("cannot be read" in " ".join(read.notes)) == (found[0] == 0.0)
 
 
 def test_matlab_variables_are_channels(tmp_path: Path) -> None:

@@ -188,7 +188,7 @@ def test_all_unknown_columns_are_listed_at_once(tmp_path: Path, one_sensor: Mode
         (b"time,D1\n0,1\n1\n", "line 3"),
         (b'{"a": [1, ', "no JSON"),
         (b'{"a": 1}', "neither SenML nor SensorThings"),
-        (b"TDSm" + bytes(40), "TDMS file is damaged|no channel"),
+        (b"TDSm" + bytes(40), "TDMS file cannot be read|no channel"),
         (b"MATLAB 5.0 MAT-file" + bytes(200), "MATLAB file is damaged|no vector"),
         (b"MATLAB 7.3 MAT-file" + bytes(200), "'-v7'"),
         (b"LabVIEW Measurement\nSeparator\tTab\n", "End_of_Header"),

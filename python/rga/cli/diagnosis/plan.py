@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.options import JsonTarget, ModelFile, Seed
+from rga.cli.options import JsonTarget, ModelFile, Seed, file_to_write, whole
 
 if TYPE_CHECKING:
     from rga.planning.result import Plan, Telling
@@ -14,11 +14,17 @@ FindingsFile = Annotated[
     Path,
     typer.Argument(metavar="FINDINGS", help="findings.json of a diagnosis, or its directory."),
 ]
-Sensors = Annotated[int, typer.Option("--sensors", metavar="N", help="Sensors to add, at most.")]
+Sensors = Annotated[
+    int,
+    typer.Option("--sensors", metavar="N", parser=whole(), help="Sensors to add, at most."),
+]
 Positions = Annotated[
     int,
     typer.Option(
-        "--positions", metavar="N", help="Load tests, at most: truck positions, set contexts."
+        "--positions",
+        metavar="N",
+        parser=whole(),
+        help="Load tests, at most: truck positions, set contexts.",
     ),
 ]
 TruckText = Annotated[
@@ -34,7 +40,10 @@ Paths = Annotated[
     typer.Option("--path", metavar="NODE,NODE,...", help="Where the truck drives; repeatable."),
 ]
 PlanFile = Annotated[
-    Path | None, typer.Option("-o", "--output", metavar="FILE", help="File for the plan (JSON).")
+    Path | None,
+    typer.Option(
+        "-o", "--output", metavar="FILE", parser=file_to_write, help="File for the plan (JSON)."
+    ),
 ]
 
 

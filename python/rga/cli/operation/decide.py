@@ -7,15 +7,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rga.cli.operation.replay import Place
+from rga.cli.options import whole
 
 if TYPE_CHECKING:
     from rga.twin.commands.command import AnyCommand
 
 VersionNumber = Annotated[
-    int, typer.Option("--to", min=1, help="Model version to put in force again.")
+    int,
+    typer.Option("--to", metavar="N", parser=whole(1), help="Model version to put in force again."),
 ]
 Number = Annotated[
-    int | None, typer.Option("--proposal", min=1, help="Its number; the last by default.")
+    int | None,
+    typer.Option(
+        "--proposal", metavar="N", parser=whole(1), help="Its number; the last by default."
+    ),
 ]
 Who = Annotated[str | None, typer.Option("--who", help="Who decides; the user by default.")]
 Why = Annotated[str, typer.Option("--why", help="Why, for the log.")]

@@ -6,9 +6,13 @@ from typing import Annotated
 import typer
 
 from rga.cli.operation.replay import Place
+from rga.cli.options import file_to_write
 
 RecordFile = Annotated[
-    Path, typer.Option("-o", "--output", metavar="FILE", help="Record (CSV or Parquet).")
+    Path,
+    typer.Option(
+        "-o", "--output", metavar="FILE", parser=file_to_write, help="Record (CSV or Parquet)."
+    ),
 ]
 
 

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from rga.cli.options import JsonTarget
+from rga.cli.options import JsonTarget, whole
+from rga.quantities import plain
 
 #: damage that is listed
 MOST = 5
@@ -15,7 +16,9 @@ Place = Annotated[
 ]
 Row = Annotated[
     int | None,
-    typer.Option("--row", min=0, max=2**53, help="As it stood at this row of the record."),
+    typer.Option(
+        "--row", metavar="N", parser=whole(0, 2**53), help="As it stood at this row of the record."
+    ),
 ]
 Time = Annotated[
     str | None,
@@ -126,6 +129,6 @@ def _played(place: str) -> bool:
 def _moment(text: str) -> float | str:
     """Seconds where the text is a number, else the text."""
     try:
-        return float(text)
+        return float(plain(text))
     except ValueError:
         return text

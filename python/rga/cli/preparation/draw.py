@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from rga.cli.options import GivenContexts, ModelFile, settings
+from rga.cli.options import GivenContexts, ModelFile, decimal, file_to_write, settings
 
 
 class NamedPart(StrEnum):
@@ -22,7 +22,7 @@ class NamedPart(StrEnum):
 Drawing = Annotated[
     Path,
     typer.Option(
-        "-o", "--output", metavar="FILE",
+        "-o", "--output", metavar="FILE", parser=file_to_write,
         help="File for the drawing: .svg, .png, or .html for a page that turns with the mouse.",
     ),
 ]  # fmt: skip
@@ -36,7 +36,9 @@ Loads = Annotated[
 Deformed = Annotated[bool, typer.Option("--deformed", help="The deformed shape.")]
 Scale = Annotated[
     float | None,
-    typer.Option("--scale", metavar="TIMES", help="By which displacements are enlarged."),
+    typer.Option(
+        "--scale", metavar="TIMES", parser=decimal(), help="By which displacements are enlarged."
+    ),
 ]
 Forces = Annotated[
     Literal["N", "V", "M", "T", "Vy", "Vz", "My", "Mz"] | None,
@@ -49,7 +51,10 @@ Sensors = Annotated[
 ]
 Dark = Annotated[bool, typer.Option("--dark", help="For a dark background.")]
 Width = Annotated[
-    float, typer.Option("--width", metavar="INCHES", help="Of a sheet; 3.75 suits a phone.")
+    float,
+    typer.Option(
+        "--width", metavar="INCHES", parser=decimal(), help="Of a sheet; 3.75 suits a phone."
+    ),
 ]
 
 

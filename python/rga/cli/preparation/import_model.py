@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rga.cli.options import JsonTarget, OutputFile
+from rga.cli.options import JsonTarget, OutputFile, decimal
 
 if TYPE_CHECKING:
     from rga.importing import ImportedModel, ImportNote
@@ -81,7 +81,10 @@ MemberKind = Annotated[
 Tolerance = Annotated[
     float | None,
     typer.Option(
-        "--tolerance", min=0, help="Below which ends of lines in a drawing are one node (m)."
+        "--tolerance",
+        metavar="M",
+        parser=decimal(0.0),
+        help="Below which ends of lines in a drawing are one node (m).",
     ),
 ]
 Combination = Annotated[

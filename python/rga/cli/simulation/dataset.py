@@ -4,9 +4,9 @@ from typing import Annotated
 
 import typer
 
-from rga.cli.options import DaskAddress, ModelFile, OutputFile, Seed, Workers
+from rga.cli.options import DaskAddress, ModelFile, OutputFile, Seed, Workers, whole
 
-Rows = Annotated[int, typer.Option("-n", min=1, help="Number of rows.")]
+Rows = Annotated[int, typer.Option("-n", metavar="N", parser=whole(1), help="Number of rows.")]
 Noise = Annotated[bool, typer.Option("--noise", help="Add the sensors' noise.")]
 
 

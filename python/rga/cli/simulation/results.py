@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.options import GivenContexts, ModelFile, OutputFile, settings
+from rga.cli.options import GivenContexts, ModelFile, OutputFile, settings, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -19,7 +19,12 @@ ContextFile = Annotated[
 ]
 Stations = Annotated[
     int,
-    typer.Option("--stations", help="Places along each member, its ends among them: 2 to 10001."),
+    typer.Option(
+        "--stations",
+        metavar="N",
+        parser=whole(),
+        help="Places along each member, its ends among them: 2 to 10001.",
+    ),
 ]
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rga.cli.options import JsonTarget, setting
+from rga.cli.options import JsonTarget, once
 
 if TYPE_CHECKING:
     from rga.model import Effect
@@ -48,7 +48,7 @@ def whatif(
     from rga.cli.output import write_json
     from rga.simulation.whatif import read_effects
 
-    given = dict(setting(text, "--set") for text in settings or [])
+    given = once(settings or [], "--set")
     effects = {name: effect for path in add or [] for name, effect in read_effects(path).items()}
     result = _answer(model, given, effects)
     for warning in result.warnings:

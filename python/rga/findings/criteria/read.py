@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from rga.errors import InputError, kind_of
+from rga.files import as_path
 from rga.findings.criteria.criteria import Criteria
 from rga.settings_files import read_table, validated
 
@@ -32,5 +33,5 @@ def load_criteria(path: str | Path) -> Criteria:
     Raises:
         InputError: the file cannot be read, or a criterion is unknown or impossible.
     """
-    content = read_table(Path(path), "criteria")
+    content = read_table(as_path(path, "criteria"), "criteria")
     return validated(Criteria, content, str(path), "criteria")

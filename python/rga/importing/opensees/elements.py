@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from rga.importing.numerals import float_of
 from rga.importing.opensees.script_model import Element, ScriptModel
 from rga.importing.scripts.values import Arguments
 
@@ -171,7 +172,7 @@ def _named_only(given: Arguments, known: set[str]) -> bool:
 def is_tag(value: object) -> bool:
     """Whether a value is a whole number."""
     try:
-        return float(str(value)).is_integer()
+        return float_of(str(value)).is_integer()
     except ValueError:
         return False
 

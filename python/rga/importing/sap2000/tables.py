@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from rga.errors import InputError
+from rga.importing.numerals import float_of
 
 FIELD = re.compile(r'([A-Za-z0-9_/.\-() ]+?)\s*=\s*("(?:[^"]|"")*"|\S*)')
 HEAD = re.compile(r'TABLE:\s*"([^"]*)"')
@@ -49,7 +50,7 @@ class TableRow:
         if not found and default is not None:
             return default
         try:
-            number = float(self.text(name))
+            number = float_of(self.text(name))
         except ValueError:
             raise InputError(
                 f"{name} is {found!r}, no number", self.where, "write a number"

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from rga.errors import InputError
+from rga.importing.numerals import float_of
 
 #: steps that a script may take: the loops of any model of a structure
 MOST_STEPS = 200_000
@@ -128,8 +129,8 @@ class Arguments:
         """A value as a number."""
         known = self.known(value, what)
         try:
-            number = float(known)
-        except (TypeError, ValueError):
+            number = float_of(known)
+        except ValueError:
             raise self.error(f"its {what} is {known!r}, no number") from None
         if number != number or abs(number) > 1e300:
             raise self.error(f"its {what} is {number}, no number")
@@ -181,7 +182,7 @@ def is_number(value: Any) -> bool:
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         return False
     try:
-        float(value)
+        float_of(value)
     except ValueError:
         return False
     return True

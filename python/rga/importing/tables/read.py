@@ -4,6 +4,7 @@ from pathlib import Path
 
 from rga.errors import InputError
 from rga.importing.draft import ModelDraft
+from rga.importing.numerals import float_of
 from rga.importing.options import Chosen
 from rga.importing.sheets import Sheet, SheetRow
 from rga.model.schema import DOFS
@@ -188,7 +189,7 @@ def _load(row: SheetRow, draft: ModelDraft) -> None:
 def _say_commas(tables: dict[str, Sheet], draft: ModelDraft) -> None:
     for sheet in tables.values():
         if cell := sheet.decimal_signs.get(","):
-            read = f"{float(cell.replace(',', '.')):.12g}"
+            read = f"{float_of(cell.replace(',', '.')):.12g}"
             draft.notes.say(
                 "assumed", sheet.name, f"commas in numbers are decimal: {cell} is {read}"
             )

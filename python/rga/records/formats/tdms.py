@@ -14,7 +14,7 @@ import polars as pl
 from rga.errors import InputError
 from rga.lazy import needing_extras
 from rga.records.formats.blocks import chosen_block
-from rga.records.formats.tdms_parts import check_parts, check_restarts, rows_of_parts
+from rga.records.formats.tdms_parts import check_parts, parts_of, with_rows_together
 from rga.records.mapping import FileMapping
 from rga.records.table import StatedTime, Table
 from rga.records.times.named import time_of
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 MARK = b"TDSm"
 _UNITS = ("unit_string", "NI_UnitDescription", "Unit", "unit", "Units")
+#: starts before it are those of a clock that was never set: it begins at 1904
+_FIRST_START = np.datetime64("1905-01-01")
 #: column of the time, which the properties of a channel give
 TIME = "time [s]"
 
@@ -42,18 +44,16 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
     heard: list[str] = []
     try:
         with _listening(heard):
-            file = TdmsFile.read(BytesIO(data))
-            groups = file.groups()
-            known = [channel for group in groups for channel in group.channels()]
-            stated = [one.properties for one in (file, *groups, *known)]
+            parts = list(parts_of(data))
+            file = TdmsFile.read(BytesIO(with_rows_together(data, parts)))
+            known = [channel for group in file.groups() for channel in group.channels()]
             channels = [channel for channel in known if len(channel)]
             values = {channel.path: np.asarray(channel[:]) for channel in channels}
-            parts = rows_of_parts(data) if data.count(MARK) > 1 else []
     except MemoryError:
         raise
     except Exception as error:  # npTDMS says what is damaged in many ways
         raise InputError(
-            f"the TDMS file is damaged: {' '.join(str(error).split()) or type(error).__name__}",
+            f"the TDMS file cannot be read: {' '.join(str(error).split()) or type(error).__name__}",
             str(path),
             "copy it again in full, or export it as CSV",
         ) from None
@@ -66,8 +66,6 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
         raise InputError("no channel with numbers is in the file", str(path), "give another file")
     said = [f"{len(one)} channels of {len(one[0])} rows" for one in blocks.values()]
     chosen, notes = chosen_block(list(blocks.values()), said, mapping.block, path)
-    check_parts(parts, chosen, path)
-    check_restarts(data, stated, path)
     plain = Counter(channel.name for channel in chosen)
     names = {
         channel.path: channel.name
@@ -75,6 +73,7 @@ def read_tdms(data: bytes, path: Path, mapping: FileMapping) -> Table:
         else f"{channel.group_name}/{channel.name}"
         for channel in chosen
     }
+    check_parts(parts, names, path)
     frame = pl.DataFrame({names[channel.path]: values[channel.path] for channel in chosen})
     units = {
         names[channel.path]: str(channel.properties[key])
@@ -134,6 +133,8 @@ def _time(
         try:
             offset = round(float(said.get("wf_start_offset") or 0.0) * 1e6)
             begin = np.datetime64(start, "us") + np.timedelta64(offset, "us")
+            if begin < _FIRST_START:
+                raise ValueError
         except (TypeError, ValueError, OverflowError):
             return StatedTime(step=seconds), ["its start cannot be read: seconds are taken"]
         return StatedTime(start=f"{begin}+00:00", step=seconds), []

@@ -138,26 +138,17 @@ def as_rows(station: Station, rows: Record) -> tuple[FloatArray, FloatArray, Flo
 
 
 def _check_numbers(rows: Record) -> None:
-    """Whether rows are of one length, in the order of their times, and of numbers that can be.
+    """Whether rows are of numbers that can be.
 
     Raises:
         InputError: they are not; none of them is kept.
     """
-    place = "rows of a live twin"
-    count, time = len(rows.time), rows.time
-    columns = {name: np.asarray(values) for name, values in rows.contexts.items()}
-    if rows.readings.shape != (count, len(rows.sensors)) or any(
-        one.shape != (count,) for one in columns.values()
-    ):
-        raise InputError("its columns differ in length", place, "give every row all columns")
-    if not np.isfinite(time).all() or (np.diff(time) <= 0).any():
-        raise InputError("the times do not rise", place, "sort the rows, and give each its time")
-    columns |= dict(zip(rows.sensors, rows.readings.T, strict=True))
+    columns = {**rows.contexts, **dict(zip(rows.sensors, rows.readings.T, strict=True))}
     for name, values in columns.items():
         if (wrong := np.flatnonzero(np.abs(values) > LARGEST)).size:
             raise InputError(
                 f"{name} is {values[wrong[0]]:g} in row {wrong[0]} of them",
-                place,
+                "rows of a live twin",
                 "leave the value empty where none was read",
             )
 

@@ -9,6 +9,7 @@ from sqlalchemy import Connection, Engine, make_url
 from sqlalchemy.exc import ArgumentError
 
 from rga.errors import InputError
+from rga.files import as_path
 from rga.twin.repository.postgresql import PostgreSQL
 from rga.twin.repository.sqlite import PATIENCE, SQLite
 
@@ -60,6 +61,6 @@ def database(place: str | Path, read_only: bool, patience: float = PATIENCE) -> 
             where = f"repository {url.render_as_string(hide_password=True)}"
             raise InputError(f"no repository is kept in {url.drivername!r}", where, remedy)
         return PostgreSQL(url.set(drivername="postgresql+psycopg"), read_only, patience)
-    path = Path(place)
+    path = as_path(place, "repository")
     held = path.is_dir() and path.name != FILE_NAME
     return SQLite(path / FILE_NAME if held else path, read_only, patience)

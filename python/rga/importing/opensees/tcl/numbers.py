@@ -4,8 +4,8 @@ import re
 
 from rga.errors import InputError
 
-INTEGER = re.compile(r"\s*[-+]?(\d+|0[xX][0-9a-fA-F]+)\s*$")
-FLOATING = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*$")
+INTEGER = re.compile(r"\s*[-+]?(\d+|0[xX][0-9a-fA-F]+)\s*$", re.ASCII)
+FLOATING = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*$", re.ASCII)
 
 Number = int | float
 

@@ -11,7 +11,7 @@ from rga.importing.opensees.tcl.lists import place_of, split_list
 from rga.importing.opensees.tcl.numbers import is_number, number
 from rga.importing.scripts.values import LONGEST, Unknown
 
-FIELD = re.compile(r"%(%|[-+ 0#]*(\d*)(?:\.\d+)?(?:l|ll|h)?([a-zA-Z]))")
+FIELD = re.compile(r"%(%|[-+ 0#]*(\d*)(?:\.\d+)?(?:l|ll|h)?([a-zA-Z]))", re.ASCII)
 
 
 def string(where: str, what: str, *words: str) -> Any:
