@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import polars as pl
 import pytest
+from hypothesis import settings
 
 from findings_invariants import check_invariants
 from rga.cli import main
@@ -22,8 +23,13 @@ from rga_bench.synthetic import Case
 
 
 def pytest_configure() -> None:
-    """Modules and tests are gathered without a search for garbage: hardly any of it is."""
+    """Modules and tests are gathered without a search for garbage: hardly any of it is.
+
+    A machine that does other work beside the tests is no fault: no time is asked of a case.
+    """
     gc.disable()
+    settings.register_profile("any time", deadline=None)
+    settings.load_profile("any time")
 
 
 def pytest_collection_finish() -> None:

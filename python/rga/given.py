@@ -2,10 +2,13 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from rga.errors import InputError, kind_of
 from rga.model import Model
 from rga.records import Record, RecordMapping, RecordSource, load_record
 from rga.records.frames import is_frame
+from rga.records.table import LARGEST
 
 
 def as_record(
@@ -21,14 +24,32 @@ def as_record(
         mapping: how to read the file, as `load_record` takes it.
 
     Raises:
-        InputError: the file cannot be used, the record is of another model, or this is neither.
+        InputError: the file cannot be used, the record is of another model or has a value that
+            nothing measures, or this is neither.
     """
     if isinstance(given, Record):
         if foreign := [name for name in given.sensors if name not in model.sensors]:
             what = f"the model has no sensor {foreign[0]!r}"
             raise InputError(what, "record", "read the record with this model")
+        _check_measured(given)
         return given
     if isinstance(given, (str, Path, list, tuple)) or is_frame(given):
         return load_record(given, model, mapping)
     what = f"{kind_of(given)} is no record"
     raise InputError(what, "record", "give a Record, or the path of its file")
+
+
+def _check_measured(record: Record) -> None:
+    """Refuse values beyond what anything measures, as those of a file are.
+
+    Raises:
+        InputError: there is one.
+    """
+    columns = {**record.contexts, **dict(zip(record.sensors, record.readings.T, strict=True))}
+    for name, values in columns.items():
+        if (wrong := np.flatnonzero(np.abs(values) > LARGEST)).size:
+            raise InputError(
+                f"{name} is {values[wrong[0]]:g} in row {wrong[0]}",
+                "record",
+                "give NaN where none was read",
+            )

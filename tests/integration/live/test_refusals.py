@@ -136,8 +136,8 @@ def with_time(record: Record, value: float) -> Record:
 @pytest.mark.parametrize(
     ("made", "words"),
     [
-        (lambda r: with_value(r, "D2", np.inf), "D2 is inf in row 2 of them"),
-        (lambda r: with_value(r, "D2", -1e100), "D2 is -1e.100 in row 2 of them"),
+        (lambda r: with_value(r, "D2", np.inf), "D2 is inf in row 2"),
+        (lambda r: with_value(r, "D2", -1e100), "D2 is -1e.100 in row 2"),
         (lambda r: with_value(r, "west load", -np.inf), "west load is -inf in row 2"),
         (lambda r: with_time(r, r.time[1]), "the times do not rise"),
         (lambda r: with_time(r, r.time[0] - 1.0), "the times do not rise"),

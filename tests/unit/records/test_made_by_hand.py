@@ -1,5 +1,6 @@
 """A record made by hand is a record, or is refused where it is made."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -7,7 +8,10 @@ import numpy as np
 import polars as pl
 import pytest
 
+import rga
 from rga.errors import InputError
+from rga.given import as_record
+from rga.model import read_model
 from rga.records import Record
 
 NAN, INF = float("nan"), float("inf")
@@ -77,6 +81,20 @@ def test_what_is_one_holds_floats(changed: dict[str, Any]) -> None:
     for held in (record.time, record.readings, *record.contexts.values()):
         assert held.dtype == np.float64
     assert record.readings.shape == (len(record), 2)
+
+
+@pytest.mark.parametrize("value", [INF, -INF, 1e31, 1e29])
+def test_what_nothing_measures_is_refused_before_work(
+    value: float, measured_bridge: dict[str, Any], measured_record: Callable[..., Record]
+) -> None:
+    model = read_model(measured_bridge, "bridge")
+    record = measured_record(model)
+    record.readings[3, 0] = value
+    if value == 1e29:
+        assert as_record(record, model) is record
+    else:
+        with pytest.raises(InputError, match="in row 3"):
+            rga.diagnose(model, record)
 
 
 def test_nothing_is_copied() -> None:

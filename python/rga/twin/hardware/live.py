@@ -12,9 +12,6 @@ from rga.simulation import Simulator
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.hardware.interface import LIVE, Packet, Station
 
-#: beyond this size a number is no reading
-LARGEST = 1e30
-
 
 class Live:
     """The rows that wait for a twin.
@@ -124,7 +121,6 @@ def as_rows(station: Station, rows: Record) -> tuple[FloatArray, FloatArray, Flo
         )
     if rows.time_format != station.time_format:
         raise InputError("they write time otherwise than the first did", place, "feed one clock")
-    _check_numbers(rows)
     if rows.zero is not None:
         raise InputError("a zero was taken off them", place, "feed readings without it")
     count = len(rows)
@@ -135,22 +131,6 @@ def as_rows(station: Station, rows: Record) -> tuple[FloatArray, FloatArray, Flo
         contexts[:, station.measured.index(name)] = values
     labels = [rows.time_label(one) for one in rows.time.tolist()]
     return elapsed_since(station.start, labels), readings, contexts
-
-
-def _check_numbers(rows: Record) -> None:
-    """Whether rows are of numbers that can be.
-
-    Raises:
-        InputError: they are not; none of them is kept.
-    """
-    columns = {**rows.contexts, **dict(zip(rows.sensors, rows.readings.T, strict=True))}
-    for name, values in columns.items():
-        if (wrong := np.flatnonzero(np.abs(values) > LARGEST)).size:
-            raise InputError(
-                f"{name} is {values[wrong[0]]:g} in row {wrong[0]} of them",
-                "rows of a live twin",
-                "leave the value empty where none was read",
-            )
 
 
 def elapsed_since(start: str | float, labels: list[str | float]) -> FloatArray:
