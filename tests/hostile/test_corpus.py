@@ -266,6 +266,16 @@ def test_findings_that_were_edited(
     check(judged, given(words, {"findings.json": json.dumps(findings).encode()}))
 
 
+def test_findings_with_a_number_beyond_all_numbers(
+    sound: Path, given: Given, judged: Judged
+) -> None:
+    findings = json.loads((sound / "findings.json").read_text("utf-8"))
+    findings["explanations"][-1]["gap"] = "beyond"
+    written = json.dumps(findings).replace('"beyond"', "1e400").encode()
+    words = ("plan", "{}/model.json", "{}/findings.json")
+    assert check(judged, given(words, {"findings.json": written})).code == 2
+
+
 @pytest.mark.parametrize("value", ["1e400", "nan", "1e308"])
 def test_a_drawing_that_reaches_beyond_all_bounds(value: str, given: Given, judged: Judged) -> None:
     tokens = f"0 SECTION 2 ENTITIES 0 LINE 8 0 10 {value} 20 0 30 0 11 1 21 1 31 0 0 ENDSEC 0 EOF"

@@ -20,7 +20,7 @@ Verdict = Literal["nothing_wrong", "named", "ambiguous", "partial", "unknown", "
 
 
 class FindingsPart(BaseModel):
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 class SensorGap(FindingsPart):
