@@ -3,9 +3,12 @@ PYTHON ?= python3
 DEV := .venv-dev/bin
 # Modules are compiled when they are imported: few of those of torch ever are.
 INSTALL := -m pip install --quiet --no-compile
+# What the wheel is made of.
+SOURCES := pyproject.toml Cargo.toml Cargo.lock README.md LICENSE \
+  $(shell find rust python -type f -not -name '*.pyc' -not -name '_core*.so')
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick docs test thorough crates lint tests clean wheel installed
+.PHONY: help run dev quick docs test thorough crates lint tests clean wheel environment installed
 
 # What is compiled on import is kept, whatever the environment says: tests begin hundreds of processes.
 export PYTHONDONTWRITEBYTECODE =
@@ -70,12 +73,19 @@ lint:  ## style, types and imports of the Python package, by the environment fre
 tests:  ## the tests of the Python package that is installed in the environment fresh=DIR
 	$(fresh)/bin/python -m pytest tests --pyargs rga rga_bench --numprocesses auto --dist worksteal
 
-# pip fetches maturin into an environment of its own; cargo keeps what it compiled in target/.
-wheel:
-	rm -rf dist $(fresh)
+wheel: environment dist/built
+
+environment:
+	rm -rf $(fresh)
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rga needs Python 3.11 or newer")'
 	$(PYTHON) -m venv $(fresh)
+
+# Built anew where a source is newer. pip fetches maturin into an environment of its own; cargo
+# keeps what it compiled in target/.
+dist/built: $(SOURCES) | environment
+	rm -rf dist
 	$(fresh)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist .
+	touch $@
 
 clean:  ## remove environments, builds and caches
 	rm -rf .venv .venv-dev .venv-test dist site target .pytest_cache .mypy_cache .ruff_cache \
