@@ -160,11 +160,18 @@ def with_rows_together(data: bytes, parts: Collection[TdmsPart]) -> bytes:
 
     npTDMS reads rows at once, and chunks one by one.
     """
+    chunked = [
+        part
+        for part in parts
+        if part.rows
+        and not part.flags & _OF_CARDS
+        and all(one.length == 1 and one.kind != _TEXT for one in part.rows.values())
+    ]
+    if not chunked:
+        return data  # a large file is not copied for nothing
     copy = bytearray(data)
-    for part in parts:
-        once = all(one.length == 1 and one.kind != _TEXT for one in part.rows.values())
-        if once and part.rows and not part.flags & _OF_CARDS:
-            copy[part.place + 4 : part.place + 8] = (part.flags | _BY_ROWS).to_bytes(4, "little")
+    for part in chunked:
+        copy[part.place + 4 : part.place + 8] = (part.flags | _BY_ROWS).to_bytes(4, "little")
     return bytes(copy)
 
 
