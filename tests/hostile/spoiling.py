@@ -17,6 +17,8 @@ TEXTS = (
     "2026-13-01", "9999-12-31T23:59:59", "0001-01-01", "1e3", "true", "\ufeff", "\u2028", "=1+1",
 )  # fmt: skip
 OTHERS: tuple[Any, ...] = (None, True, False, [], {}, [[]], {"": {}}, [None], [[1, 2], [3]])
+#: what a float can hold
+LARGEST = float(np.finfo(float).max)
 #: stands for lists within lists, so many
 NESTED = "lists within lists: "
 
@@ -58,8 +60,8 @@ def _spoil(
         for step in paths[draw.integers(len(paths))]:
             other = other[step]
         holder[key] = json.loads(json.dumps(other))
-    elif kind == 3 and isinstance(value, int | float):
-        holder[key] = value * 10.0 ** draw.integers(-300, 300)
+    elif kind == 3 and isinstance(value, int | float) and abs(value) <= LARGEST:
+        holder[key] = value * 10.0 ** int(draw.integers(-300, 300))
     elif kind == 4 and isinstance(value, int | float):
         holder[key] = -value
     elif kind == 5:
