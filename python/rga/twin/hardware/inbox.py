@@ -117,7 +117,7 @@ class Inbox:
     def __init__(self, directory: Path, *, read_only: bool = False) -> None:
         self._database = SQLite(directory / INBOX, read_only)
         if not read_only:
-            with self._writing() as connection:
+            with self.writing() as connection:
                 _metadata.create_all(connection)
 
     def close(self) -> None:
@@ -132,7 +132,7 @@ class Inbox:
 
     def name(self, addressee: Addressee) -> Addressee:
         """Name the twin that rows are for, unless one is named already, which it gives then."""
-        with self._writing() as connection:
+        with self.writing() as connection:
             if connection.execute(select(_twin)).one_or_none() is None:
                 connection.execute(insert(_twin).values(**with_checksum(**asdict(addressee))))
         named = self.addressee
@@ -171,36 +171,47 @@ class Inbox:
             How many rows were new; None: nothing is kept, for another has named another station
             or the end meanwhile.
         """
-        with self._writing() as connection:
-            found = connection.execute(select(_station)).one_or_none()
-            if found is None:
-                known: dict[str, Any] = {
-                    "station": station.to_json(),
-                    "rows": 0,
-                    "last": -LATEST,
-                    "ended": False,
-                }
-                connection.execute(insert(_station).values(**with_checksum(**known)))
-            else:
-                known = _values(_station, found)
-            if known["ended"] or known["station"] != station.to_json():
-                return None
-            new = np.flatnonzero(time > known["last"])
-            if not len(new):
-                return 0
-            first, values = known["rows"], np.column_stack([readings, contexts])[new].astype("<f8")
-            rows = [
-                with_checksum(number=first + k, time=float(time[one]), values=values[k].tobytes())
-                for k, one in enumerate(new)
-            ]
-            connection.execute(insert(_row), rows)
-            known |= {"rows": first + len(new), "last": float(time[new[-1]])}
-            connection.execute(update(_station).values(**with_checksum(**known)))
+        with self.writing() as connection:
+            return self.put_within(connection, station, time, readings, contexts)
+
+    def put_within(
+        self,
+        connection: Connection,
+        station: Station,
+        time: FloatArray,
+        readings: FloatArray,
+        contexts: FloatArray,
+    ) -> int | None:
+        """As `put`, within a transaction that `writing` has begun."""
+        found = connection.execute(select(_station)).one_or_none()
+        if found is None:
+            known: dict[str, Any] = {
+                "station": station.to_json(),
+                "rows": 0,
+                "last": -LATEST,
+                "ended": False,
+            }
+            connection.execute(insert(_station).values(**with_checksum(**known)))
+        else:
+            known = _values(_station, found)
+        if known["ended"] or known["station"] != station.to_json():
+            return None
+        new = np.flatnonzero(time > known["last"])
+        if not len(new):
+            return 0
+        first, values = known["rows"], np.column_stack([readings, contexts])[new].astype("<f8")
+        rows = [
+            with_checksum(number=first + k, time=float(time[one]), values=values[k].tobytes())
+            for k, one in enumerate(new)
+        ]
+        connection.execute(insert(_row), rows)
+        known |= {"rows": first + len(new), "last": float(time[new[-1]])}
+        connection.execute(update(_station).values(**with_checksum(**known)))
         return len(new)
 
     def end(self) -> None:
         """No more rows will come."""
-        with self._writing() as connection:
+        with self.writing() as connection:
             known = _values(_station, connection.execute(select(_station)).one())
             ended = with_checksum(**known | {"ended": True})
             connection.execute(update(_station).values(**ended))
@@ -208,7 +219,7 @@ class Inbox:
     def packet(self, station: Station, first: int, rows: int) -> Packet:
         """Of so many rows from a row on, those that are here."""
         c = _row.c
-        with self._reading() as connection:
+        with self.reading() as connection:
             chosen = (c.number >= first) & (c.number < first + rows)
             found = [
                 whole(_row, one)
@@ -228,7 +239,7 @@ class Inbox:
             InputError: it cannot be read at all.
         """
         tables = (_twin, _station, _row, _command)
-        found = [(table, one) for table in tables for one in entries_of(self._reading, table)]
+        found = [(table, one) for table in tables for one in entries_of(self.reading, table)]
         damage = [
             f"{named(table, one)} of the inbox is not what was put in"
             for table, one in found
@@ -238,12 +249,12 @@ class Inbox:
 
     def drop(self, rows: int) -> None:
         """Forget the first so many rows that have ever arrived."""
-        with self._writing() as connection:
+        with self.writing() as connection:
             connection.execute(delete(_row).where(_row.c.number < rows))
 
     def ask(self, command: str) -> int:
         """Keep a command, and give its number: numbers rise."""
-        with self._writing() as connection:
+        with self.writing() as connection:
             number = 1 + int(connection.scalar(select(func.max(_command.c.number))) or 0)
             entry = with_checksum(number=number, command=command)
             connection.execute(insert(_command).values(**entry))
@@ -252,25 +263,27 @@ class Inbox:
     def commands(self, after: int) -> list[tuple[int, str]]:
         """Numbers and texts of the commands behind a number, in their order."""
         behind = select(_command).where(_command.c.number > after).order_by(_command.c.number)
-        with self._reading() as connection:
+        with self.reading() as connection:
             return [
                 (one.number, whole(_command, one).command) for one in connection.execute(behind)
             ]
 
     def _only(self, table: Table) -> dict[str, Any] | None:
         """The values of a table of one line; None where it has none."""
-        with self._reading() as connection:
+        with self.reading() as connection:
             found = connection.execute(select(table)).one_or_none()
             return None if found is None else _values(table, found)
 
     @contextmanager
-    def _reading(self) -> Iterator[Connection]:
+    def reading(self) -> Iterator[Connection]:
+        """A transaction on the file, in which what else is kept there may be read as well."""
         with as_input_errors(self._database.where), self._database.engine.begin() as connection:
             yield connection
 
     @contextmanager
-    def _writing(self) -> Iterator[Connection]:
-        with self._reading() as connection:
+    def writing(self) -> Iterator[Connection]:
+        """A transaction that writes: what it did is on the disk when it ends, or nothing of it."""
+        with self.reading() as connection:
             # Whoever reads before writing is refused when another has written meanwhile.
             connection.exec_driver_sql("PRAGMA user_version = 1")
             yield connection
