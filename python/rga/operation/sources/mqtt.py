@@ -29,6 +29,8 @@ SESSION = 7 * 86_400
 PROBE, BROKEN = 30.0, 90.0
 #: least time between two acknowledgements end to end [s]
 ACKNOWLEDGE = 1.0
+#: gaps that are told at once
+MOST_TOLD = 100
 #: how long to wait before writing is tried again [s]
 AGAIN = 1.0
 
@@ -169,9 +171,11 @@ class Broker:
             return
         self._told = now
         for stream, known in numbers.items():
-            told = {"stream": stream, "seq": known.whole - 1, "next": known.next}
-            told["missing"] = known.gaps[:100]
-            self._client.publish(self._ack, json.dumps(told), qos=1, retain=True)
+            told, untold = known.gaps[:MOST_TOLD], known.gaps[MOST_TOLD:]
+            # Whoever reads it takes what is below the next and not missing for kept.
+            below = untold[0][0] if untold else known.next
+            said = {"stream": stream, "seq": known.whole - 1, "next": below, "missing": told}
+            self._client.publish(self._ack, json.dumps(said), qos=1, retain=True)
 
     def _try_the_way(self) -> None:
         """Send something through the broker: it may be connected and yet bring nothing."""
