@@ -132,8 +132,9 @@ def _keep(
 
 
 def _play(places: Sequence[Path], kinds: Collection[Kind], repository: str | None) -> None:
-    """What a worker does until it is ended."""
+    """What a worker does until it is ended, or the service is gone."""
     worker = Worker(places, kinds, repository)
-    while True:
+    service = multiprocessing.parent_process()
+    while service is None or service.is_alive():
         if not worker.round():
             time.sleep(REST)
