@@ -3,9 +3,10 @@ PYTHON ?= python3
 DEV := .venv-dev/bin
 # Modules are compiled when they are imported: few of those of torch ever are.
 INSTALL := -m pip install --quiet --no-compile
-# What the wheel is made of.
+# What the wheel is made of; a folder is newer when something in it was removed.
 SOURCES := pyproject.toml Cargo.toml Cargo.lock README.md LICENSE \
-  $(shell find rust python -type f -not -name '*.pyc' -not -name '_core*.so')
+  $(shell find rust python -name __pycache__ -prune -o -type d -print -o \
+    -type f -not -name '_core*.so' -print)
 
 .DEFAULT_GOAL := help
 .PHONY: help run dev quick docs test thorough crates lint tests clean wheel environment installed

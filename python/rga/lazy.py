@@ -19,6 +19,15 @@ EXTRAS = {
     "ezdxf": "formats",
     "openpyxl": "formats",
     "nptdms": "formats",
+    "msgspec": "serve",
+    "fastapi": "serve",
+    "starlette": "serve",
+    "uvicorn": "serve",
+    "paho": "serve",
+    "apprise": "serve",
+    "argon2": "serve",
+    "prometheus_client": "serve",
+    "asyncua": "opcua",
 }
 
 

@@ -66,7 +66,7 @@ def sources_of(
             if channel.unit is None:
                 _check_unit(table, column, name, model)
             sources[name] = ColumnSource(column, channel, channel.unit or unit)
-    if unknown:
+    if unknown and mapping.unknown == "refused":
         raise InputError(
             "the model has no sensor or context variable for " + quoted(unknown, len(unknown)),
             where,

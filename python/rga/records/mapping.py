@@ -100,6 +100,7 @@ class FileMapping(_Table):
         block: which of several tables of a file, counted from 1.
         missing: what stands for a missing value, such as "-9999".
         empty: what a channel is whose column holds no value: "refused", or "missing".
+        unknown: what a column is that the model has no channel for: "refused", or "unused".
         header: pattern of the column names, such as "{channel} ({unit})"; None: channel names, or
             names with the unit in brackets behind them.
         time: where the time stands.
@@ -121,6 +122,7 @@ class FileMapping(_Table):
     block: _Line | None = None
     missing: list[str] = []
     empty: Literal["refused", "missing"] = "refused"
+    unknown: Literal["refused", "unused"] = "refused"
     header: str | None = None
     time: TimeColumns = TimeColumns()
     channels: dict[str, Channel] = {}

@@ -46,14 +46,19 @@ class Twin:
         view: a run of a repository.
         place: of the repository.
         repository: that is closed with the twin; None: it belongs to another.
+
+    Attributes:
+        given: the model as it was given.
+        station: what is mounted on the structure.
+        state: what it holds.
     """
 
     def __init__(
         self, view: RunView, place: str | Path, repository: Repository | None = None
     ) -> None:
         self._view, self._place, self._repository = view, place, repository
-        self._station, self.given = station_of(view), given_model(view)
-        self.state: TwinState = replay(view, self._station.channels)
+        self.station, self.given = station_of(view), given_model(view)
+        self.state: TwinState = replay(view, self.station.channels)
 
     @classmethod
     def open(cls, place: str | Path, source: str | None = None) -> Self:

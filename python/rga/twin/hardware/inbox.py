@@ -4,8 +4,6 @@ It is a file beside the repository, so that nobody who sends waits for a recalib
 writes its repository in long transactions, and takes from here what it needs for each.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +18,6 @@ from sqlalchemy import (
     Integer,
     LargeBinary,
     MetaData,
-    Row,
     Table,
     Text,
     delete,
@@ -33,9 +30,9 @@ from sqlalchemy import (
 from rga.arrays import FloatArray
 from rga.twin.hardware.interface import Packet, Station
 from rga.twin.repository.checksum import COLUMN, is_whole, with_checksum
-from rga.twin.repository.faults import as_input_errors, named, whole
+from rga.twin.repository.faults import named, whole
 from rga.twin.repository.proof import Proof, entries_of
-from rga.twin.repository.sqlite import SQLite
+from rga.twin.repository.table_file import TableFile, only_entry, values_of
 
 #: name of the file
 INBOX = "inbox.sqlite"
@@ -100,7 +97,7 @@ class Addressee:
     seed: int
 
 
-class Inbox:
+class Inbox(TableFile):
     """The rows and commands that wait for one twin.
 
     Threads and processes may put in and take out at the same time. What was put in is on the disk
@@ -115,14 +112,7 @@ class Inbox:
     """
 
     def __init__(self, directory: Path, *, read_only: bool = False) -> None:
-        self._database = SQLite(directory / INBOX, read_only)
-        if not read_only:
-            with self._writing() as connection:
-                _metadata.create_all(connection)
-
-    def close(self) -> None:
-        """Close the file; it opens again where it is asked more."""
-        self._database.close()
+        super().__init__(directory / INBOX, _metadata, read_only=read_only)
 
     @property
     def addressee(self) -> Addressee | None:
@@ -132,7 +122,7 @@ class Inbox:
 
     def name(self, addressee: Addressee) -> Addressee:
         """Name the twin that rows are for, unless one is named already, which it gives then."""
-        with self._writing() as connection:
+        with self.writing() as connection:
             if connection.execute(select(_twin)).one_or_none() is None:
                 connection.execute(insert(_twin).values(**with_checksum(**asdict(addressee))))
         named = self.addressee
@@ -171,44 +161,55 @@ class Inbox:
             How many rows were new; None: nothing is kept, for another has named another station
             or the end meanwhile.
         """
-        with self._writing() as connection:
-            found = connection.execute(select(_station)).one_or_none()
-            if found is None:
-                known: dict[str, Any] = {
-                    "station": station.to_json(),
-                    "rows": 0,
-                    "last": -LATEST,
-                    "ended": False,
-                }
-                connection.execute(insert(_station).values(**with_checksum(**known)))
-            else:
-                known = _values(_station, found)
-            if known["ended"] or known["station"] != station.to_json():
-                return None
-            new = np.flatnonzero(time > known["last"])
-            if not len(new):
-                return 0
-            first, values = known["rows"], np.column_stack([readings, contexts])[new].astype("<f8")
-            rows = [
-                with_checksum(number=first + k, time=float(time[one]), values=values[k].tobytes())
-                for k, one in enumerate(new)
-            ]
-            connection.execute(insert(_row), rows)
-            known |= {"rows": first + len(new), "last": float(time[new[-1]])}
-            connection.execute(update(_station).values(**with_checksum(**known)))
+        with self.writing() as connection:
+            return self.put_within(connection, station, time, readings, contexts)
+
+    def put_within(
+        self,
+        connection: Connection,
+        station: Station,
+        time: FloatArray,
+        readings: FloatArray,
+        contexts: FloatArray,
+    ) -> int | None:
+        """As `put`, within a transaction that `writing` has begun."""
+        found = connection.execute(select(_station)).one_or_none()
+        if found is None:
+            known: dict[str, Any] = {
+                "station": station.to_json(),
+                "rows": 0,
+                "last": -LATEST,
+                "ended": False,
+            }
+            connection.execute(insert(_station).values(**with_checksum(**known)))
+        else:
+            known = values_of(_station, found)
+        if known["ended"] or known["station"] != station.to_json():
+            return None
+        new = np.flatnonzero(time > known["last"])
+        if not len(new):
+            return 0
+        first, values = known["rows"], np.column_stack([readings, contexts])[new].astype("<f8")
+        rows = [
+            with_checksum(number=first + k, time=float(time[one]), values=values[k].tobytes())
+            for k, one in enumerate(new)
+        ]
+        connection.execute(insert(_row), rows)
+        known |= {"rows": first + len(new), "last": float(time[new[-1]])}
+        connection.execute(update(_station).values(**with_checksum(**known)))
         return len(new)
 
     def end(self) -> None:
         """No more rows will come."""
-        with self._writing() as connection:
-            known = _values(_station, connection.execute(select(_station)).one())
+        with self.writing() as connection:
+            known = values_of(_station, connection.execute(select(_station)).one())
             ended = with_checksum(**known | {"ended": True})
             connection.execute(update(_station).values(**ended))
 
     def packet(self, station: Station, first: int, rows: int) -> Packet:
         """Of so many rows from a row on, those that are here."""
         c = _row.c
-        with self._reading() as connection:
+        with self.reading() as connection:
             chosen = (c.number >= first) & (c.number < first + rows)
             found = [
                 whole(_row, one)
@@ -222,13 +223,16 @@ class Inbox:
         return Packet(begun, time, values[:, :channels], values[:, channels:])
 
     def check(self) -> Proof:
-        """Read all that waits, and prove that it is what was put in.
+        """Read all that is in the file, and prove that it is what was put in.
 
         Raises:
             InputError: it cannot be read at all.
         """
-        tables = (_twin, _station, _row, _command)
-        found = [(table, one) for table in tables for one in entries_of(self._reading, table)]
+        here = MetaData()
+        with self.reading() as connection:
+            here.reflect(connection)
+        tables = here.sorted_tables
+        found = [(table, one) for table in tables for one in entries_of(self.reading, table)]
         damage = [
             f"{named(table, one)} of the inbox is not what was put in"
             for table, one in found
@@ -238,50 +242,29 @@ class Inbox:
 
     def drop(self, rows: int) -> None:
         """Forget the first so many rows that have ever arrived."""
-        with self._writing() as connection:
+        with self.writing() as connection:
             connection.execute(delete(_row).where(_row.c.number < rows))
 
     def ask(self, command: str) -> int:
         """Keep a command, and give its number: numbers rise."""
-        with self._writing() as connection:
-            number = 1 + int(connection.scalar(select(func.max(_command.c.number))) or 0)
-            entry = with_checksum(number=number, command=command)
-            connection.execute(insert(_command).values(**entry))
-            return number
+        with self.writing() as connection:
+            return self.ask_within(connection, command)
+
+    def ask_within(self, connection: Connection, command: str) -> int:
+        """As `ask`, within a transaction that `writing` has begun."""
+        number = 1 + int(connection.scalar(select(func.max(_command.c.number))) or 0)
+        entry = with_checksum(number=number, command=command)
+        connection.execute(insert(_command).values(**entry))
+        return number
 
     def commands(self, after: int) -> list[tuple[int, str]]:
         """Numbers and texts of the commands behind a number, in their order."""
         behind = select(_command).where(_command.c.number > after).order_by(_command.c.number)
-        with self._reading() as connection:
+        with self.reading() as connection:
             return [
                 (one.number, whole(_command, one).command) for one in connection.execute(behind)
             ]
 
     def _only(self, table: Table) -> dict[str, Any] | None:
-        """The values of a table of one line; None where it has none."""
-        with self._reading() as connection:
-            found = connection.execute(select(table)).one_or_none()
-            return None if found is None else _values(table, found)
-
-    @contextmanager
-    def _reading(self) -> Iterator[Connection]:
-        with as_input_errors(self._database.where), self._database.engine.begin() as connection:
-            yield connection
-
-    @contextmanager
-    def _writing(self) -> Iterator[Connection]:
-        with self._reading() as connection:
-            # Whoever reads before writing is refused when another has written meanwhile.
-            connection.exec_driver_sql("PRAGMA user_version = 1")
-            yield connection
-
-
-def _values(table: Table, entry: Row[Any]) -> dict[str, Any]:
-    """The columns of an entry without its checksum.
-
-    Raises:
-        NotWhole: it is not what was written.
-    """
-    values = whole(table, entry)._asdict()
-    values.pop(COLUMN)
-    return values
+        with self.reading() as connection:
+            return only_entry(connection, table)

@@ -93,6 +93,10 @@ class RunView:
         last = self._source.last_chunk(tables.measured)
         return 0 if last is None else int(last.first_row + last.length)
 
+    def row_at(self, time: float) -> int:
+        """The last row of the record at or before a time [s since the first]; -1: none is."""
+        return self._source.row_at(time)
+
     def packets(self, first: int, end: int) -> list[tuple[int, int]]:
         """First row of, and row behind, the packets from a row on that end by another."""
         c = tables.measured.c

@@ -1,0 +1,1 @@
+"""A logger to try a service with: plays a record as one would send it, with faults."""

@@ -1,0 +1,74 @@
+"""A record as the packets of a logger."""
+
+import secrets
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.errors import InputError
+from rga.operation.packets.packet import EPOCH, MICROSECONDS, Moments, Number, SensorPacket
+from rga.records.mapping import FileMapping
+from rga.records.read import read_table
+from rga.records.times import read_clock
+
+
+@dataclass(frozen=True)
+class SentRecord:
+    """Rows of a logger's file, as it has them.
+
+    Attributes:
+        channels: its columns but the time.
+        times: int64[n], microseconds since 1970 (UTC).
+        values: float64[n, channels], NaN where one is missing.
+        stream: of its packets.
+    """
+
+    channels: tuple[str, ...]
+    times: Moments
+    values: FloatArray
+    stream: str
+
+    def packets(self, rows: int) -> Iterator[SensorPacket]:
+        """The record in packets of so many rows, or fewer where they would be too long."""
+        begin = 0
+        number = 0
+        while begin < len(self.times):
+            within = self.times[begin : begin + rows] < self.times[begin] + 60 * MICROSECONDS
+            end = begin + int(within.sum())
+            yield SensorPacket(
+                Number(self.stream, number),
+                self.channels,
+                self.times[begin:end],
+                self.values[begin:end],
+            )
+            begin, number = end, number + 1
+
+
+def sent_record(path: Path, mapping: FileMapping, start: datetime | None) -> SentRecord:
+    """Read a logger's file to send what it holds.
+
+    Args:
+        path: the file.
+        mapping: how its time and its numbers are read.
+        start: of its first row; None: as it says, which takes time stamps with a zone.
+
+    Raises:
+        InputError: it cannot be read, or its times have no zone.
+    """
+    table = read_table(path, mapping)
+    clock = read_clock(table, mapping.time)
+    if start is None:
+        start = datetime.fromisoformat(clock.start) if isinstance(clock.start, str) else None
+    if start is None or start.tzinfo is None:
+        raise InputError(
+            "its times have no zone", str(path), "give --start with a zone, or zone in import.toml"
+        )
+    after = np.rint(clock.seconds * MICROSECONDS).astype(np.int64)
+    channels = [one for one in table.frame.columns if one not in clock.columns]
+    values = np.column_stack([table.numbers(one, tuple(mapping.missing)) for one in channels])
+    times = (start - EPOCH) // timedelta(microseconds=1) + after
+    return SentRecord(tuple(channels), times, values, secrets.token_hex(8))

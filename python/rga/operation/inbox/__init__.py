@@ -1,0 +1,1 @@
+"""Packets that have arrived: kept on the disk, known from each other, and accounted for."""

@@ -1,0 +1,64 @@
+"""Commands of people that are asked for once, however often they are sent."""
+
+from sqlalchemy import Column, Integer, MetaData, Table, Text, insert, select
+
+from rga.errors import InputError
+from rga.twin.hardware.inbox import Inbox
+from rga.twin.repository.checksum import COLUMN, with_checksum
+from rga.twin.repository.table_file import values_of
+
+metadata = MetaData()
+# The command that a key was first sent with.
+_request = Table(
+    "request",
+    metadata,
+    Column("key", Text, primary_key=True),
+    Column("number", Integer, nullable=False),
+    Column("command", Text, nullable=False),
+    Column(COLUMN, Integer, nullable=False),
+)
+
+
+class Requests:
+    """The commands of one twin, in the file of its inbox.
+
+    Args:
+        inbox: of the twin.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+
+    def __init__(self, inbox: Inbox) -> None:
+        self._inbox = inbox
+        with inbox.writing() as connection:
+            metadata.create_all(connection)
+
+    def ask(self, key: str, command: str, compared: str) -> int:
+        """Keep a command on the disk, unless its key has come before.
+
+        Args:
+            key: drawn by whoever asks, the same when it is sent again.
+            command: as JSON text.
+            compared: what of it must be the same when it is sent again.
+
+        Returns:
+            Its number, or that of the command that the key was sent with before.
+
+        Raises:
+            InputError: the key was sent with another command, or nothing can be written.
+        """
+        with self._inbox.writing() as connection:
+            of_key = select(_request).where(_request.c.key == key)
+            found = connection.execute(of_key).one_or_none()
+            if found is not None:
+                known = values_of(_request, found)
+                if known["command"] != compared:
+                    raise InputError(
+                        "another command was sent with this key", "request", "draw a new key"
+                    )
+                return int(known["number"])
+            number = self._inbox.ask_within(connection, command)
+            entry = with_checksum(key=key, number=number, command=compared)
+            connection.execute(insert(_request).values(**entry))
+            return number

@@ -1,0 +1,1 @@
+"""What loggers send: packets, and how they are written."""

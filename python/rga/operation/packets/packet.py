@@ -1,0 +1,49 @@
+"""A packet: what a logger sends at once."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+import numpy as np
+import numpy.typing as npt
+
+from rga.arrays import FloatArray
+
+#: bytes of a packet, and its longest time [s]
+MOST_BYTES, LONGEST = 8 * 2**20, 60.0
+#: channels of a packet
+MOST_CHANNELS = 5_000
+#: microseconds in a second
+MICROSECONDS = 1_000_000
+EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+Moments = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, order=True)
+class Number:
+    """By which a packet is known from all others of its source.
+
+    Attributes:
+        stream: drawn by the logger when it starts.
+        sequence: of the packet within the stream, counted from 0.
+    """
+
+    stream: str
+    sequence: int
+
+
+@dataclass(frozen=True)
+class SensorPacket:
+    """Readings of some channels.
+
+    Attributes:
+        number: None: the logger counts none, and nobody can tell whether one was lost.
+        channels: as the logger calls them.
+        times: int64[n], microseconds since 1970 (UTC), rising.
+        values: float64[n, channels], as the logger has them, NaN where one is missing.
+    """
+
+    number: Number | None
+    channels: tuple[str, ...]
+    times: Moments
+    values: FloatArray

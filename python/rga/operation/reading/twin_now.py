@@ -1,0 +1,117 @@
+"""Where a twin that is served stands."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from rga.findings.phrases import effect_words
+from rga.twin.commands.proposals import decision
+from rga.twin.repository import Proposal, RunView
+from rga.twin.restore import standing_of
+from rga.twin.run_state import Stage
+from rga.twin.twin import Twin
+
+
+@dataclass(frozen=True)
+class SensorNow:
+    """The last row of a sensor.
+
+    Attributes:
+        measured, simulated: in its unit; None: missing.
+        noise: standard deviation of a row [its unit]; None: nothing tells it.
+        gap: squared difference over the variance of the noise [-].
+    """
+
+    measured: float | None
+    simulated: float | None
+    noise: float | None
+    gap: float | None
+
+
+@dataclass(frozen=True)
+class TwinNow:
+    """Where a twin stands.
+
+    Attributes:
+        steps: that it has acknowledged: another number, another state.
+        rows: that it has taken in.
+        time: of the last of them; None before the first.
+        stage: what it does next.
+        version: of the model that is in force; 0 before the first.
+        causes: what that version has beyond the model as given, in words.
+        out_of_sync: whether an alarm is being dealt with.
+        undecided: the proposal that nobody has decided about.
+        gap: mean over the sensors of the last row [-].
+        sensors: by name.
+        contexts: mean and standard deviation of each, in its unit.
+    """
+
+    steps: int
+    rows: int
+    time: datetime | None
+    stage: Stage
+    version: int
+    causes: tuple[str, ...]
+    out_of_sync: bool
+    undecided: Proposal | None
+    gap: float | None
+    sensors: dict[str, SensorNow]
+    contexts: dict[str, tuple[float, float]]
+
+
+def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
+    """Where a twin stands.
+
+    Args:
+        twin: as its repository holds it.
+        view: its run.
+        noise: standard deviation of a row of each sensor [its unit]; NaN where nothing tells it.
+    """
+    row, standing = view.rows - 1, standing_of(view)
+    last, gaps = view.measured(max(0, row), row + 1), view.gaps(max(0, row), row + 1)
+    station = twin.station
+    names = list(station.channels)
+    none = np.full(len(names), np.nan)
+    measured = last.readings[-1] if len(last.rows) else none
+    simulated = gaps.simulated[-1] if len(gaps.rows) else none
+    squares = gaps.gaps[-1] if len(gaps.rows) else none
+    sensors = {}
+    for k, name in enumerate(names):
+        own = noise.get(name, np.nan)
+        sensors[name] = SensorNow(
+            _number(measured[k]), _number(simulated[k]), _number(own), _number(squares[k] / own**2)
+        )
+    known = [one.gap for one in sensors.values() if one.gap is not None]
+    proposals = view.proposals()
+    open_ = proposals[-1] if proposals and decision(view, proposals[-1]) is None else None
+    effects = twin.state.versions.get(twin.version, {})
+    spread = twin.spread
+    return TwinNow(
+        steps=view.steps,
+        rows=row + 1,
+        time=moment(station.start, float(last.time[-1])) if len(last.rows) else None,
+        stage=standing.stage,
+        version=twin.version,
+        causes=tuple(effect_words(one) for one in effects.values()),
+        out_of_sync=standing.alarm is not None,
+        undecided=open_,
+        gap=float(np.mean(known)) if known else None,
+        sensors=sensors,
+        contexts={
+            name: (float(mean), spread.get(name, 0.0)) for name, mean in twin.context.items()
+        },
+    )
+
+
+def moment(start: str | float, elapsed: float) -> datetime:
+    """The time of a row [s since the first] of a twin that is served: its rows are in UTC.
+
+    >>> moment("2026-11-23T00:00:00+00:00", 90.0).isoformat()
+    '2026-11-23T00:01:30+00:00'
+    """
+    return datetime.fromisoformat(str(start)) + timedelta(seconds=elapsed)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

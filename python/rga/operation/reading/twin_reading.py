@@ -1,0 +1,252 @@
+"""A twin that is served, kept open for those who look at it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from threading import RLock
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.errors import InputError
+from rga.jobs.run import FILE
+from rga.operation.reading.overview import Overview, Trace, as_trace
+from rga.operation.reading.twin_now import TwinNow, twin_now
+from rga.twin.calibration.channel_noise import noise_of
+from rga.twin.hardware.interface import LIVE
+from rga.twin.history import Event
+from rga.twin.repository import Proposal, Repository, RunView, StoredCommand
+from rga.twin.restore import standing_of
+from rga.twin.twin import Twin
+
+#: rows that are read as they are; more are shown as blocks
+MOST_ROWS = 4096
+#: rows that are read at a time
+BATCH = 20_000
+
+
+@dataclass(frozen=True)
+class Series:
+    """What was measured, simulated and inferred over a time.
+
+    Attributes:
+        sensors: names of the columns of `measured`, `simulated` and `gap`.
+        contexts: names of the columns of `inferred`.
+        measured, simulated, gap: over time [s since the first row]; the gap is a squared
+            difference over the variance of the noise [-].
+        inferred: contexts.
+    """
+
+    sensors: tuple[str, ...]
+    contexts: tuple[str, ...]
+    measured: Trace
+    simulated: Trace
+    gap: Trace
+    inferred: Trace
+
+
+class TwinReading:
+    """What others see of a twin: nothing here changes it.
+
+    Args:
+        name: of the twin.
+        directory: of it.
+        repository: URL of a PostgreSQL database; None: it is in the directory.
+
+    Example: `TwinReading("east", Path("data/east"), None).now()` tells where it stands, or is None
+    before it has begun.
+    """
+
+    def __init__(self, name: str, directory: Path, repository: str | None) -> None:
+        self.name = name
+        self._place: str | Path = repository or directory
+        self._file = None if repository else directory / FILE
+        self._lock = RLock()
+        self._repository: Repository | None = None
+        self._twin: Twin | None = None
+        self._steps = -1
+        self._now: TwinNow | None = None
+        self._noise: FloatArray | None = None
+        self._measured: Overview | None = None
+        self._followed: Overview | None = None
+
+    def close(self) -> None:
+        """Close the connections; they open again where more is asked."""
+        with self._lock:
+            if self._repository is not None:
+                self._repository.close()
+            self._repository = None
+
+    @property
+    def twin(self) -> Twin | None:
+        """The twin as it stands; None before it has begun.
+
+        Raises:
+            InputError: its repository cannot be read.
+        """
+        with self._lock:
+            view = self._view()
+            if view is None:
+                return None
+            if self._twin is None or view.steps != self._steps:
+                # It is told apart by its number of steps, which a step at this moment may raise.
+                steps = view.steps
+                self._twin, self._now = Twin(view, self._place), None
+                self._steps = steps
+            return self._twin
+
+    def now(self) -> TwinNow | None:
+        """Where the twin stands; None before it has begun.
+
+        Raises:
+            InputError: its repository cannot be read.
+        """
+        with self._lock:
+            twin = self.twin
+            if twin is None:
+                return None
+            if self._now is None:
+                view = self._begun()
+                self._now = twin_now(twin, view, dict(zip(*self._noise_by_name(twin), strict=True)))
+            return self._now
+
+    def events(self) -> tuple[Event, ...]:
+        """What happened to the twin, in order."""
+        view = self._view()
+        return () if view is None else view.events()
+
+    def proposals(self) -> tuple[Proposal, ...]:
+        """Changes of the model that diagnoses proposed."""
+        view = self._view()
+        return () if view is None else view.proposals()
+
+    def commands(self) -> tuple[StoredCommand, ...]:
+        """What people asked for, and what came of it."""
+        view = self._view()
+        return () if view is None else view.commands()
+
+    def view(self) -> RunView | None:
+        """The run of the twin, for reading; None before it has begun."""
+        return self._view()
+
+    def series(self, begin: float, end: float, points: int) -> Series | None:
+        """What was measured and simulated within a time.
+
+        Args:
+            begin, end: [s since the first row].
+            points: entries at most.
+
+        Returns:
+            None before the twin has begun.
+        """
+        with self._lock:
+            twin = self.twin
+            if twin is None:
+                return None
+            view = self._begun()
+            channels, contexts = twin.station.channels, tuple(twin.given.context)
+            measured, followed = self._grown(view, twin)
+            first, last = view.row_at(begin), view.row_at(end) + 1
+            if last - first <= MOST_ROWS:
+                traces = self._as_they_are(view, twin, max(0, first), last, begin, end)
+            else:
+                every = followed.between(begin, end)
+                n = len(channels)
+                traces = (
+                    measured.between(begin, end),
+                    _columns(every, slice(0, n)),
+                    _columns(every, slice(n, 2 * n)),
+                    _columns(every, slice(2 * n, None)),
+                )
+            return Series(channels, contexts, *(one.at_most(points) for one in traces))
+
+    def elapsed(self, time: datetime) -> float:
+        """Seconds from the first row to a time; 0 before the twin has begun."""
+        twin = self.twin
+        if twin is None:
+            return 0.0
+        return (time - datetime.fromisoformat(str(twin.station.start))).total_seconds()
+
+    def _as_they_are(
+        self, view: RunView, twin: Twin, first: int, last: int, begin: float, end: float
+    ) -> tuple[Trace, ...]:
+        seen = view.measured(first, last)
+        inside = (seen.time >= begin) & (seen.time < end)
+        time = seen.time
+        followed = self._followed_rows(view, twin, first, last)
+        n = len(twin.station.channels)
+        parts = (
+            seen.readings.reshape(len(time), n),
+            followed[:, :n],
+            followed[:, n : 2 * n],
+            followed[:, 2 * n :],
+        )
+        return tuple(as_trace(time[inside], one[inside]) for one in parts)
+
+    def _grown(self, view: RunView, twin: Twin) -> tuple[Overview, Overview]:
+        """The whole past in blocks, with the rows that have come since it was last looked at."""
+        n, contexts = len(twin.station.channels), len(twin.given.context)
+        if self._measured is None or self._followed is None:
+            self._measured, self._followed = Overview(n), Overview(2 * n + contexts)
+        rows = view.rows
+        while (first := self._measured.rows) < rows:
+            seen = view.measured(first, min(rows, first + BATCH))
+            self._measured.append(seen.time, seen.readings.reshape(len(seen.time), n))
+        rows = standing_of(view).row if standing_of(view).calibrated else 0
+        while (first := self._followed.rows) < rows:
+            last = min(rows, first + BATCH)
+            time = view.measured(first, last).time
+            self._followed.append(time, self._followed_rows(view, twin, first, last))
+        return self._measured, self._followed
+
+    def _followed_rows(self, view: RunView, twin: Twin, first: int, last: int) -> FloatArray:
+        """Simulated, gap and inferred contexts of rows, at the time, float[n, 2 channels + k]."""
+        n, contexts = len(twin.station.channels), len(twin.given.context)
+        found = np.full((max(0, last - first), 2 * n + contexts), np.nan)
+        gaps = view.gaps(first, last, at_the_time=True)
+        if len(gaps.rows):
+            _, noise = self._noise_by_name(twin)
+            found[gaps.rows - first, :n] = gaps.simulated
+            found[gaps.rows - first, n : 2 * n] = gaps.gaps / np.array(noise) ** 2
+        inferred = view.inferred(first, last, at_the_time=True)
+        if len(inferred.rows):
+            found[inferred.rows - first, 2 * n :] = inferred.contexts
+        return found
+
+    def _noise_by_name(self, twin: Twin) -> tuple[Sequence[str], Sequence[float]]:
+        """Standard deviation of a row of each sensor, from the rows of the calibration."""
+        channels = twin.station.channels
+        if self._noise is None:
+            view = self._begun()
+            standing = standing_of(view)
+            told = view.measured(0, standing.calibrated or 1).readings
+            stated = [twin.given.sensors[name].noise for name in channels]
+            stuck = np.array([name in standing.stuck for name in channels], dtype=np.bool_)
+            found = noise_of(stated, told.reshape(-1, len(channels)), stuck)
+            if not standing.calibrated:
+                return channels, found.tolist()
+            self._noise = found
+        return channels, self._noise.tolist()
+
+    def _begun(self) -> RunView:
+        view = self._view()
+        if view is None:
+            raise InputError("it has not begun", f"twin {self.name!r}", "wait for its first rows")
+        return view
+
+    def _view(self) -> RunView | None:
+        with self._lock:
+            if self._repository is None:
+                if self._file is not None and not self._file.exists():
+                    return None
+                self._repository = Repository.open(self._place, read_only=True)
+            source = f"{LIVE}{self.name}"
+            runs = [one for one in self._repository.runs() if one.identity.source == source]
+            begun = [one for one in runs if one.kept("station") is not None]
+            return begun[-1] if begun else None
+
+
+def _columns(trace: Trace, which: slice) -> Trace:
+    parts = (trace.mean, trace.least, trace.most)
+    return Trace(trace.time, *(one[:, which] for one in parts))

@@ -1,0 +1,1 @@
+"""How samples become the rows of a twin: one for each cell of a grid in time."""

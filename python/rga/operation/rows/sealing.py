@@ -1,0 +1,146 @@
+"""When a row is final, and making it of the samples that came for it."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import timedelta
+
+import numpy as np
+
+from rga.model import Model
+from rga.operation.inbox.packets import KeptPacket, Packets
+from rga.operation.packets.native import read_packet
+from rga.operation.packets.packet import EPOCH
+from rga.operation.rows.cells import SensorSamples, cell_of, cells_of
+from rga.operation.rows.samples import Reader
+from rga.twin.hardware.inbox import Inbox
+from rga.twin.hardware.interface import Station
+
+#: bytes of payload that are read at a time
+MOST_BYTES = 64 * 2**20
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The cells in time of which each makes a row.
+
+    Attributes:
+        every: length of a cell [µs].
+        lateness: by which a source may send samples after others of later times [µs].
+    """
+
+    every: int
+    lateness: int
+
+    def final_until(self, latest: Mapping[str, int], silent: Collection[str]) -> int | None:
+        """Moment before which no more samples are waited for; None: all may still come.
+
+        A row waits until every source is past its end by the lateness. One that is silent is
+        waited for no longer; where all are, the row that they were in is final too.
+
+        Args:
+            latest: moment that each source has sent [µs since 1970].
+            silent: sources that nothing has been heard of for too long.
+
+        >>> grid = Grid(every=60, lateness=10)
+        >>> grid.final_until({"a": 130, "b": 300}, silent=()), grid.final_until({"a": 129}, ())
+        (120, 60)
+        >>> grid.final_until({"a": 30, "b": 300}, silent=["a"]), grid.final_until({"a": 30}, ["a"])
+        (240, 60)
+        """
+        if not latest:
+            return None
+        speaking = [moment for source, moment in latest.items() if source not in silent]
+        if not speaking:
+            return cell_of(max(latest.values()), self.every) + self.every
+        return cell_of(min(speaking) - self.lateness, self.every)
+
+
+class Sealing:
+    """Makes rows of the packets of a twin as they become final.
+
+    Args:
+        inbox: of the twin.
+        packets: in it.
+        model: of the twin.
+        readers: by source.
+        grid: of the rows.
+    """
+
+    def __init__(
+        self,
+        inbox: Inbox,
+        packets: Packets,
+        model: Model,
+        readers: Mapping[str, Reader],
+        grid: Grid,
+    ) -> None:
+        self._inbox, self._packets, self._model = inbox, packets, model
+        self._readers, self._grid = readers, grid
+
+    def seal(self, silent: Collection[str]) -> int:
+        """Give the twin all rows that are final.
+
+        Args:
+            silent: sources that nothing has been heard of for too long.
+
+        Returns:
+            How many rows are new.
+
+        Raises:
+            InputError: nothing can be written, or the twin has ended.
+        """
+        latest = self._packets.latest()
+        # A source that has sent nothing yet is waited for like any other.
+        waited = {name for name in self._readers if name not in latest and name not in silent}
+        until = self._grid.final_until(latest, silent)
+        if until is None or waited:
+            return 0
+        rows = 0
+        while (begin := self._packets.sealed) < until:
+            kept, end = self._packets.between(begin, until, MOST_BYTES)
+            if end < until:
+                end = cell_of(end, self._grid.every)
+                if end <= begin:
+                    kept, end = self._packets.between(begin, begin + self._grid.every, 2**62)
+            rows += self._seal_with(kept, begin, end)
+        return rows
+
+    def _seal_with(self, kept: Sequence[KeptPacket], begin: int, end: int) -> int:
+        samples = [_within(one, begin, end) for one in self._samples(kept)]
+        samples = [one for one in samples if len(one.times)]
+        if not samples:
+            self._packets.seal(end, None, [])
+            return 0
+        station = self._inbox.station or self._station(samples)
+        names = (*station.channels, *station.measured)
+        cells = cells_of(samples, names, self._grid.every)
+        self._packets.seal(end, station, cells)
+        return len(cells)
+
+    def _samples(self, kept: Sequence[KeptPacket]) -> list[SensorSamples]:
+        """SensorSamples of packets, by source in the order of their names."""
+        samples = []
+        for source, reader in sorted(self._readers.items()):
+            own = [one for one in kept if one.source == source]
+            packets = [read_packet(one.payload, source) for one in own if one.kind == "packet"]
+            samples += reader.of_packets(packets)
+            samples += [reader.of_file(one.payload) for one in own if one.kind == "file"]
+        return samples
+
+    def _station(self, samples: Sequence[SensorSamples]) -> Station:
+        """What is mounted, as the configuration and the first rows show it."""
+        sent = {name for one in samples for name in one.names}
+        left_out = set.intersection(*(set(one.left_out) for one in self._readers.values()))
+        channels = tuple(
+            name for name in self._model.sensors if name in sent or name not in left_out
+        )
+        measured = tuple(name for name in self._model.context if name in sent)
+        first = cell_of(min(int(one.times.min()) for one in samples), self._grid.every)
+        start = (EPOCH + timedelta(microseconds=first)).isoformat()
+        none = {name: np.zeros(0) for name in (*measured, "time")}
+        return Station(channels, measured, start, "iso", none)
+
+
+def _within(samples: SensorSamples, begin: int, end: int) -> SensorSamples:
+    there = (samples.times >= begin) & (samples.times < end)
+    return SensorSamples(samples.names, samples.times[there], samples.values[there])

@@ -1,0 +1,38 @@
+"""A payload on its way into the inbox: what it is, when it is of, and whether it can be used."""
+
+from hashlib import sha256
+
+from rga.errors import InputError
+from rga.operation.inbox.packets import Arrival, Kind
+from rga.operation.packets.native import is_native, read_packet
+from rga.operation.rows.samples import Reader
+from rga.operation.sources.clock import ClockRule
+
+
+def arrival_of(
+    payload: bytes, arrived: int, where: str, reader: Reader, clock: ClockRule | None
+) -> Arrival:
+    """A payload, read as far as it takes to keep it.
+
+    Args:
+        payload: a packet of rga's own, or any format of a logger.
+        arrived: microseconds since 1970 (UTC), by the clock of this machine.
+        where: it came from, such as a topic: another place, another payload.
+        reader: of the source.
+        clock: what is believed of its clock; None: all.
+    """
+    digest = sha256(where.encode() + b"\0" + payload).hexdigest()
+    kind: Kind = "file"
+    number = None
+    try:
+        if is_native(payload):
+            packet = read_packet(payload, where)
+            kind, number, times = "packet", packet.number, packet.times
+        else:
+            times = reader.of_file(payload).times
+    except InputError as error:
+        return Arrival(payload, kind, arrived, sha256=digest, refused=str(error))
+    first, last = int(times[0]), int(times[-1])
+    fault = None if clock is None else clock.fault(first, last, arrived)
+    known = None if number else digest
+    return Arrival(payload, kind, arrived, first, last, number, known, fault)

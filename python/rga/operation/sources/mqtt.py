@@ -1,0 +1,189 @@
+"""A broker that loggers send to: a message is acknowledged when its packet is on the disk."""
+
+import json
+import ssl
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Event, Thread
+from typing import Any
+from urllib.parse import urlsplit
+
+from paho.mqtt.client import Client, MQTTMessage, MQTTv5
+from paho.mqtt.enums import CallbackAPIVersion
+from paho.mqtt.packettypes import PacketTypes
+from paho.mqtt.properties import Properties
+from paho.mqtt.subscribeoptions import SubscribeOptions
+
+from rga.errors import InputError
+from rga.operation.inbox.numbers import Numbers
+
+#: messages that are kept together, and how long the first of them waits for others [s]
+MOST_MESSAGES, LONGEST_WAIT = 256, 0.05
+#: messages that the broker sends before the first of them is acknowledged
+RECEIVE_MAXIMUM = 100
+#: how long the broker keeps what is sent while the service is away [s]
+SESSION = 7 * 86_400
+#: how often the way through the broker is tried [s], and after how long it is broken
+PROBE, BROKEN = 30.0, 90.0
+#: least time between two acknowledgements end to end [s]
+ACKNOWLEDGE = 1.0
+#: gaps that are told at once
+MOST_TOLD = 100
+#: how long to wait before writing is tried again [s]
+AGAIN = 1.0
+
+#: keeps what came on topics, and gives the numbers that have come by stream
+Keep = Callable[[Sequence[tuple[str, bytes]]], dict[str, Numbers]]
+
+
+class Broker:
+    """Takes packets from a broker.
+
+    Nothing is acknowledged before it is kept, so that the broker holds back what the disk has no
+    room for. Where packets are numbered, the topic `ack` says up to which number they are kept,
+    and which are missing: a sender that reads it loses nothing, whatever the broker does.
+
+    Args:
+        url: mqtt:// or mqtts://, host and port.
+        topics: that hold data.
+        twin, source: names, for the topics of the service.
+        credentials: file of two lines, user and password.
+        keep: keeps what came; it raises InputError where nothing can be written for now.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        topics: Sequence[str],
+        twin: str,
+        source: str,
+        credentials: Path | None,
+        keep: Keep,
+    ) -> None:
+        parts = urlsplit(url)
+        self._host, self._port = parts.hostname or "", parts.port or 1883
+        self._topics, self._keep = tuple(topics), keep
+        self._probe = f"rga/v1/{twin}/probe/{source}"
+        self._ack = f"rga/v1/{twin}/ack/{source}"
+        self._status = f"rga/v1/{twin}/status"
+        self._waiting: SimpleQueue[MQTTMessage] = SimpleQueue()
+        self._ending = Event()
+        self._probed = self._answered = time.monotonic()
+        self._told = 0.0
+        self._client = self._made(f"rga-{twin}-{source}", parts.scheme == "mqtts", credentials)
+        self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
+        self.fault: str | None = "not connected yet"
+
+    def start(self) -> None:
+        """Connect, as often as it takes, and take packets."""
+        properties = Properties(PacketTypes.CONNECT)  # type: ignore[no-untyped-call]
+        properties.SessionExpiryInterval = SESSION
+        properties.ReceiveMaximum = RECEIVE_MAXIMUM
+        self._client.connect_async(self._host, self._port, clean_start=False, properties=properties)
+        self._client.loop_start()
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Keep what has come, and let the broker hold what comes."""
+        self._ending.set()
+        self._thread.join()
+        self._client.publish(self._status, "offline", qos=1, retain=True)
+        self._client.disconnect()
+        self._client.loop_stop()
+
+    def _made(self, name: str, secure: bool, credentials: Path | None) -> Client:
+        client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
+        if credentials is not None:
+            lines = credentials.read_text("utf-8").splitlines()
+            if len(lines) < 2:
+                raise InputError(
+                    "a file of credentials has two lines", str(credentials), "user, then password"
+                )
+            client.username_pw_set(lines[0], lines[1])
+        if secure:
+            client.tls_set_context(ssl.create_default_context())
+        client.will_set(self._status, "offline", qos=1, retain=True)
+        client.reconnect_delay_set(1, 60)
+        client.on_connect, client.on_disconnect = self._connected, self._disconnected
+        client.on_message = self._came
+        return client
+
+    def _connected(self, client: Client, _: Any, flags: Any, reason: Any, *__: Any) -> None:
+        if reason.is_failure:
+            self.fault = f"the broker refuses: {reason}"
+            return
+        self.fault = None
+        options = SubscribeOptions(qos=1)
+        client.subscribe([(topic, options) for topic in (*self._topics, self._probe)])
+        client.publish(self._status, "online", qos=1, retain=True)
+        self._answered = time.monotonic()
+
+    def _disconnected(self, _client: Client, _: Any, __: Any, reason: Any, *___: Any) -> None:
+        self.fault = f"the broker is away: {reason}"
+
+    def _came(self, client: Client, _: Any, message: MQTTMessage) -> None:
+        if message.topic == self._probe:
+            self._answered = time.monotonic()
+            client.ack(message.mid, message.qos)
+        else:
+            self._waiting.put(message)
+
+    def _work(self) -> None:
+        """Keep what comes, in batches, until the end."""
+        while not self._ending.is_set():
+            self._try_the_way()
+            if batch := self._batch():
+                self._keep_batch(batch)
+
+    def _batch(self) -> list[MQTTMessage]:
+        try:
+            batch = [self._waiting.get(timeout=1.0)]
+        except Empty:
+            return []
+        until = time.monotonic() + LONGEST_WAIT
+        while len(batch) < MOST_MESSAGES:
+            try:
+                batch.append(self._waiting.get(timeout=max(0.0, until - time.monotonic())))
+            except Empty:
+                break
+        return batch
+
+    def _keep_batch(self, batch: Sequence[MQTTMessage]) -> None:
+        while True:
+            try:
+                numbers = self._keep([(one.topic, bytes(one.payload)) for one in batch])
+                break
+            except InputError as error:
+                self.fault = str(error)
+                # What is not kept comes again when the service does.
+                if self._ending.wait(AGAIN):
+                    return
+        self.fault = None
+        for one in batch:
+            self._client.ack(one.mid, one.qos)
+        self._acknowledge(numbers)
+
+    def _acknowledge(self, numbers: dict[str, Numbers]) -> None:
+        now = time.monotonic()
+        if now - self._told < ACKNOWLEDGE:
+            return
+        self._told = now
+        for stream, known in numbers.items():
+            told, untold = known.gaps[:MOST_TOLD], known.gaps[MOST_TOLD:]
+            # Whoever reads it takes what is below the next and not missing for kept.
+            below = untold[0][0] if untold else known.next
+            said = {"stream": stream, "seq": known.whole - 1, "next": below, "missing": told}
+            self._client.publish(self._ack, json.dumps(said), qos=1, retain=True)
+
+    def _try_the_way(self) -> None:
+        """Send something through the broker: it may be connected and yet bring nothing."""
+        now = time.monotonic()
+        if not self._client.is_connected() or now - self._probed < PROBE:
+            return
+        self._probed = now
+        if now - self._answered > BROKEN:
+            self.fault = "the broker is connected and brings nothing"
+            self._client.reconnect()
+        self._client.publish(self._probe, b"", qos=1)

@@ -1,0 +1,140 @@
+"""Packets in the inbox: each is kept once, and the account of them balances."""
+
+import random
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rga.operation.inbox.account import Account
+from rga.operation.inbox.packets import HOUR, NEVER, REMEMBERED, Arrival, Packets
+from rga.operation.packets.packet import Number
+from rga.twin.hardware.inbox import Inbox
+
+NOON = 1_795_392_000_000_000 + 12 * HOUR
+
+
+@pytest.fixture
+def packets(tmp_path: Path) -> Packets:
+    return Packets(Inbox(tmp_path))
+
+
+def numbered(sequence: int, moment: int = NOON, **more: object) -> Arrival:
+    number = Number("a", sequence)
+    known = {"arrived": NOON, "first": moment, "last": moment, "number": number} | more
+    return Arrival(b"packet %d" % sequence, "packet", **known)  # type: ignore[arg-type]
+
+
+def plain(content: str, arrived: int = NOON) -> Arrival:
+    return Arrival(content.encode(), "file", arrived, NOON, NOON, sha256=content)
+
+
+def total(packets: Packets) -> Account:
+    return sum(packets.account().values(), Account())
+
+
+def test_a_packet_is_kept_once(packets: Packets) -> None:
+    assert packets.receive("east", [numbered(0), numbered(2), numbered(0)]) == [
+        "waiting", "waiting", "duplicate",
+    ]  # fmt: skip
+    assert packets.receive("east", [numbered(2), numbered(1)]) == ["duplicate", "waiting"]
+    assert packets.receive("west", [numbered(2)]) == ["waiting"]
+    assert packets.numbers("east")["a"].gaps == []
+    assert packets.numbers("west")["a"].gaps == [(0, 1)]
+    assert total(packets) == Account(received=6, duplicate=2, waiting=4)
+    kept, end = packets.between(NOON, NOON + 1, 2**30)
+    assert [one.payload for one in kept] == [b"packet 0", b"packet 2", b"packet 1", b"packet 2"]
+    assert end == NOON + 1
+
+
+def test_what_has_no_number_is_known_by_its_content_for_a_day(packets: Packets) -> None:
+    later = NOON + REMEMBERED
+    assert packets.receive("east", [plain("x"), plain("x"), plain("y")]) == [
+        "waiting", "duplicate", "waiting",
+    ]  # fmt: skip
+    assert packets.receive("east", [plain("x", later)]) == ["duplicate"]
+    assert packets.receive("east", [plain("x", later + 1)]) == ["waiting"]
+    assert packets.receive("west", [plain("x")]) == ["waiting"]
+
+
+def test_what_cannot_be_used_is_kept_aside_and_its_number_has_come(packets: Packets) -> None:
+    refused = numbered(0, refused="its clock is 2 h ahead")
+    assert packets.receive("east", [refused, refused]) == ["refused", "duplicate"]
+    assert packets.numbers("east")["a"].whole == 1
+    assert packets.between(NEVER, NOON + 1, 2**30)[0] == []
+    assert total(packets) == Account(received=2, refused=1, duplicate=1)
+
+
+def test_numbers_that_leave_too_many_gaps_are_refused(packets: Packets) -> None:
+    packets.receive("east", [numbered(2 * one + 1) for one in range(10_000)])
+    assert packets.receive("east", [numbered(30_000)]) == ["refused"]
+    assert packets.receive("east", [numbered(4)]) == ["waiting"]
+
+
+def test_a_source_reads_on_where_it_was(packets: Packets) -> None:
+    assert packets.cursor("folder") is None
+    packets.receive("folder", [plain("x")], cursor={"offset": 3})
+    packets.receive("folder", [plain("y")])
+    assert packets.cursor("folder") == {"offset": 3}
+    assert packets.latest() == {"folder": NOON}
+
+
+def test_payload_is_bounded_by_cutting_the_time(packets: Packets) -> None:
+    packets.receive("east", [numbered(k, NOON + k) for k in range(10)])
+    kept, end = packets.between(NOON, NOON + 10, 3 * len(b"packet 0"))
+    assert ([one.payload[-1:] for one in kept], end) == ([b"0", b"1", b"2"], NOON + 3)
+    kept, end = packets.between(NOON, NOON + 10, 1)
+    assert (len(kept), end) == (1, NOON + 1)
+
+
+@settings(max_examples=20)
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(["east", "west"]),
+            st.integers(0, 12),
+            st.integers(-3, 3),
+            st.booleans(),
+            st.booleans(),
+        ),
+        max_size=30,
+    ),
+    st.integers(0, 2**32),
+)
+def test_the_account_balances(
+    tmp_path_factory: pytest.TempPathFactory,
+    sent: list[tuple[str, int, int, bool, bool]],
+    seed: int,
+) -> None:
+    packets = Packets(Inbox(tmp_path_factory.mktemp("inbox")))
+    draw, until = random.Random(seed), NEVER
+    expected: Counter[str] = Counter()
+    known: set[object] = set()
+    moments: list[int] = []
+    for source, name, hours, has_number, refused in sent:
+        moment = NOON + hours * HOUR
+        reason = "no packet" if refused else None
+        one = numbered(name, moment, arrived=NOON + draw.randrange(3) * HOUR, refused=reason)
+        if not has_number:
+            one = Arrival(b"x", "file", one.arrived, moment, moment, None, str(name), reason)
+        fate = packets.receive(source, [one])[0]
+        key = (source, has_number, name)
+        if key in known and (has_number or not refused):
+            assert fate == "duplicate"
+        elif refused:
+            assert fate == "refused"
+        else:
+            assert fate == ("late" if moment < until else "waiting")
+            moments += [moment] if fate == "waiting" else []
+        if has_number or not refused:
+            known.add(key)
+        expected.update(["received"] if fate == "waiting" else ["received", fate])
+        if draw.random() < 0.2:
+            until = max(until, NOON + draw.randrange(-3, 3) * HOUR)
+            packets.seal(until, None, [])
+        expected["used"] = sum(one < until for one in moments)
+        account = total(packets)
+        assert account == Account(**expected, waiting=len(moments) - expected["used"])
+        assert all(one.difference == 0 for one in packets.account().values())

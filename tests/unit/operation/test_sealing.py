@@ -1,0 +1,232 @@
+"""Rows of packets: what comes of the same samples is the same, however they arrived."""
+
+import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rga.errors import InputError
+from rga.model import Model, read_model
+from rga.operation.inbox.account import Account
+from rga.operation.inbox.packets import Packets
+from rga.operation.packets.native import write_packet
+from rga.operation.packets.packet import MICROSECONDS, Number, SensorPacket
+from rga.operation.rows.samples import Reader
+from rga.operation.rows.sealing import Grid, Sealing
+from rga.operation.sources.arrivals import arrival_of
+from rga.operation.sources.clock import ClockRule
+from rga.records.mapping import Channel, RecordMapping
+from rga.twin.hardware.inbox import Inbox
+
+#: 2026-11-23T00:00:00Z
+MIDNIGHT = 1_795_392_000_000_000
+MINUTE = 60 * MICROSECONDS
+CHANNELS = ("D1", "D2", "temperature")
+#: seconds between samples, and how many there are
+STEP, COUNT = 7, 200
+
+
+@pytest.fixture(scope="module")
+def model(measured_bridge: dict[str, Any]) -> Model:
+    return read_model(measured_bridge, "measured bridge")
+
+
+class Twin:
+    """An inbox that is closed and opened again as often as one likes."""
+
+    def __init__(self, folder: Path, model: Model, mappings: dict[str, RecordMapping]) -> None:
+        self._folder, self._model = folder, model
+        self.readers = {name: Reader(name, model, one) for name, one in mappings.items()}
+        self.start()
+
+    def start(self) -> None:
+        self.inbox = Inbox(self._folder)
+        self.packets = Packets(self.inbox)
+        grid = Grid(every=MINUTE, lateness=2 * MINUTE)
+        self.sealing = Sealing(self.inbox, self.packets, self._model, self.readers, grid)
+
+    def send(self, source: str, payload: bytes, arrived: int = MIDNIGHT) -> str:
+        one = arrival_of(payload, arrived, source, self.readers[source], None)
+        return self.packets.receive(source, [one])[0]
+
+    def rows(self) -> np.ndarray:
+        station = self.inbox.station
+        assert station is not None
+        packet = self.inbox.packet(station, 0, 10_000)
+        return np.column_stack([packet.time, packet.readings, packet.contexts])
+
+
+@pytest.fixture
+def twin(tmp_path: Path, model: Model) -> Twin:
+    return Twin(tmp_path, model, {"logger": RecordMapping()})
+
+
+def readings() -> np.ndarray:
+    return np.random.default_rng(5).normal(size=(COUNT, len(CHANNELS)))
+
+
+def payloads(values: np.ndarray, size: int = 5) -> list[bytes]:
+    times = MIDNIGHT + STEP * MICROSECONDS * np.arange(len(values))
+    return [
+        write_packet(
+            SensorPacket(
+                Number("s", k // size), CHANNELS, times[k : k + size], values[k : k + size]
+            ),
+            binary=bool(k % 2),
+        )
+        for k in range(0, len(values), size)
+    ]
+
+
+def test_a_row_is_the_mean_of_its_cell(twin: Twin, model: Model) -> None:
+    values = readings()
+    for payload in payloads(values):
+        assert twin.send("logger", payload) == "waiting"
+    # The last sample is of second 1393: rows end two minutes before.
+    assert twin.sealing.seal(silent=()) == 21
+    rows = twin.rows()
+    station = twin.inbox.station
+    assert station is not None
+    assert station.start == "2026-11-23T00:00:00+00:00"
+    assert (station.channels, station.measured) == (tuple(model.sensors), ("temperature",))
+    np.testing.assert_array_equal(rows[:, 0], 60.0 * np.arange(21))
+    cell = STEP * np.arange(COUNT) // 60
+    for k in range(21):
+        mean = values[cell == k].mean(axis=0)
+        np.testing.assert_allclose(rows[k, [1, 2, -1]], mean, rtol=1e-12)
+    assert np.isnan(rows[:, 3:-1]).all()
+    # Nothing is left to wait for where the logger is silent.
+    assert twin.sealing.seal(silent=["logger"]) == 3
+    assert sum(twin.packets.account().values(), Account()) == Account(received=40, used=40)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rows_do_not_hang_on_how_packets_arrived(
+    seed: int, tmp_path: Path, model: Model, twin: Twin
+) -> None:
+    values = readings()
+    for payload in payloads(values):
+        twin.send("logger", payload)
+    twin.sealing.seal(silent=["logger"])
+    draw = random.Random(seed)
+    (tmp_path / "other").mkdir()
+    other = Twin(tmp_path / "other", model, {"logger": RecordMapping()})
+    sent = payloads(values, size=draw.choice([1, 3, 8]))
+    # Each at most two minutes behind others of later times, and some of them again.
+    late = [(k + draw.uniform(0, 120 / (STEP * 8)), one) for k, one in enumerate(sent)]
+    late += [(k + draw.uniform(0, 5), one) for k, one in enumerate(sent) if draw.random() < 0.2]
+    for _, payload in sorted(late, key=lambda one: one[0]):
+        assert other.send("logger", payload) != "late"
+        if draw.random() < 0.3:
+            other.sealing.seal(silent=())
+        if draw.random() < 0.3:
+            other.start()
+    other.sealing.seal(silent=["logger"])
+    np.testing.assert_array_equal(other.rows(), twin.rows())
+    account = sum(other.packets.account().values(), Account())
+    assert account == Account(len(late), used=len(sent), duplicate=len(late) - len(sent))
+
+
+def test_what_comes_after_its_row_is_late(twin: Twin) -> None:
+    sent = payloads(readings())
+    twin.send("logger", sent[-1])
+    twin.sealing.seal(silent=())
+    twin.send("logger", sent[-2])
+    assert twin.sealing.seal(silent=["logger"]) == 2
+    assert twin.send("logger", sent[0]) == "late"
+    account = sum(twin.packets.account().values(), Account())
+    assert account == Account(received=3, used=2, late=1)
+
+
+def test_rows_wait_for_every_source_until_it_is_silent(tmp_path: Path, model: Model) -> None:
+    mapping = RecordMapping()
+    twin = Twin(tmp_path, model, {"east": mapping, "west": mapping})
+    for payload in payloads(readings()):
+        twin.send("east", payload)
+    assert twin.sealing.seal(silent=()) == 0
+    assert twin.sealing.seal(silent=["west"]) == 21
+
+
+def test_a_long_pause_makes_no_rows(twin: Twin) -> None:
+    for day in (0, 30):
+        time = np.array([MIDNIGHT + day * 86_400 * MICROSECONDS])
+        packet = SensorPacket(None, ("D1",), time, np.array([[1.5]]))
+        twin.send("logger", write_packet(packet))
+    assert twin.sealing.seal(silent=["logger"]) == 2
+    np.testing.assert_array_equal(twin.rows()[:, :2], [[0, 1.5], [30 * 86_400, 1.5]])
+
+
+def test_names_units_and_signs_go_through_the_mapping(tmp_path: Path, model: Model) -> None:
+    channels = {"D1": Channel(column="ch 1", unit="m", sign=-1), "D2": Channel(column="ch 2")}
+    mapping = RecordMapping(channels=channels, unused={"D3": "broken"})
+    twin = Twin(tmp_path, model, {"logger": mapping})
+    time = np.array([MIDNIGHT])
+    for names in (("ch 1", "spare"), ("ch 2",)):
+        packet = SensorPacket(None, names, time, np.array([[0.002, 7.0][: len(names)]]))
+        twin.send("logger", write_packet(packet))
+    twin.sealing.seal(silent=["logger"])
+    station = twin.inbox.station
+    assert station is not None
+    assert "D3" not in station.channels
+    np.testing.assert_array_equal(twin.rows()[0, 1:3], [-2.0, 0.002])
+
+
+FOREIGN: dict[str, Callable[[], bytes]] = {
+    "CSV": lambda: b"time,D1,D2\n2026-11-23T00:00:00Z,1.5,2.5\n2026-11-23T00:01:00Z,2.5,3.5\n",
+    "line protocol": lambda: (
+        f"D1 v=1.5 {MIDNIGHT * 1000}\nD2 v=2.5 {MIDNIGHT * 1000}\n"
+        f"D1 v=2.5 {(MIDNIGHT + MINUTE) * 1000}\nD2 v=3.5 {(MIDNIGHT + MINUTE) * 1000}\n"
+    ).encode(),
+    "SenML": lambda: (
+        b'[{"bt":%d,"n":"D1","v":1.5},{"n":"D2","v":2.5},'
+        b'{"n":"D1","t":60,"v":2.5},{"n":"D2","t":60,"v":3.5}]' % (MIDNIGHT // MICROSECONDS)
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", FOREIGN)
+def test_formats_of_others_give_the_same_rows(kind: str, tmp_path: Path, model: Model) -> None:
+    channels = {"D1": Channel(column="D1 v"), "D2": Channel(column="D2 v")}
+    mapping = RecordMapping(channels=channels if kind == "line protocol" else {})
+    twin = Twin(tmp_path, model, {"logger": mapping})
+    assert twin.send("logger", FOREIGN[kind]()) == "waiting"
+    assert twin.send("logger", FOREIGN[kind]()) == "duplicate"
+    twin.sealing.seal(silent=["logger"])
+    np.testing.assert_array_equal(twin.rows()[:, :3], [[0, 1.5, 2.5], [60, 2.5, 3.5]])
+
+
+def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
+    reader = twin.readers["logger"]
+    for payload, words in (
+        (b"garbage", "garbage"),
+        (b'{"v": 1}', "no packet"),
+        (b"time,D1\n2026-11-23T00:00:00,1.5\n2026-11-23T00:01:00,2.5\n", "no zone"),
+        (b"time,D1\n0,1.5\n1,2.5\n", "no time stamps"),
+    ):
+        one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockRule())
+        assert one.refused is not None
+        assert words in one.refused
+        assert twin.packets.receive("logger", [one]) == ["refused"]
+    sent = payloads(readings())[0]
+    for arrived, words in (
+        (MIDNIGHT - 3600 * MICROSECONDS, "its clock is 60.5 min ahead"),
+        (MIDNIGHT + 30 * 86_400 * MICROSECONDS, "its readings are 30 days old"),
+    ):
+        one = arrival_of(sent, arrived, "topic", reader, ClockRule())
+        assert one.refused == words
+    assert twin.sealing.seal(silent=["logger"]) == 0
+
+
+def test_a_twin_that_has_ended_takes_no_more(twin: Twin) -> None:
+    sent = payloads(readings())
+    twin.send("logger", sent[0])
+    twin.sealing.seal(silent=["logger"])
+    twin.inbox.end()
+    twin.send("logger", sent[20])
+    with pytest.raises(InputError, match="ended"):
+        twin.sealing.seal(silent=["logger"])
+    account = sum(twin.packets.account().values(), Account())
+    assert account == Account(received=2, used=1, waiting=1)
