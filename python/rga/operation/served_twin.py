@@ -48,10 +48,10 @@ class ServedTwin:
         self._readers = {
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }
-        self._inbox = Inbox(directory)
+        self.inbox = Inbox(directory)
         grid = settings.rows.grid
-        self.packets = Packets(self._inbox, grid, self._sources)
-        self._sealing = Sealing(self._inbox, self.packets, model, self._readers, grid)
+        self.packets = Packets(self.inbox, grid, self._sources)
+        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
         # Sources that were silent when rows were last made of all that had come.
@@ -109,7 +109,7 @@ class ServedTwin:
 
     def close(self) -> None:
         """Close the file of the inbox."""
-        self._inbox.close()
+        self.inbox.close()
 
 
 def live_settings(path: Path) -> Settings:
