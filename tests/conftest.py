@@ -4,6 +4,7 @@ import gc
 import json
 from collections.abc import Callable
 from copy import deepcopy
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,6 +20,7 @@ from rga.findings import Findings
 from rga.model import Model, load_model, read_effect, read_model
 from rga.records import Record, load_record
 from rga.simulation import Simulator
+from rga.twin.settings import Settings
 from rga_bench.synthetic import Case
 
 
@@ -299,7 +301,7 @@ def measured_record() -> Callable[..., Record]:
 
 @pytest.fixture
 def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """The methods of the levels of integration, for a while."""
+    """The methods of the levels of integration, for a while, and thresholds of short streams."""
     from context_tasks import nearest
     from rga_bench.contexts.rows import METHODS, Row
 
@@ -310,4 +312,5 @@ def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     }
     for module in ("experiment", "task_run", "tables.targets"):
         monkeypatch.setattr(f"rga_bench.contexts.{module}.METHODS", methods)
+    monkeypatch.setattr("rga_bench.contexts.twin_run.Settings", partial(Settings, arl0=2000.0))
     return methods
