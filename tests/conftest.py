@@ -65,6 +65,13 @@ def rga(capsys: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
     return run
 
 
+@pytest.fixture
+def without_reports(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Findings are written without reports: drawing one takes longer than many a diagnosis."""
+    monkeypatch.setattr("rga.report.write_report", lambda findings, path: path)
+    monkeypatch.setattr("rga.report.write_run_report", lambda history, findings, path: path)
+
+
 @pytest.fixture(scope="session")
 def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Case], Findings]:
     """Diagnoses a case from its files."""

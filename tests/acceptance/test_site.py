@@ -76,9 +76,7 @@ def test_the_truss_is_what_the_simulator_says() -> None:
 
 
 @seeds
-@pytest.mark.parametrize(
-    "zero", [None, LEAD_IN, (0, 2), pytest.param((60, 62), marks=thorough)]
-)
+@pytest.mark.parametrize("zero", [None, LEAD_IN, (0, 2), pytest.param((60, 62), marks=thorough)])
 def test_nothing_hidden_is_nothing_wrong(seed: int, zero: Zero) -> None:
     """The null twin of all below that hide something in the truss or in one of its channels."""
     assert nothing(found(logged(Site(), seed), zero=zero))
