@@ -196,7 +196,8 @@ def test_a_page_reports_ratios_and_whether_they_reach_their_targets() -> None:
 
 def test_the_command(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "rga_bench.solver.experiment.shorter", lambda seed: replace(LITTLE, seed=seed, judged=False)
+        "rga_bench.solver.experiment.shorter",
+        lambda seed: replace(LITTLE, rows=256, seed=seed, judged=False),
     )
     folder, file = tmp_path / "out", tmp_path / "figures.json"
     ran = rga("benchmark", "solver", "--quick", "-o", folder, "--json", file)
