@@ -1,15 +1,10 @@
-"""A service for tests: the files of its folder, and the process that serves them."""
+"""A service for tests: the files of its folder."""
 
 import json
-import signal
-import socket
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from urllib.request import urlopen
 
 import numpy as np
 
@@ -17,6 +12,7 @@ from live_streams import SETTINGS
 from rga.operation.feeding.sent_record import SentRecord
 from rga.operation.packets.packet import MICROSECONDS
 from rga.records import Record
+from rga_bench.operation.service_process import free_port
 
 #: 2026-11-23T00:00:00Z
 MIDNIGHT = 1_795_392_000_000_000
@@ -54,13 +50,6 @@ def write_service(
     return f"http://127.0.0.1:{port}"
 
 
-def free_port() -> int:
-    """A port on which nothing listens."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        return int(free.getsockname()[1])
-
-
 def sent_of(record: Record) -> SentRecord:
     """A record as a logger has it that began at midnight."""
     return SentRecord(
@@ -69,62 +58,6 @@ def sent_of(record: Record) -> SentRecord:
         np.column_stack([record.readings, *record.contexts.values()]),
         "s",
     )
-
-
-class ServiceProcess:
-    """`rga serve` in a process of its own, which can be killed and started again.
-
-    Args:
-        folder: of the service.
-        address: of it.
-    """
-
-    def __init__(self, folder: Path, address: str) -> None:
-        self.folder, self.address = folder, address
-        self._process: subprocess.Popen[bytes] | None = None
-
-    def __enter__(self) -> "ServiceProcess":
-        self.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.stop()
-
-    def start(self) -> None:
-        """Start it, and wait until it answers."""
-        with (self.folder / "service.log").open("ab") as log:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "rga", "serve", "serve.toml"],
-                cwd=self.folder,
-                stdout=log,
-                stderr=log,
-            )
-        while self._process.poll() is None:
-            try:
-                self.get("/healthz")
-                return
-            except OSError:
-                time.sleep(0.05)
-        said = (self.folder / "service.log").read_text("utf-8", "replace")
-        raise AssertionError(f"the service ended: {said}")
-
-    def get(self, path: str) -> Any:
-        """What it answers."""
-        with urlopen(f"{self.address}{path}", timeout=30) as answer:
-            return json.load(answer)
-
-    def kill(self) -> None:
-        """End it at once, as when power is lost."""
-        self._end(signal.SIGKILL)
-
-    def stop(self) -> None:
-        """End it as a system does."""
-        self._end(signal.SIGTERM)
-
-    def _end(self, by: signal.Signals) -> None:
-        if self._process is not None:
-            self._process.send_signal(by)
-            self._process.wait()
 
 
 def waited_for(what: Callable[[], Any], longest: float = 120.0) -> Any:

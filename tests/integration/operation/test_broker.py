@@ -12,7 +12,8 @@ from paho.mqtt.enums import CallbackAPIVersion
 from rga.errors import InputError
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.sources.mqtt import Broker
-from served.broker import Mosquitto, mosquitto
+from rga_bench.operation.broker import Mosquitto
+from served.brokers import mosquitto
 from served.made_service import waited_for
 
 __all__ = ["mosquitto"]

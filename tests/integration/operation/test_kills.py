@@ -18,8 +18,10 @@ from rga.operation.feeding.player import play
 from rga.operation.feeding.senders import BrokerSender, HttpSender, Sender
 from rga.records import Record
 from rga.twin.hardware.inbox import Inbox
-from served.broker import Mosquitto, mosquitto
-from served.made_service import ServiceProcess, sent_of, waited_for, write_service
+from rga_bench.operation.broker import Mosquitto
+from rga_bench.operation.service_process import ServiceProcess
+from served.brokers import mosquitto
+from served.made_service import sent_of, waited_for, write_service
 
 __all__ = ["mosquitto"]
 
