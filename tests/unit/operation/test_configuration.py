@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from rga.errors import InputError
-from rga.operation.configuration import FolderSource, read_configuration
+from rga.operation.configuration import read_configuration
+from rga.operation.sources.settings import FolderSource
 
 SOUND = """
 [service]

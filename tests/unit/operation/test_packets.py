@@ -74,10 +74,12 @@ def test_numbers_that_leave_too_many_gaps_are_refused(packets: Packets) -> None:
 
 
 def test_a_source_reads_on_where_it_was(packets: Packets) -> None:
-    assert packets.cursor("folder") is None
-    packets.receive("folder", [plain("x")], cursor={"offset": 3})
+    assert packets.cursor("folder") == {}
+    packets.receive("folder", [plain("x")], cursor={"a": {"offset": 3}})
     packets.receive("folder", [plain("y")])
-    assert packets.cursor("folder") == {"offset": 3}
+    packets.receive("folder", [], cursor={"a": {"offset": 5}, "b": [1]})
+    assert packets.cursor("folder") == {"a": {"offset": 5}, "b": [1]}
+    assert packets.cursor("other") == {}
     assert packets.latest() == {"folder": NOON}
 
 

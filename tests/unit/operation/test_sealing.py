@@ -17,7 +17,7 @@ from rga.operation.packets.packet import MICROSECONDS, Number, SensorPacket
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Grid, Sealing
 from rga.operation.sources.arrivals import arrival_of
-from rga.operation.sources.clock import ClockRule
+from rga.operation.sources.clock import ClockRule, ClockWatch
 from rga.records.mapping import Channel, RecordMapping
 from rga.twin.hardware.inbox import Inbox
 
@@ -206,7 +206,7 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         (b"time,D1\n2026-11-23T00:00:00,1.5\n2026-11-23T00:01:00,2.5\n", "no zone"),
         (b"time,D1\n0,1.5\n1,2.5\n", "no time stamps"),
     ):
-        one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockRule())
+        one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused is not None
         assert words in one.refused
         assert twin.packets.receive("logger", [one]) == ["refused"]
@@ -215,7 +215,7 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         (MIDNIGHT - 3600 * MICROSECONDS, "its clock is 60.5 min ahead"),
         (MIDNIGHT + 30 * 86_400 * MICROSECONDS, "its readings are 30 days old"),
     ):
-        one = arrival_of(sent, arrived, "topic", reader, ClockRule())
+        one = arrival_of(sent, arrived, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused == words
     assert twin.sealing.seal(silent=["logger"]) == 0
 
