@@ -148,8 +148,9 @@ def test_an_empty_folder_is_no_fault(rows: Rows) -> None:
     assert rows.fault is None
 
 
-def test_a_storm_of_changes_doubles_nothing(tmp_path: Path, rows: Rows) -> None:
-    draw, written, replaced, renamed = random.Random(3), 0, False, False
+@pytest.mark.parametrize("seed", range(4))
+def test_a_storm_of_changes_doubles_nothing(tmp_path: Path, rows: Rows, seed: int) -> None:
+    draw, written, replaced, renamed = random.Random(seed), 0, False, False
     path = tmp_path / "0.csv"
     append(path, HEAD)
     for k in range(1, 300):

@@ -106,6 +106,9 @@ class Folder:
             self._faults[""] = "the folder is empty, and was not: a share may be away"
         for number, file in enumerate(files):
             if self._read.get(file.key) == (file.size, file.changed):
+                # It may have got another name.
+                if file.key in self._known:
+                    self._by_name[file.name] = self._known[file.key]
                 continue
             try:
                 yield from self._pieces_of(file, youngest=number == len(files) - 1)
@@ -184,11 +187,17 @@ class Folder:
             if not end:
                 break
             lines, offset = content[:end], offset + end
-            state = {"name": file.name, "mark": mark, "offset": offset}
-            state["tail"] = _tail(opened, offset)
+            state = self._at(file, opened, mark, offset)
             yield Piece(file.name, head, lines, {file.key: state})
             self._keep(file, state)
+        # It may have got another number.
+        self._keep(file, self._at(file, opened, mark, offset))
         self._read[file.key] = file.size, file.changed
+
+    def _at(self, file: _File, opened: BinaryIO, mark: str, offset: int) -> dict[str, Any]:
+        """How far a file was read."""
+        tail = _tail(opened, offset)
+        return {"name": file.name, "mark": mark, "offset": offset, "tail": tail}
 
     def _read_on(self, file: _File, opened: BinaryIO, mark: str, begin: int) -> int:
         """Where a file is read on: at its first row, if it is not the file that it was."""

@@ -13,7 +13,7 @@ from decimal import Decimal
 from threading import Event
 from typing import Any
 
-from sqlalchemy import Column, Connection, Integer, MetaData, Numeric, Table, create_engine, select
+from sqlalchemy import Column, Connection, Float, Integer, MetaData, Numeric, Table, create_engine, select
 from sqlalchemy import text as statement
 from sqlalchemy.engine import RowMapping, make_url
 from sqlalchemy.exc import NoSuchModuleError, NoSuchTableError, SQLAlchemyError
@@ -170,7 +170,7 @@ class SqlTable:
             names |= dict.fromkeys([settings.channel, settings.value])
         else:
             names |= dict.fromkeys(
-                one.name for one in table.c if isinstance(one.type, (Integer, Numeric))
+                one.name for one in table.c if isinstance(one.type, (Integer, Numeric, Float))
             )
         return [self._column(table, name) for name in names]
 
@@ -192,7 +192,7 @@ class SqlTable:
         for name, value in pairs:
             number = _number_of(value)
             if number is not None and 0 < len(name) <= LONGEST_NAME:
-                yield Point(name, moment, number)
+                yield Point(str(name), moment, number)
 
     def _moment_of(self, time: Any) -> int:
         if isinstance(time, datetime):
