@@ -31,9 +31,7 @@ class Rows:
     def start(self) -> None:
         """As when the service is started again: all that is known went through text."""
         count = self._head.count(b"\n")
-        self.folder = Folder(
-            self._folder, self._files, count, json.loads(json.dumps(self.kept))
-        )
+        self.folder = Folder(self._folder, self._files, count, json.loads(json.dumps(self.kept)))
 
     def receive(self, payloads: Any, cursor: Any = None) -> list[Outcome]:
         self.whole += [content for _, content in payloads]
@@ -172,9 +170,7 @@ def test_a_storm_of_changes_doubles_nothing(tmp_path: Path, rows: Rows, seed: in
     assert rows.lines == [b"%d,1" % k for k in range(written)]
 
 
-def test_a_last_line_without_an_end_waits_for_it(
-    tmp_path: Path, rows: Rows, patient: None
-) -> None:
+def test_a_last_line_without_an_end_waits_for_it(tmp_path: Path, rows: Rows, patient: None) -> None:
     path = tmp_path / "a.csv"
     append(path, HEAD + b"0,1\n1,2")
     for _ in range(3):

@@ -2,10 +2,13 @@
 
 A subscription loses what happens while the connection is away, and servers differ in what they
 send again. So after every connect the history is read from where it was read to, beside a
-subscription that has begun before: nothing is lost that the server remembers.
+subscription that has begun before, and once more when it has caught up: nothing is lost that the
+server remembers. What comes twice is of the same moment, and counts once.
 """
 
 import asyncio
+import time
+from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from threading import Event, Thread
 from typing import Any
@@ -27,6 +30,8 @@ from rga.records.table import LARGEST
 FIRST_WAIT, LONGEST_WAIT = 1.0, 60.0
 #: how long an answer is waited for [s]
 ANSWER = 10.0
+#: by which the history may lag behind the values that a server shows [s]
+HISTORY_LAG = 30.0
 _MICROSECOND = timedelta(microseconds=1)
 
 
@@ -50,6 +55,9 @@ class OpcUaServer:
         self._kept: dict[str, int] = dict(inlet.cursor())
         self._channels: dict[Node, str] = {}
         self._changes: list[Point] = []
+        self._lost = False
+        self._last: dict[str, Point] = {}
+        self._came: set[Point] = set()
         self._ending = Event()
         self._thread = Thread(target=lambda: asyncio.run(self._work()), name=name, daemon=True)
         self.fault: str | None = "not connected yet"
@@ -69,6 +77,10 @@ class OpcUaServer:
         channel = self._channels.get(node)
         if channel is not None:
             self._changes += _points_of(channel, [data.monitored_item.Value])
+
+    def status_change_notification(self, status: Any) -> None:
+        """Connect anew: the server has ended the subscription."""
+        self._lost = True
 
     async def _work(self) -> None:
         wait = FIRST_WAIT
@@ -93,15 +105,24 @@ class OpcUaServer:
         async with client:
             addresses = self._settings.nodes
             self._channels = {client.get_node(one): name for name, one in addresses.items()}
-            self._changes = []
+            self._changes, self._lost = [], False
+            self._came = set(self._last.values())
             subscribed = await self._subscribe(client)
-            await self._keep(await self._history())
+            begins, since = self._begins(), time.monotonic()
+            await self._keep(await self._history(begins))
             while not self._ending.is_set():
                 await client.check_connection()
+                if self._lost:
+                    raise ConnectionError("it has ended the subscription")
                 if not subscribed:
                     self._changes += await self._values()
+                if begins and time.monotonic() - since > HISTORY_LAG:
+                    self._changes += await self._history(begins)
+                    begins = {}
                 changes, self._changes = self._changes, []
                 await self._keep(changes)
+                if not begins:
+                    self._came = set(self._last.values())
                 self.fault = None
                 await self._rest(self._settings.poll)
 
@@ -114,16 +135,24 @@ class OpcUaServer:
             return False
         return True
 
-    async def _history(self) -> list[Point]:
-        """What the server remembers since the variables were last read."""
+    def _begins(self) -> dict[str, datetime]:
+        """From where the history of each channel is read."""
+        first = datetime.now(UTC) - timedelta(seconds=self._settings.clock.backlog)
+        lag = timedelta(seconds=HISTORY_LAG)
+        return {
+            channel: EPOCH + self._kept[channel] * _MICROSECOND - lag
+            if channel in self._kept
+            else first
+            for channel in self._settings.nodes
+        }
+
+    async def _history(self, begins: Mapping[str, datetime]) -> list[Point]:
+        """What the server remembers of each channel since a moment."""
         points: list[Point] = []
-        now = datetime.now(UTC)
+        end = datetime.now(UTC) + timedelta(days=1)
         for node, channel in self._channels.items():
-            begin = now - timedelta(seconds=self._settings.clock.backlog)
-            if channel in self._kept:
-                begin = EPOCH + (self._kept[channel] + 1) * _MICROSECOND
             try:
-                found = await node.read_raw_history(begin, now + timedelta(days=1))
+                found = await node.read_raw_history(begins[channel], end)
             except UaError:
                 # It remembers nothing of this variable.
                 continue
@@ -138,12 +167,12 @@ class OpcUaServer:
 
     async def _keep(self, points: list[Point]) -> None:
         """Keep values that are new, with how far each variable was read."""
-        new = [one for one in points if one.moment > self._kept.get(one.channel, -1)]
+        new = [one for one in points if one not in self._came]
         if not new:
             return
-        kept: dict[str, int] = {}
+        kept = {one.channel: self._kept.get(one.channel, one.moment) for one in new}
         for one in new:
-            kept[one.channel] = max(kept.get(one.channel, -1), one.moment)
+            kept[one.channel] = max(kept[one.channel], one.moment)
         payloads = [(self._settings.url, one) for one in payloads_of(new, self._settings.url)]
         while True:
             try:
@@ -155,6 +184,9 @@ class OpcUaServer:
                 if await self._rest(FIRST_WAIT):
                     return
         self._kept |= kept
+        self._came.update(new)
+        # A subscription begins with the value that is there.
+        self._last |= {one.channel: one for one in new}
 
     async def _rest(self, seconds: float) -> bool:
         """Wait; whether this is the end."""
@@ -165,13 +197,13 @@ def _points_of(channel: str, values: Any) -> list[Point]:
     """Values as readings, of those that are numbers and have a time."""
     points = []
     for one in values:
-        time = one.SourceTimestamp or one.ServerTimestamp
+        stamp = one.SourceTimestamp
         value = one.Value.Value if one.Value is not None else None
-        if time is None or isinstance(value, bool) or not isinstance(value, (int, float)):
+        if stamp is None or isinstance(value, bool) or not isinstance(value, (int, float)):
             continue
         if one.StatusCode is not None and not one.StatusCode.is_good():
             continue
         if abs(value) <= LARGEST:
-            moment = (time.replace(tzinfo=UTC) if time.tzinfo is None else time) - EPOCH
+            moment = (stamp.replace(tzinfo=UTC) if stamp.tzinfo is None else stamp) - EPOCH
             points.append(Point(channel, moment // _MICROSECOND, float(value)))
     return points

@@ -13,7 +13,17 @@ from decimal import Decimal
 from threading import Event
 from typing import Any
 
-from sqlalchemy import Column, Connection, Float, Integer, MetaData, Numeric, Table, create_engine, select
+from sqlalchemy import (
+    Column,
+    Connection,
+    Float,
+    Integer,
+    MetaData,
+    Numeric,
+    Table,
+    create_engine,
+    select,
+)
 from sqlalchemy import text as statement
 from sqlalchemy.engine import RowMapping, make_url
 from sqlalchemy.exc import NoSuchModuleError, NoSuchTableError, SQLAlchemyError
