@@ -95,9 +95,7 @@ def append(path: Path, text: str) -> None:
         file.write(text)
 
 
-def test_every_row_of_a_logger_is_used_once(
-    made: Callable[..., Service], tmp_path: Path
-) -> None:
+def test_every_row_of_a_logger_is_used_once(made: Callable[..., Service], tmp_path: Path) -> None:
     twin = made().twins["east"]
     poll, folder = look(twin), tmp_path / "logger"
     path = folder / "Minute.dat"

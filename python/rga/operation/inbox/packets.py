@@ -190,11 +190,8 @@ class Packets:
                     break
             chosen = select(tables.packet).where(waits & (c.first < end)).order_by(c.id)
             found = [whole(tables.packet, one) for one in connection.execute(chosen)]
-        kept = [
-            KeptPacket(one.source, one.kind, bytes(one.payload), one.place, one.arrived)
-            for one in found
-        ]
-        return kept, end
+        kept = [(one.source, one.kind, bytes(one.payload), one.place, one.arrived) for one in found]
+        return [KeptPacket(*one) for one in kept], end
 
     def seal(self, until: int, station: Station | None, cells: Sequence[Cell]) -> None:
         """Rows before a moment are final: give them to the twin, with what lies beside them.

@@ -19,6 +19,7 @@ def file_of_row(
     columns: Sequence[str],
     times: Sequence[str],
     delimiter: str | None,
+    decimal: str | None = None,
 ) -> tuple[bytes, bool]:
     r"""A file of the rows, with the names of their columns above them.
 
@@ -29,6 +30,7 @@ def file_of_row(
         columns: their names.
         times: names of those that hold the time.
         delimiter: between the values; None: found.
+        decimal: sign of numbers; None: found.
 
     Returns:
         The file, and whether the time is the logger's.
@@ -42,7 +44,7 @@ def file_of_row(
     check_size(payload, where)
     text = payload.decode("utf-8", "replace").strip("\r\n")
     lines = text.splitlines()
-    signs = _DELIMITERS if delimiter is None else (delimiter,)
+    signs = [one for one in _DELIMITERS if one != decimal] if delimiter is None else [delimiter]
     for sign in signs:
         rows = list(csv.reader(lines, delimiter=sign))
         if rows and all(len(row) == len(columns) for row in rows):

@@ -102,6 +102,7 @@ class Reader:
             self._stated.columns,
             self._mapping.time.columns,
             self._mapping.delimiter,
+            self._mapping.decimal,
         )
         mapping = self._mapping if timed else self._mapping.model_copy(update={"time": _PLAIN})
         return self._of_table(file, mapping), timed
