@@ -13,14 +13,14 @@ from rga.model import load_model
 from rga.operation.configuration import TwinSettings
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Arrival, Packets
-from rga.operation.packets.formats import Format
+from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
 from rga.operation.sources.arrivals import arrival_of, arrivals_of_lines
 from rga.operation.sources.clock import ClockWatch
 from rga.operation.sources.opened import opened
 from rga.operation.sources.settings import AnySource, source_name
-from rga.operation.sources.source import Outcome, Placed, Source
+from rga.operation.sources.source import DataSource, Outcome, Placed
 from rga.records.mapping import RecordMapping, read_mapping
 from rga.settings_files import read_table, validated
 from rga.twin.hardware.inbox import Inbox
@@ -78,7 +78,7 @@ class ServedTwin:
         """Name of the source that sends to this service; None: there is none."""
         return next((name for name, one in self._sources.items() if one.kind == "http"), None)
 
-    def sources(self) -> dict[str, Source]:
+    def sources(self) -> dict[str, DataSource]:
         """Sources by name, not started yet, but for those that send to this service.
 
         Raises:
@@ -104,7 +104,7 @@ class ServedTwin:
         source: str,
         payloads: Sequence[Placed],
         cursor: Mapping[str, Any] | None = None,
-        kind: Format | None = None,
+        kind: PayloadFormat | None = None,
     ) -> list[Outcome]:
         """Keep payloads, each with the place that it came from.
 
@@ -147,7 +147,7 @@ class ServedTwin:
         return self._keep(source, arrivals, cursor)
 
     def _arrival(
-        self, source: str, where: str, payload: bytes, arrived: int, kind: Format | None
+        self, source: str, where: str, payload: bytes, arrived: int, kind: PayloadFormat | None
     ) -> Arrival:
         reader, clock = self._readers[source], self._clocks.get(source)
         return arrival_of(payload, arrived, where, reader, clock, kind)

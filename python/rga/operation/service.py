@@ -10,7 +10,7 @@ from threading import Event, Thread
 from rga.jobs.worker import Kind, Worker
 from rga.operation.configuration import Configuration
 from rga.operation.served_twin import ServedTwin
-from rga.operation.sources.source import Source, attempt
+from rga.operation.sources.source import DataSource, attempt
 
 #: how often rows are sealed, and how long a worker rests where nothing is due [s]
 SEAL, REST = 0.2, 0.2
@@ -38,7 +38,7 @@ class Service:
         self.faults: dict[tuple[str, str], str] = {}
         self._ending = Event()
         self._sealing = Thread(target=self._seal, name="rows", daemon=True)
-        self._sources: dict[tuple[str, str], Source] = {
+        self._sources: dict[tuple[str, str], DataSource] = {
             (twin.name, name): source
             for twin in self.twins.values()
             for name, source in twin.sources().items()

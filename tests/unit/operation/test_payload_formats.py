@@ -14,7 +14,7 @@ from rga.errors import InputError
 from rga.operation.packets.csv_row import file_of_row
 from rga.operation.packets.formats import (
     PACKETS,
-    Format,
+    PayloadFormat,
     StatedFormat,
     format_of_bytes,
     format_of_type,
@@ -314,7 +314,7 @@ def test_rows_get_the_names_of_their_columns() -> None:
         (b"", "file"),
     ],
 )
-def test_a_format_is_known_by_its_bytes(payload: bytes, expected: Format) -> None:
+def test_a_format_is_known_by_its_bytes(payload: bytes, expected: PayloadFormat) -> None:
     assert format_of_bytes(payload) == expected
 
 
@@ -327,7 +327,7 @@ def test_a_content_type_names_a_format() -> None:
 
 @settings(max_examples=50)
 @given(st.binary(max_size=200) | st.text(max_size=200).map(str.encode), st.sampled_from(PACKETS))
-def test_bytes_are_read_or_refused(payload: bytes, kind: Format) -> None:
+def test_bytes_are_read_or_refused(payload: bytes, kind: PayloadFormat) -> None:
     try:
         packets = read_packets(kind, payload, "D1", NOW, StatedFormat())
     except InputError:

@@ -15,7 +15,7 @@ from rga.errors import InputError
 from rga.operation.inbox import tables
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.packets.formats import Format
+from rga.operation.packets.formats import PayloadFormat
 from rga.operation.packets.packet import EPOCH, MICROSECONDS, Number
 from rga.operation.rows.cells import Cell
 from rga.twin.hardware.inbox import Inbox
@@ -50,7 +50,7 @@ class Arrival:
     """
 
     payload: bytes
-    kind: Format
+    kind: PayloadFormat
     arrived: int
     first: int = 0
     last: int = 0
@@ -73,7 +73,7 @@ class KeptPacket:
     """
 
     source: str
-    kind: Format
+    kind: PayloadFormat
     payload: bytes
     place: str
     arrived: int

@@ -7,7 +7,7 @@ from datetime import timedelta
 
 from rga.errors import InputError
 from rga.operation.packets.packet import EPOCH
-from rga.operation.packets.points import check_size
+from rga.operation.packets.readings import check_size
 
 _DELIMITERS = (",", ";", "\t")
 

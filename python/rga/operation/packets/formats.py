@@ -14,10 +14,10 @@ from rga.operation.packets.topics import TopicPattern, read_number
 
 #: how a payload is read: as a packet of rga's own, as one of a format of others, as a row whose
 #: columns are stated, or as a file in any format of a logger
-Format = Literal["packet", "senml", "sensorthings", "line_protocol", "number", "row", "file"]
+PayloadFormat = Literal["packet", "senml", "sensorthings", "line_protocol", "number", "row", "file"]
 #: formats whose payloads are read as packets; the others are read as files
 PACKETS = ("packet", "senml", "sensorthings", "line_protocol", "number")
-_TYPES: dict[str, Format] = {
+_TYPES: dict[str, PayloadFormat] = {
     "application/vnd.rga.packet+json": "packet",
     "application/msgpack": "packet",
     "application/vnd.msgpack": "packet",
@@ -30,7 +30,7 @@ _RECORD = re.compile(rb'\s*\[\s*\{\s*"(?:b[ntuvs]|bver|n|u|v|vs|vb|vd|s|t|ut)"\s
 _OBSERVATION = re.compile(rb'\s*[{\[].{0,4000}"(?:dataArray|phenomenonTime|Datastream[^"]*)"', re.S)
 
 
-def format_of_type(content_type: str | None) -> Format | None:
+def format_of_type(content_type: str | None) -> PayloadFormat | None:
     """The format that a Content-Type of HTTP names; None: it names none.
 
     >>> format_of_type("application/senml+json; charset=utf-8"), format_of_type("text/plain")
@@ -40,7 +40,7 @@ def format_of_type(content_type: str | None) -> Format | None:
     return _TYPES.get(named)
 
 
-def format_of_bytes(payload: bytes) -> Format:
+def format_of_bytes(payload: bytes) -> PayloadFormat:
     """The format that a payload seems to have.
 
     >>> format_of_bytes(b'[{"n": "D1", "v": 1.5}]'), format_of_bytes(b"time,D1")
@@ -68,14 +68,14 @@ class StatedFormat:
         zone: of time stamps that have none.
     """
 
-    format: Format | None = None
+    format: PayloadFormat | None = None
     pattern: TopicPattern | None = None
     columns: tuple[str, ...] = ()
     zone: tzinfo | None = None
 
 
 def read_packets(
-    kind: Format, payload: bytes, where: str, arrived: int, stated: StatedFormat
+    kind: PayloadFormat, payload: bytes, where: str, arrived: int, stated: StatedFormat
 ) -> list[SensorPacket]:
     """The packets that a payload says.
 

@@ -8,7 +8,7 @@ import re
 from rga.errors import InputError
 from rga.operation.packets.moments import moment_of_number
 from rga.operation.packets.packet import SensorPacket
-from rga.operation.packets.points import Point, check_size, packets_of
+from rga.operation.packets.readings import SensorReading, check_size, packets_of
 
 _WORD = r"(?:[^\s,=\\]|\\.)+"
 _TEXT = r'"(?:[^"\\]|\\.)*"'
@@ -78,7 +78,7 @@ def read_line_protocol(payload: bytes, where: str, arrived: int) -> list[SensorP
         for field, written in _FIELD.findall(found["fields"]):
             value = _value(written, place)
             if value is not None:
-                points.append(Point(_ESCAPE.sub(r"\1", f"{series} {field}"), moment, value))
+                points.append(SensorReading(_ESCAPE.sub(r"\1", f"{series} {field}"), moment, value))
     return packets_of(points, {}, where, timed=timed)
 
 

@@ -11,7 +11,7 @@ import msgspec
 from rga.errors import InputError
 from rga.operation.packets.moments import checked
 from rga.operation.packets.packet import MICROSECONDS, SensorPacket
-from rga.operation.packets.points import Point, check_size, packets_of
+from rga.operation.packets.readings import SensorReading, check_size, packets_of
 from rga.records.table import LARGEST
 
 #: version that is understood, and the time below which one is relative to now [s]
@@ -52,7 +52,7 @@ def read_senml(payload: bytes, where: str, arrived: int) -> list[SensorPacket]:
         moment = round(time * MICROSECONDS)
         if time < _RELATIVE:
             moment, timed = arrived + moment, False
-        points.append(Point(record["n"], checked(moment, where), record["v"]))
+        points.append(SensorReading(record["n"], checked(moment, where), record["v"]))
         unit = record["u"]
         if units.setdefault(record["n"], unit) != unit:
             raise InputError(

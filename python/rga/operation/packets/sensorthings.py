@@ -13,7 +13,7 @@ import msgspec
 from rga.errors import InputError
 from rga.operation.packets.moments import moment_of_stamp
 from rga.operation.packets.packet import SensorPacket
-from rga.operation.packets.points import Point, check_size, packets_of
+from rga.operation.packets.readings import SensorReading, check_size, packets_of
 
 _Entry = dict[str, Any]
 _DECODER = msgspec.json.Decoder(_Entry | list[_Entry])
@@ -65,7 +65,7 @@ def read_sensorthings(
                 timed = False
             else:
                 raise InputError("a phenomenonTime is no text", where, "write it in ISO 8601")
-            points.append(Point(name, moment, _number(result, where)))
+            points.append(SensorReading(name, moment, _number(result, where)))
     return packets_of(points, units, where, timed=timed)
 
 

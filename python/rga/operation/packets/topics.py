@@ -9,7 +9,7 @@ import msgspec
 from rga.errors import InputError
 from rga.operation.packets.moments import moment_of_number, moment_of_stamp
 from rga.operation.packets.packet import SensorPacket
-from rga.operation.packets.points import Point, packets_of
+from rga.operation.packets.readings import SensorReading, packets_of
 
 #: bytes of a number with its time
 _MOST = 1000
@@ -78,7 +78,7 @@ def read_number(
             moment = moment_of_number(float(time) if "." in time else int(float(time)), where)
     elif time is not None:
         moment = moment_of_number(time, where)
-    return packets_of([Point(channel, moment, value)], {}, where, timed=time is not None)
+    return packets_of([SensorReading(channel, moment, value)], {}, where, timed=time is not None)
 
 
 def _parts(payload: bytes, where: str) -> tuple[float, Any]:

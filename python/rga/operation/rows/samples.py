@@ -12,9 +12,9 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import Model
 from rga.operation.packets.csv_row import file_of_row
-from rga.operation.packets.formats import Format, StatedFormat, format_of_bytes, read_packets
+from rga.operation.packets.formats import PayloadFormat, StatedFormat, format_of_bytes, read_packets
 from rga.operation.packets.packet import EPOCH, MICROSECONDS, Moments, SensorPacket
-from rga.operation.packets.points import check_size
+from rga.operation.packets.readings import check_size
 from rga.operation.rows.cells import SensorSamples
 from rga.records.channels import ColumnSource, sources_of, values_of
 from rga.records.formats import read_format
@@ -23,6 +23,13 @@ from rga.records.mapping import FileMapping, TimeColumns
 from rga.records.table import Table
 from rga.records.times.zone import zone_of
 from rga.records.units import conversion
+
+#: names and units of the columns of a packet
+Columns = tuple[tuple[str, str], ...]
+#: sets of columns that are remembered, and channels of which is told why they are not used
+_MOST_KNOWN = 1000
+#: of rows whose time is that of their arrival
+_PLAIN = TimeColumns()
 
 
 class Reader:
@@ -62,12 +69,12 @@ class Reader:
         named = {one.column for one in mapping.channels.values() if one.column}
         self._columns = {*model.sensors, *model.context, *mapping.unused, *named}
 
-    def format_of(self, payload: bytes) -> Format:
+    def format_of(self, payload: bytes) -> PayloadFormat:
         """The format of a payload: as it is stated, else as it looks."""
         return self._stated.format or format_of_bytes(payload)
 
     def packets_of(
-        self, kind: Format, payload: bytes, where: str, arrived: int
+        self, kind: PayloadFormat, payload: bytes, where: str, arrived: int
     ) -> list[SensorPacket]:
         """Packets of a payload in one of the formats `PACKETS`.
 
@@ -86,7 +93,7 @@ class Reader:
         return packets
 
     def of_rows(
-        self, kind: Format, payload: bytes, where: str, arrived: int
+        self, kind: PayloadFormat, payload: bytes, where: str, arrived: int
     ) -> tuple[SensorSamples, bool]:
         """SensorSamples of rows, as `packets_of`, and whether their time is the logger's.
 
@@ -153,7 +160,7 @@ class Reader:
         columns = [np.zeros((len(times), 0)), *(one[:, None] for one in found.values.values())]
         return SensorSamples(tuple(found.values), times, np.hstack(columns))
 
-    def _of_columns(self, columns: "Columns", times: Moments, values: FloatArray) -> SensorSamples:
+    def _of_columns(self, columns: Columns, times: Moments, values: FloatArray) -> SensorSamples:
         table, sources = self._table(columns, values), self._sources(columns)
         mapping = _for(table, self._mapping)
         found = np.full((len(times), len(sources)), np.nan)
@@ -161,7 +168,7 @@ class Reader:
             found[:, k] = values_of(table, mapping, name, source, self._model)
         return SensorSamples(tuple(sources), times, found)
 
-    def _sources(self, columns: "Columns") -> dict[str, ColumnSource]:
+    def _sources(self, columns: Columns) -> dict[str, ColumnSource]:
         """Sensor or context variable -> its column, of those that can be used."""
         if columns not in self._known:
             table = self._table(columns, np.zeros((0, len(columns))))
@@ -191,19 +198,11 @@ class Reader:
         if len(self.refused) < _MOST_KNOWN:
             self.refused[column] = why
 
-    def _table(self, columns: "Columns", values: FloatArray) -> Table:
+    def _table(self, columns: Columns, values: FloatArray) -> Table:
         names = [name for name, _ in columns]
         frame = pl.DataFrame(dict(zip(names, values.T, strict=True)))
         units = {name: unit for name, unit in columns if unit}
         return Table(self._where, frame, "row", 1, format="packet", units=units)
-
-
-#: names and units of the columns of a packet
-Columns = tuple[tuple[str, str], ...]
-#: sets of columns that are remembered, and channels of which is told why they are not used
-_MOST_KNOWN = 1000
-#: of rows whose time is that of their arrival
-_PLAIN = TimeColumns()
 
 
 def _columns(packet: SensorPacket) -> Columns:

@@ -5,7 +5,7 @@ from hashlib import sha256
 
 from rga.errors import InputError
 from rga.operation.inbox.packets import Arrival
-from rga.operation.packets.formats import PACKETS, Format
+from rga.operation.packets.formats import PACKETS, PayloadFormat
 from rga.operation.rows.samples import Reader
 from rga.operation.sources.clock import ClockWatch
 
@@ -16,7 +16,7 @@ def arrival_of(
     where: str,
     reader: Reader,
     clock: ClockWatch | None,
-    kind: Format | None = None,
+    kind: PayloadFormat | None = None,
 ) -> Arrival:
     """A payload, read as far as it takes to keep it.
 

@@ -19,7 +19,7 @@ from asyncua.ua.uaerrors import UaError
 
 from rga.errors import InputError
 from rga.operation.packets.packet import EPOCH
-from rga.operation.packets.points import Point
+from rga.operation.packets.readings import SensorReading
 from rga.operation.sources.secrets import credentials_of
 from rga.operation.sources.settings import OpcUaSource
 from rga.operation.sources.source import Inlet
@@ -54,10 +54,10 @@ class OpcUaServer:
         )
         self._kept: dict[str, int] = dict(inlet.cursor())
         self._channels: dict[Node, str] = {}
-        self._changes: list[Point] = []
+        self._changes: list[SensorReading] = []
         self._lost = False
-        self._last: dict[str, Point] = {}
-        self._came: set[Point] = set()
+        self._last: dict[str, SensorReading] = {}
+        self._came: set[SensorReading] = set()
         self._ending = Event()
         self._thread = Thread(target=lambda: asyncio.run(self._work()), name=name, daemon=True)
         self.fault: str | None = "not connected yet"
@@ -146,9 +146,9 @@ class OpcUaServer:
             for channel in self._settings.nodes
         }
 
-    async def _history(self, begins: Mapping[str, datetime]) -> list[Point]:
+    async def _history(self, begins: Mapping[str, datetime]) -> list[SensorReading]:
         """What the server remembers of each channel since a moment."""
-        points: list[Point] = []
+        points: list[SensorReading] = []
         end = datetime.now(UTC) + timedelta(days=1)
         for node, channel in self._channels.items():
             try:
@@ -159,13 +159,13 @@ class OpcUaServer:
             points += _points_of(channel, found)
         return points
 
-    async def _values(self) -> list[Point]:
-        points: list[Point] = []
+    async def _values(self) -> list[SensorReading]:
+        points: list[SensorReading] = []
         for node, channel in self._channels.items():
             points += _points_of(channel, [await node.read_data_value(raise_on_bad_status=False)])
         return points
 
-    async def _keep(self, points: list[Point]) -> None:
+    async def _keep(self, points: list[SensorReading]) -> None:
         """Keep values that are new, with how far each variable was read."""
         new = [one for one in points if one not in self._came]
         if not new:
@@ -193,7 +193,7 @@ class OpcUaServer:
         return await asyncio.to_thread(self._ending.wait, seconds)
 
 
-def _points_of(channel: str, values: Any) -> list[Point]:
+def _points_of(channel: str, values: Any) -> list[SensorReading]:
     """Values as readings, of those that are numbers and have a time."""
     points = []
     for one in values:
@@ -205,5 +205,5 @@ def _points_of(channel: str, values: Any) -> list[Point]:
             continue
         if abs(value) <= LARGEST:
             moment = (stamp.replace(tzinfo=UTC) if stamp.tzinfo is None else stamp) - EPOCH
-            points.append(Point(channel, moment // _MICROSECOND, float(value)))
+            points.append(SensorReading(channel, moment // _MICROSECOND, float(value)))
     return points

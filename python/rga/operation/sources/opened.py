@@ -9,14 +9,14 @@ from rga.operation.sources.settings import (
     SqlSource,
     source_name,
 )
-from rga.operation.sources.source import Inlet, Polling, Source
+from rga.operation.sources.source import DataSource, Inlet, Polling
 from rga.records.mapping import FileMapping
 
 #: formats whose files have no line above their rows
 _HEADLESS = ("line_protocol", "row", "number")
 
 
-def opened(settings: AnySource, mapping: FileMapping, twin: str, inlet: Inlet) -> Source | None:
+def opened(settings: AnySource, mapping: FileMapping, twin: str, inlet: Inlet) -> DataSource | None:
     """The source, which is not started yet; None: it sends to this service by itself.
 
     Args:

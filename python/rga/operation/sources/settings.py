@@ -8,7 +8,7 @@ from pydantic import Field, field_validator, model_validator
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import ArgumentError
 
-from rga.operation.packets.formats import Format, StatedFormat
+from rga.operation.packets.formats import PayloadFormat, StatedFormat
 from rga.operation.packets.topics import TopicPattern
 from rga.operation.settings_types import Duration, Name, SettingsTable
 from rga.operation.sources.clock import ClockRule
@@ -60,7 +60,7 @@ class PayloadSettings(SourceSettings):
         columns: names of the columns of rows that are sent without them, in their order.
     """
 
-    format: Format | None = None
+    format: PayloadFormat | None = None
     columns: Annotated[list[str], Field(default_factory=list)]
 
     @property

@@ -14,7 +14,7 @@ Placed = tuple[str, bytes]
 Outcome = tuple[Fate, str | None]
 
 
-class Source(Protocol):
+class DataSource(Protocol):
     """Brings data until it is stopped, whatever happens where the data comes from."""
 
     @property

@@ -30,7 +30,7 @@ from sqlalchemy.exc import NoSuchModuleError, NoSuchTableError, SQLAlchemyError
 
 from rga.errors import InputError
 from rga.operation.packets.moments import moment_of_number, moment_of_stamp
-from rga.operation.packets.points import LONGEST_NAME, Point
+from rga.operation.packets.readings import LONGEST_NAME, SensorReading
 from rga.operation.sources.secrets import password_of
 from rga.operation.sources.settings import SqlSource
 from rga.operation.sources.source import Inlet
@@ -184,7 +184,7 @@ class SqlTable:
             )
         return [self._column(table, name) for name in names]
 
-    def _points_of(self, row: RowMapping) -> Iterable[Point]:
+    def _points_of(self, row: RowMapping) -> Iterable[SensorReading]:
         settings = self._settings
         try:
             moment = self._moment_of(row[settings.time])
@@ -202,7 +202,7 @@ class SqlTable:
         for name, value in pairs:
             number = _number_of(value)
             if number is not None and 0 < len(name) <= LONGEST_NAME:
-                yield Point(str(name), moment, number)
+                yield SensorReading(str(name), moment, number)
 
     def _moment_of(self, time: Any) -> int:
         if isinstance(time, datetime):

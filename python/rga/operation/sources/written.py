@@ -4,20 +4,21 @@ from collections.abc import Iterable, Iterator
 
 from rga.operation.packets.native import write_packet
 from rga.operation.packets.packet import LONGEST, MICROSECONDS
-from rga.operation.packets.points import Point, packets_of
+from rga.operation.packets.readings import SensorReading, packets_of
 
 #: readings of a payload
-MOST_POINTS = 10_000
+MOST_READINGS = 10_000
 
 
-def payloads_of(points: Iterable[Point], where: str) -> list[bytes]:
+def payloads_of(points: Iterable[SensorReading], where: str) -> list[bytes]:
     """Packets of readings, each no longer than a packet may be.
 
     Args:
         points: in any order; those of one channel and moment in the order in which they count.
         where: they came from, for an error.
 
-    >>> len(payloads_of([Point("D1", 0, 1.5), Point("D1", 90_000_000, 2.5)], "a test"))
+    >>> minutes = [SensorReading("D1", moment, 1.5) for moment in (0, 90_000_000)]
+    >>> len(payloads_of(minutes, "a test"))
     2
     """
     payloads = []
@@ -26,11 +27,11 @@ def payloads_of(points: Iterable[Point], where: str) -> list[bytes]:
     return payloads
 
 
-def _groups(points: list[Point]) -> Iterator[list[Point]]:
+def _groups(points: list[SensorReading]) -> Iterator[list[SensorReading]]:
     begin = 0
     for k, point in enumerate(points):
         longest = point.moment - points[begin].moment > LONGEST * MICROSECONDS
-        if longest or k - begin >= MOST_POINTS:
+        if longest or k - begin >= MOST_READINGS:
             yield points[begin:k]
             begin = k
     if points:

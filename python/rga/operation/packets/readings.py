@@ -15,7 +15,7 @@ LONGEST_BATCH = 86_400.0
 LONGEST_NAME = 200
 
 
-class Point(NamedTuple):
+class SensorReading(NamedTuple):
     """One reading.
 
     Attributes:
@@ -30,7 +30,7 @@ class Point(NamedTuple):
 
 
 def packets_of(
-    points: Iterable[Point], units: Mapping[str, str], where: str, *, timed: bool = True
+    points: Iterable[SensorReading], units: Mapping[str, str], where: str, *, timed: bool = True
 ) -> list[SensorPacket]:
     """Packets of readings: channels of the same moments together.
 
@@ -46,7 +46,8 @@ def packets_of(
     Raises:
         InputError: there is none, or one that no logger can mean.
 
-    >>> found = packets_of([Point("D1", 5, 1.5), Point("D2", 5, 2.5), Point("D1", 5, 3.5)], {}, "")
+    >>> sent = [("D1", 5, 1.5), ("D2", 5, 2.5), ("D1", 5, 3.5)]
+    >>> found = packets_of([SensorReading(*one) for one in sent], {}, "a test")
     >>> [(one.channels, one.values.tolist()) for one in found]
     [(('D1', 'D2'), [[1.5, 2.5]]), (('D1',), [[3.5]])]
     """
