@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
+from rga.operation.packets.formats import format_of_type
 from rga.operation.packets.packet import MOST_BYTES
 from rga.operation.served_twin import ServedTwin
 from rga.operation.service import Service
@@ -41,8 +42,9 @@ def app_of(service: Service) -> FastAPI:
         if source is None:
             raise HTTPException(404, f"twin {twin!r} has no source of kind http")
         payload = await _body(request)
+        kind = format_of_type(request.headers.get("content-type"))
         try:
-            fates = await run_in_threadpool(served.receive, source, [("http", payload)])
+            fates = await run_in_threadpool(served.receive, source, [("http", payload)], kind=kind)
         except InputError as error:
             raise HTTPException(503, str(error), {"Retry-After": str(AGAIN)}) from None
         (fate, reason), *_ = fates

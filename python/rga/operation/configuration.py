@@ -1,46 +1,18 @@
 """What `rga serve` does: its twins, where their data comes from, and how rows are made of it."""
 
-import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
-from urllib.parse import urlsplit
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, Field, model_validator
 
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.grid import Grid
-from rga.operation.sources.clock import ClockRule
+from rga.operation.settings_types import Duration, Name, SettingsTable
+from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated
 
-_SIZES = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
-_DURATION = re.compile(rf"(\d+(?:\.\d+)?) ?({'|'.join(_SIZES)})")
 
-
-def duration_of(given: Any) -> float:
-    """Seconds of a duration, as people write it.
-
-    Raises:
-        ValueError: it is none.
-
-    >>> duration_of("10 min"), duration_of("0.5 s")
-    (600.0, 0.5)
-    """
-    found = _DURATION.fullmatch(given) if isinstance(given, str) else None
-    if found is None:
-        raise ValueError(f"{given!r} is no duration: write '60 s', '10 min', '2 h' or '7 d'")
-    return float(found[1]) * _SIZES[found[2]]
-
-
-Duration = Annotated[float, BeforeValidator(duration_of), Field(gt=0, le=366 * 86_400)]
-#: as it stands in addresses, topics and names of folders
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class RowSettings(_Table):
+class RowSettings(SettingsTable):
     """How rows are made of samples.
 
     Attributes:
@@ -67,88 +39,10 @@ class RowSettings(_Table):
         return self
 
 
-class ClockSettings(_Table):
-    """What is believed of the clock of a logger.
-
-    Attributes:
-        check: False: all, as where a record is played faster than it was measured.
-        tolerance: by which it may be ahead of that of this machine [s].
-        backlog: how long before they arrive readings may be from [s].
-    """
-
-    check: bool = True
-    tolerance: Duration = 1800.0
-    backlog: Duration = 7 * 86_400.0
-
-    @property
-    def rule(self) -> ClockRule | None:
-        """None: all is believed."""
-        return ClockRule(self.tolerance, self.backlog) if self.check else None
+Source = Annotated[AnySource, Field(discriminator="kind")]
 
 
-class _Source(_Table):
-    """What every source states.
-
-    Attributes:
-        name: by which it is accounted for; left out, its kind.
-        mapping: import.toml of the logger, beside the configuration.
-        clock: what is believed of its clock.
-    """
-
-    name: Name | None = None
-    mapping: Path | None = None
-    clock: ClockSettings = ClockSettings()
-
-
-class HttpSource(_Source):
-    """Loggers that send to this service."""
-
-    kind: Literal["http"]
-
-
-class MqttSource(_Source):
-    """A broker that loggers send to.
-
-    Attributes:
-        url: mqtt:// or mqtts://, host and port.
-        topics: that hold data; + and # as in MQTT.
-        credentials: file of two lines, user and password.
-    """
-
-    kind: Literal["mqtt"]
-    url: str
-    topics: Annotated[list[str], Field(min_length=1)]
-    credentials: Path | None = None
-
-    @model_validator(mode="after")
-    def _broker(self) -> "MqttSource":
-        parts = urlsplit(self.url)
-        if parts.scheme not in ("mqtt", "mqtts") or not parts.hostname:
-            raise ValueError(f"{self.url!r} is no broker: write mqtt://host:1883")
-        if parts.username or parts.password:
-            raise ValueError("url holds a password: name a file of credentials instead")
-        return self
-
-
-class FolderSource(_Source):
-    """A folder that files are written to.
-
-    Attributes:
-        path: of it.
-        files: names of the files, * for any text.
-        poll: how often it is looked at [s].
-    """
-
-    kind: Literal["folder"]
-    path: Path
-    files: str = "*"
-    poll: Duration = 5.0
-
-
-Source = Annotated[HttpSource | MqttSource | FolderSource, Field(discriminator="kind")]
-
-
-class TwinSettings(_Table):
+class TwinSettings(SettingsTable):
     """A twin that is served.
 
     Attributes:
@@ -174,12 +68,7 @@ class TwinSettings(_Table):
         return self
 
 
-def source_name(source: HttpSource | MqttSource | FolderSource) -> str:
-    """Name of a source in its twin."""
-    return source.name or source.kind
-
-
-class ServiceSettings(_Table):
+class ServiceSettings(SettingsTable):
     """The service itself.
 
     Attributes:
@@ -195,7 +84,7 @@ class ServiceSettings(_Table):
     repository: str | None = None
 
 
-class Configuration(_Table):
+class Configuration(SettingsTable):
     """A file of `rga serve`.
 
     Attributes:

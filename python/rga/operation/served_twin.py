@@ -1,20 +1,26 @@
 """One twin of a service: what its sources send becomes packets, rows, and steps of the twin."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
 from rga.errors import InputError
 from rga.jobs.live import live
-from rga.model import Model, load_model
-from rga.operation.configuration import TwinSettings, source_name
+from rga.model import load_model
+from rga.operation.configuration import TwinSettings
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.inbox.packets import Fate, Packets
+from rga.operation.inbox.packets import Arrival, Packets
+from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
-from rga.operation.sources.arrivals import arrival_of
+from rga.operation.sources.arrivals import arrival_of, arrivals_of_lines
+from rga.operation.sources.clock import ClockWatch
+from rga.operation.sources.opened import opened
+from rga.operation.sources.settings import AnySource, source_name
+from rga.operation.sources.source import DataSource, Outcome, Placed
 from rga.records.mapping import RecordMapping, read_mapping
 from rga.settings_files import read_table, validated
 from rga.twin.hardware.inbox import Inbox
@@ -45,8 +51,15 @@ class ServedTwin:
             repository=repository,
         ).close()
         self._sources = {source_name(one): one for one in settings.source}
+        self._mappings = {name: _mapping_of(one) for name, one in self._sources.items()}
         self._readers = {
-            name: _reader(name, one.mapping, model) for name, one in self._sources.items()
+            name: Reader(name, model, self._mappings[name], one.stated)
+            for name, one in self._sources.items()
+        }
+        self._clocks = {
+            name: ClockWatch(one.clock.rule)
+            for name, one in self._sources.items()
+            if one.clock.rule is not None
         }
         self.inbox = Inbox(directory)
         grid = settings.rows.grid
@@ -59,19 +72,50 @@ class ServedTwin:
         self._lock = Lock()
 
     @property
+    def source_names(self) -> list[str]:
+        """Names of the sources."""
+        return list(self._sources)
+
+    @property
     def http_source(self) -> str | None:
         """Name of the source that sends to this service; None: there is none."""
         return next((name for name, one in self._sources.items() if one.kind == "http"), None)
 
+    def sources(self) -> dict[str, DataSource]:
+        """Sources by name, not started yet, but for those that send to this service.
+
+        Raises:
+            InputError: a secret or a package that one needs is missing.
+        """
+        found = {
+            name: opened(one, self._mappings[name], self.name, _TwinInlet(self, name))
+            for name, one in self._sources.items()
+        }
+        return {name: source for name, source in found.items() if source is not None}
+
+    def clock_fault(self, source: str) -> str | None:
+        """What is wrong with the clocks of a source, in words; None: nothing."""
+        clock = self._clocks.get(source)
+        return None if clock is None else clock.fault
+
+    def refused_channels(self, source: str) -> dict[str, str]:
+        """Channels of a source that are not used, and why."""
+        return dict(self._readers[source].refused)
+
     def receive(
-        self, source: str, payloads: Sequence[tuple[str, bytes]], cursor: Any = None
-    ) -> list[tuple[Fate, str | None]]:
+        self,
+        source: str,
+        payloads: Sequence[Placed],
+        cursor: Mapping[str, Any] | None = None,
+        kind: PayloadFormat | None = None,
+    ) -> list[Outcome]:
         """Keep payloads, each with the place that it came from.
 
         Args:
             source: name of it.
             payloads: in their order.
-            cursor: where the source reads on.
+            cursor: where the source reads on, by those of its parts that have moved.
+            kind: format of the payloads, where the sender says it.
 
         Returns:
             What becomes of each, and why if it is refused.
@@ -79,11 +123,41 @@ class ServedTwin:
         Raises:
             InputError: nothing of them is kept: the disk is full.
         """
-        arrived, rule = time.time_ns() // 1000, self._sources[source].clock.rule
-        reader = self._readers[source]
+        arrived = time.time_ns() // 1000
         arrivals = [
-            arrival_of(payload, arrived, where, reader, rule) for where, payload in payloads
+            self._arrival(source, where, payload, arrived, kind) for where, payload in payloads
         ]
+        return self._keep(source, arrivals, cursor)
+
+    def receive_lines(
+        self, source: str, where: str, head: bytes, lines: bytes, cursor: Mapping[str, Any]
+    ) -> list[Outcome]:
+        """Keep lines of a file as `receive` does, those that cannot be used apart from the others.
+
+        Args:
+            source: name of it.
+            where: the file.
+            head: lines above all rows.
+            lines: of rows.
+            cursor: where the source reads on, by those of its parts that have moved.
+        """
+        arrived = time.time_ns() // 1000
+        arrivals = arrivals_of_lines(
+            head,
+            [line + b"\n" for line in lines.removesuffix(b"\n").split(b"\n")],
+            lambda payload: self._arrival(source, where, payload, arrived, None),
+        )
+        return self._keep(source, arrivals, cursor)
+
+    def _arrival(
+        self, source: str, where: str, payload: bytes, arrived: int, kind: PayloadFormat | None
+    ) -> Arrival:
+        reader, clock = self._readers[source], self._clocks.get(source)
+        return arrival_of(payload, arrived, where, reader, clock, kind)
+
+    def _keep(
+        self, source: str, arrivals: Sequence[Arrival], cursor: Mapping[str, Any] | None
+    ) -> list[Outcome]:
         fates = self.packets.receive(source, arrivals, cursor)
         self._heard[source] = time.monotonic()
         self._sealed_for = None
@@ -122,12 +196,36 @@ def live_settings(path: Path) -> Settings:
     return validated(Settings, content, str(path), "settings")
 
 
-def _reader(source: str, path: Path | None, model: Model) -> Reader:
-    mapping = RecordMapping() if path is None else read_mapping(path)
+@dataclass(frozen=True)
+class _TwinInlet:
+    """Keeps what one source of a twin brings, as `Inlet` says."""
+
+    twin: ServedTwin
+    source: str
+
+    def receive(
+        self, payloads: Sequence[Placed], cursor: Mapping[str, Any] | None = None
+    ) -> list[Outcome]:
+        return self.twin.receive(self.source, payloads, cursor)
+
+    def receive_lines(
+        self, where: str, head: bytes, lines: bytes, cursor: Mapping[str, Any]
+    ) -> list[Outcome]:
+        return self.twin.receive_lines(self.source, where, head, lines, cursor)
+
+    def cursor(self) -> dict[str, Any]:
+        return self.twin.packets.cursor(self.source)
+
+    def numbers(self) -> dict[str, Numbers]:
+        return self.twin.numbers(self.source)
+
+
+def _mapping_of(source: AnySource) -> RecordMapping:
+    mapping = RecordMapping() if source.mapping is None else read_mapping(source.mapping)
     if mapping.zero is not None or mapping.beside:
         raise InputError(
             "a source that goes on has no zero of its own and no files beside it",
-            str(path),
+            str(source.mapping),
             "leave out zero and beside, and name each logger a source",
         )
-    return Reader(source, model, mapping)
+    return mapping

@@ -19,6 +19,8 @@ from rga.errors import InputError, kind_of
 from rga.no_booleans import NO_BOOLEAN
 
 MAPPING_NAME = "import.toml"
+#: lines above the rows of a file, by what writes it
+HEAD_LINES = {"toa5": 4}
 #: begins a reason that `rga import-record` gave, and that nobody has confirmed
 TO_CHECK = "TO CHECK"
 _Finite = Annotated[float, Field(allow_inf_nan=False), NO_BOOLEAN]
@@ -54,12 +56,15 @@ class TimeColumns(_Table):
         sampling_rate_hz: counts time by rows instead, from the first stamp on; a file without a
             time needs nothing else.
         zone: of stamps without one: a name such as "Europe/Berlin", or "+01:00".
+        repeated_hour: what becomes of stamps of the hour that comes twice in `zone` where summer
+            time ends: "guessed" from the rows about them, or "refused".
     """
 
     columns: list[str] = ["time"]
     format: str | None = None
     sampling_rate_hz: _Positive | None = None
     zone: str | None = None
+    repeated_hour: Literal["guessed", "refused"] = "guessed"
 
     @model_validator(mode="after")
     def _some_time(self) -> "TimeColumns":
@@ -91,6 +96,8 @@ class FileMapping(_Table):
 
     Attributes:
         files: the files, in time, beside import.toml; names may have * for any text.
+        logger: that writes them, where a file is read while it grows: "toa5" has four lines above
+            its rows.
         delimiter: what separates the columns of a text file; None: found.
         encoding: of a text file, such as "cp1252"; None: found.
         decimal, thousands: signs in numbers; None: found.
@@ -112,6 +119,7 @@ class FileMapping(_Table):
     """
 
     files: list[str] = []
+    logger: Literal["toa5"] | None = None
     delimiter: _Sign | None = None
     encoding: str | None = None
     decimal: Literal[".", ","] | None = None
@@ -174,6 +182,19 @@ class FileMapping(_Table):
             for name, reason in self.unused.items()
             if not (name in claimed and reason.startswith(TO_CHECK))
         }
+
+    @property
+    def head_lines(self) -> int:
+        """Lines above the first row of a text file that grows.
+
+        >>> FileMapping(logger="toa5").head_lines, FileMapping(units_line=2).head_lines
+        (4, 2)
+        """
+        if self.data_line is not None:
+            return self.data_line - 1
+        if self.logger is not None:
+            return HEAD_LINES[self.logger]
+        return max(self.header_line or 1, self.units_line or 1)
 
     def channel_of(self, column: str) -> tuple[str, str | None]:
         """Channel and unit that a column's name states by the header pattern."""

@@ -12,6 +12,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 from rga.errors import InputError
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.sources.mqtt import Broker
+from rga.operation.sources.source import Outcome
 from rga_bench.operation.broker import Mosquitto
 from served.brokers import mosquitto
 from served.made_service import waited_for
@@ -47,16 +48,25 @@ class Kept:
 
     def __init__(self) -> None:
         self.payloads: list[bytes] = []
-        self.numbers = Numbers()
+        self.known = Numbers()
         self.full = False
 
-    def __call__(self, came: Any) -> dict[str, Numbers]:
+    def receive(self, payloads: Any, cursor: Any = None) -> list[Outcome]:
         if self.full:
             raise InputError("the disk is full", "a test", "make room")
-        for _, payload in came:
+        for _, payload in payloads:
             self.payloads.append(payload)
-            self.numbers.take(int(payload))
-        return {"s": self.numbers}
+            self.known.take(int(payload))
+        return []
+
+    def receive_lines(self, where: str, head: bytes, lines: bytes, cursor: Any) -> list[Outcome]:
+        raise NotImplementedError
+
+    def cursor(self) -> dict[str, Any]:
+        return {}
+
+    def numbers(self) -> dict[str, Numbers]:
+        return {"s": self.known}
 
 
 @pytest.fixture
@@ -74,11 +84,11 @@ def test_what_is_kept_is_acknowledged_end_to_end(mosquitto: Mosquitto, kept: Kep
     sender = Sender(mosquitto)
     for number in (0, 1, 3):
         sender.send(b"%d" % number)
-    waited_for(lambda: kept.numbers.next == 4)
+    waited_for(lambda: kept.known.next == 4)
     # Two topics that overlap bring a message twice at most.
     assert set(kept.payloads) == {b"0", b"1", b"3"}
     sender.send(b"4")
-    waited_for(lambda: kept.numbers.next == 5)
+    waited_for(lambda: kept.known.next == 5)
     told: dict[str, Any] = {"next": 0}
     while told["next"] < 5:
         told = sender.told.get(timeout=20)
@@ -94,8 +104,8 @@ def test_what_cannot_be_written_waits(mosquitto: Mosquitto, kept: Kept) -> None:
     time.sleep(1.0)
     assert kept.payloads == []
     kept.full = False
-    waited_for(lambda: kept.numbers.next == 300)
-    assert kept.numbers.gaps == []
+    waited_for(lambda: kept.known.next == 300)
+    assert kept.known.gaps == []
     sender.close()
 
 
@@ -115,7 +125,7 @@ def test_a_service_that_was_away_gets_what_was_sent(mosquitto: Mosquitto) -> Non
     for number in range(1, 200):
         sender.send(b"%d" % number)
     running = broker(second)
-    waited_for(lambda: second.numbers.next == 200)
+    waited_for(lambda: second.known.next == 200)
     assert [int(one) for one in second.payloads] == list(range(1, 200))
     running.stop()
     sender.close()
@@ -124,17 +134,17 @@ def test_a_service_that_was_away_gets_what_was_sent(mosquitto: Mosquitto) -> Non
 def test_a_broker_that_was_killed_is_found_again(mosquitto: Mosquitto, kept: Kept) -> None:
     sender = Sender(mosquitto)
     sender.send(b"0")
-    waited_for(lambda: kept.numbers.next == 1)
+    waited_for(lambda: kept.known.next == 1)
     mosquitto.kill()
     mosquitto.start()
     number = 0
     until = time.monotonic() + 30
-    while kept.numbers.next < 3:
+    while kept.known.next < 3:
         assert time.monotonic() < until
         number += 1
         sender.send(b"%d" % number, waits=False)
         time.sleep(0.1)
     # What the broker confirmed and lost is told.
-    missing = {n for first, last in kept.numbers.gaps for n in range(first, last + 1)}
-    assert missing == set(range(kept.numbers.next)) - {int(one) for one in kept.payloads}
+    missing = {n for first, last in kept.known.gaps for n in range(first, last + 1)}
+    assert missing == set(range(kept.known.next)) - {int(one) for one in kept.payloads}
     sender.close()

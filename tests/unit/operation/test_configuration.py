@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from rga.errors import InputError
-from rga.operation.configuration import FolderSource, read_configuration
+from rga.operation.configuration import read_configuration
+from rga.operation.sources.settings import FolderSource, OpcUaSource, SqlSource
 
 SOUND = """
 [service]
@@ -24,6 +25,27 @@ kind = "mqtt"
 url = "mqtt://broker:1883"
 topics = ["rga/v1/pratt-7/data/#"]
 clock = { check = false }
+[[twin.source]]
+kind = "mqtt"
+name = "numbers"
+url = "mqtt://broker:1883"
+topics = ["site/#"]
+format = "number"
+channel_topic = "site/{channel}"
+[[twin.source]]
+kind = "http"
+format = "row"
+columns = ["time", "D1"]
+[[twin.source]]
+kind = "sql"
+url = "postgresql://rga@plant/history"
+password = "plant.secret"
+table = "public.reading"
+position = "id"
+[[twin.source]]
+kind = "opcua"
+url = "opc.tcp://plant:4840"
+nodes = { D1 = "ns=2;s=D1" }
 """
 
 
@@ -39,12 +61,18 @@ def test_a_configuration_is_read(tmp_path: Path) -> None:
     assert found.service.data == tmp_path / "data"
     assert twin.model == tmp_path / "pratt.json"
     assert (twin.rows.grid.every, twin.rows.grid.lateness) == (60_000_000, 600_000_000)
-    folder, broker = twin.source
+    folder, broker, numbers, rows, table, server = twin.source
     assert isinstance(folder, FolderSource)
     assert folder.path == tmp_path / "logger"
     assert folder.mapping == tmp_path / "import.toml"
     assert folder.clock.rule is not None
     assert broker.clock.rule is None
+    assert numbers.stated.pattern is not None
+    assert rows.stated.columns == ("time", "D1")
+    assert isinstance(table, SqlSource)
+    assert table.password == tmp_path / "plant.secret"
+    assert isinstance(server, OpcUaSource)
+    assert server.stated.format == "packet"
 
 
 @pytest.mark.parametrize(
@@ -62,6 +90,21 @@ def test_a_configuration_is_read(tmp_path: Path) -> None:
         ('topics = ["rga/v1/pratt-7/data/#"]', "topics = []", "topics"),
         ("[service]", "[services]", "services"),
         ('path = "logger"', 'path = "logger"\nshift = 3', "shift"),
+        ('path = "logger"', 'path = "logger"\nfiles = "../x"', "names within the folder"),
+        ('path = "logger"', 'path = "logger"\nformat = "yaml"', "format"),
+        ('channel_topic = "site/{channel}"', "", "needs channel_topic"),
+        ('format = "number"', "", "needs channel_topic"),
+        ("site/{channel}", "site/channel", "one level of the topic"),
+        ('columns = ["time", "D1"]', "", "needs columns"),
+        ('format = "row"', "", "needs columns"),
+        ('["time", "D1"]', '["D1", "D1"]', "name every column once"),
+        ("postgresql://rga@plant", "postgresql://rga:secret@plant", "url holds a password"),
+        ("postgresql://rga@plant/history", "plant", "no address of a database"),
+        ('position = "id"', 'position = "id"\nvalue = "v"', "both, or neither"),
+        ('position = "id"', 'position = "id"\noverlap = -1', "overlap"),
+        ("opc.tcp://plant:4840", "http://plant", "no server"),
+        ("opc.tcp://plant", "opc.tcp://a:b@plant", "password"),
+        ('nodes = { D1 = "ns=2;s=D1" }', "nodes = {}", "nodes"),
         ('kind = "folder"', 'kind = "folder"\nname = "mqtt"', "two sources are called 'mqtt'"),
     ],
 )

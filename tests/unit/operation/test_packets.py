@@ -98,10 +98,12 @@ def test_what_is_late_hangs_on_what_came_before_it_alone(tmp_path: Path) -> None
 
 
 def test_a_source_reads_on_where_it_was(packets: Packets) -> None:
-    assert packets.cursor("folder") is None
-    packets.receive("folder", [plain("x")], cursor={"offset": 3})
+    assert packets.cursor("folder") == {}
+    packets.receive("folder", [plain("x")], cursor={"a": {"offset": 3}})
     packets.receive("folder", [plain("y")])
-    assert packets.cursor("folder") == {"offset": 3}
+    packets.receive("folder", [], cursor={"a": {"offset": 5}, "b": [1]})
+    assert packets.cursor("folder") == {"a": {"offset": 5}, "b": [1]}
+    assert packets.cursor("other") == {}
     assert packets.latest() == {"east": None, "west": None, "folder": NOON}
 
 

@@ -12,14 +12,16 @@ from rga.errors import InputError
 from rga.model import Model, read_model
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.packets import Packets
+from rga.operation.packets.formats import StatedFormat
 from rga.operation.packets.native import write_packet
 from rga.operation.packets.packet import MICROSECONDS, Number, SensorPacket
+from rga.operation.packets.topics import TopicPattern
 from rga.operation.rows.grid import Grid
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
 from rga.operation.sources.arrivals import arrival_of
-from rga.operation.sources.clock import ClockRule
-from rga.records.mapping import Channel, RecordMapping
+from rga.operation.sources.clock import ClockRule, ClockWatch
+from rga.records.mapping import Channel, RecordMapping, TimeColumns
 from rga.twin.hardware.inbox import Inbox
 
 #: 2026-11-23T00:00:00Z
@@ -38,9 +40,15 @@ def model(measured_bridge: dict[str, Any]) -> Model:
 class Twin:
     """An inbox that is closed and opened again as often as one likes."""
 
-    def __init__(self, folder: Path, model: Model, mappings: dict[str, RecordMapping]) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        model: Model,
+        mappings: dict[str, RecordMapping],
+        stated: StatedFormat | None = None,
+    ) -> None:
         self._folder, self._model = folder, model
-        self.readers = {name: Reader(name, model, one) for name, one in mappings.items()}
+        self.readers = {name: Reader(name, model, one, stated) for name, one in mappings.items()}
         self.start()
 
     def start(self) -> None:
@@ -49,8 +57,15 @@ class Twin:
         self.packets = Packets(self.inbox, grid, self.readers)
         self.sealing = Sealing(self.inbox, self.packets, self._model, self.readers, grid)
 
-    def send(self, source: str, payload: bytes, arrived: int = MIDNIGHT) -> str:
-        one = arrival_of(payload, arrived, source, self.readers[source], None)
+    def send(
+        self,
+        source: str,
+        payload: bytes,
+        arrived: int = MIDNIGHT,
+        where: str = "a test",
+        clock: ClockWatch | None = None,
+    ) -> str:
+        one = arrival_of(payload, arrived, where, self.readers[source], clock)
         return self.packets.receive(source, [one])[0]
 
     def rows(self) -> np.ndarray:
@@ -199,6 +214,98 @@ def test_formats_of_others_give_the_same_rows(kind: str, tmp_path: Path, model: 
     np.testing.assert_array_equal(twin.rows()[:, :3], [[0, 1.5, 2.5], [60, 2.5, 3.5]])
 
 
+WITHOUT_TIME: dict[str, tuple[StatedFormat, str, bytes]] = {
+    "number": (StatedFormat("number", TopicPattern("site/{channel}")), "site/D1", b"1.5"),
+    "row": (StatedFormat("row", columns=("D1", "D2")), "site", b"1.5,7"),
+    "SenML": (StatedFormat(), "site", b'[{"n":"D1","v":1.5}]'),
+    "line protocol": (StatedFormat(), "site", b"D1 v=1.5"),
+}
+
+
+@pytest.mark.parametrize("kind", WITHOUT_TIME)
+def test_what_has_no_time_is_of_when_it_arrived(kind: str, tmp_path: Path, model: Model) -> None:
+    stated, where, payload = WITHOUT_TIME[kind]
+    channels = {"D1": Channel(column="D1 v")} if kind == "line protocol" else {}
+    twin = Twin(tmp_path, model, {"logger": RecordMapping(channels=channels)}, stated)
+    # The same reading again is no duplicate, and it is read the same after a restart.
+    for minute in range(3):
+        assert twin.send("logger", payload, MIDNIGHT + minute * MINUTE, where) == "waiting"
+    twin.start()
+    twin.sealing.seal(silent=["logger"])
+    np.testing.assert_array_equal(twin.rows()[:, :2], [[0, 1.5], [60, 1.5], [120, 1.5]])
+
+
+def test_a_row_has_a_time_of_its_own_where_a_column_is_one(tmp_path: Path, model: Model) -> None:
+    stated = StatedFormat("row", columns=("when", "D1"))
+    time = TimeColumns(columns=["when"], format="%d.%m.%Y %H:%M", zone="Europe/Berlin")
+    twin = Twin(tmp_path, model, {"logger": RecordMapping(time=time, decimal=",")}, stated)
+    assert twin.send("logger", b"23.11.2026 01:00;1,5\r\n") == "waiting"
+    assert twin.send("logger", b"23.11.2026 01:00;1,5\r\n") == "duplicate"
+    assert twin.send("logger", b"25.10.2026 02:30;1,5") == "refused"
+    assert twin.send("logger", b"1,5") == "refused"
+    twin.sealing.seal(silent=["logger"])
+    np.testing.assert_array_equal(twin.rows()[:, :2], [[0, 1.5]])
+
+
+def test_units_of_a_payload_are_turned_into_those_of_the_model(twin: Twin) -> None:
+    time = MIDNIGHT // MICROSECONDS
+    pack = f"""[{{"bt":{time},"n":"D1","u":"m","v":0.002}},{{"n":"D2","u":"kg","v":5}},
+        {{"n":"temperature","u":"Cel","v":11}},{{"n":"spare","v":1}}]"""
+    assert twin.send("logger", pack.encode()) == "waiting"
+    twin.sealing.seal(silent=["logger"])
+    rows = twin.rows()
+    assert rows[0, 1] == 2.0
+    assert np.isnan(rows[0, 2])
+    assert rows[0, -1] == 11
+    refused = twin.readers["logger"].refused
+    assert set(refused) == {"D2", "spare"}
+    assert "kg" in refused["D2"]
+
+
+def test_two_channels_that_mean_the_same_are_refused_when_they_come(
+    tmp_path: Path, model: Model
+) -> None:
+    mapping = RecordMapping(channels={"D1": Channel(column="ch 1")})
+    twin = Twin(tmp_path, model, {"logger": mapping})
+    packet = SensorPacket(None, ("ch 1", "D1"), np.array([MIDNIGHT]), np.array([[1.0, 2.0]]))
+    assert twin.send("logger", write_packet(packet)) == "refused"
+    assert twin.sealing.seal(silent=["logger"]) == 0
+
+
+def test_a_clock_that_runs_back_changes_no_row(tmp_path: Path, model: Model) -> None:
+    rows = []
+    for wrong in (False, True):
+        (tmp_path / str(wrong)).mkdir()
+        twin = Twin(tmp_path / str(wrong), model, {"logger": RecordMapping()})
+        clock, number = ClockWatch(ClockRule()), 0
+
+        def send(moment: int, arrived: int, value: float) -> str:
+            nonlocal number
+            packet = SensorPacket(
+                Number("s", number),
+                ("D1",),
+                np.array([moment]),
+                np.array([[value]]),
+            )
+            number += 1
+            return twin.send("logger", write_packet(packet), arrived, clock=clock)  # noqa: B023
+
+        now = MIDNIGHT
+        for minute in range(60):
+            now = MIDNIGHT + minute * MINUTE
+            assert send(now, now, minute) == "waiting"
+        if wrong:
+            for ahead in (120, -120, -60 * 24 * 365 * 56):
+                assert send(now + ahead * MINUTE, now + MINUTE, 99.0) == "refused"
+            assert send(now, now + 2 * MINUTE, 99.0) == "refused"
+        send(now + 3 * MINUTE, now + 3 * MINUTE, 60.0)
+        twin.sealing.seal(silent=["logger"])
+        rows.append(twin.rows())
+        account = sum(twin.packets.account().values(), Account())
+        assert (account.difference, account.refused) == (0, 4 if wrong else 0)
+    np.testing.assert_array_equal(*rows)
+
+
 def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
     reader = twin.readers["logger"]
     for payload, words in (
@@ -207,7 +314,7 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         (b"time,D1\n2026-11-23T00:00:00,1.5\n2026-11-23T00:01:00,2.5\n", "no zone"),
         (b"time,D1\n0,1.5\n1,2.5\n", "no time stamps"),
     ):
-        one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockRule())
+        one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused is not None
         assert words in one.refused
         assert twin.packets.receive("logger", [one]) == ["refused"]
@@ -216,7 +323,7 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         (MIDNIGHT - 3600 * MICROSECONDS, "its clock is 60.5 min ahead"),
         (MIDNIGHT + 30 * 86_400 * MICROSECONDS, "its readings are 30 days old"),
     ):
-        one = arrival_of(sent, arrived, "topic", reader, ClockRule())
+        one = arrival_of(sent, arrived, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused == words
     assert twin.sealing.seal(silent=["logger"]) == 0
 

@@ -100,13 +100,13 @@ def feed(
 
 def _sender(to: str, source: str, credentials: Path | None) -> "Sender":
     from rga.errors import InputError
-    from rga.operation.credentials import read_credentials
     from rga.operation.feeding.senders import BrokerSender, FolderSender, HttpSender
+    from rga.operation.sources.secrets import credentials_of
 
     if to.startswith(("http://", "https://")):
         return HttpSender(to, os.environ.get("RGA_TOKEN"))
     if to.startswith(("mqtt://", "mqtts://")):
-        known = None if credentials is None else read_credentials(credentials)
+        known = None if credentials is None else credentials_of(credentials)
         return BrokerSender(to, source, known)
     folder = Path(to)
     if not folder.is_dir():

@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any, Literal
@@ -15,6 +15,7 @@ from rga.errors import InputError
 from rga.operation.inbox import tables
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.numbers import Numbers
+from rga.operation.packets.formats import PayloadFormat
 from rga.operation.packets.packet import EPOCH, MICROSECONDS, Number
 from rga.operation.rows.cells import Cell
 from rga.operation.rows.grid import Grid
@@ -24,8 +25,6 @@ from rga.twin.repository.checksum import with_checksum
 from rga.twin.repository.faults import whole
 from rga.twin.repository.table_file import only_entry, values_of
 
-#: how a payload is read: as a packet of rga's own, or as any format of a logger
-Kind = Literal["packet", "file"]
 Fate = Literal["waiting", "late", "duplicate", "refused"]
 #: how long a packet without a number is known again [µs]
 REMEMBERED = 24 * 3600 * MICROSECONDS
@@ -44,6 +43,7 @@ class Arrival:
         payload: as it was sent.
         kind: by which it is read again.
         arrived: microseconds since 1970 (UTC), by the clock of this machine.
+        place: that it came from, such as a topic, without which it cannot be read again.
         first, last: moments of its samples, microseconds since 1970 (UTC).
         number: None: the logger counts none.
         sha256: of what tells it from others, where it has no number.
@@ -51,13 +51,14 @@ class Arrival:
     """
 
     payload: bytes
-    kind: Kind
+    kind: PayloadFormat
     arrived: int
     first: int = 0
     last: int = 0
     number: Number | None = None
     sha256: str | None = None
     refused: str | None = None
+    place: str = ""
 
 
 @dataclass(frozen=True)
@@ -68,11 +69,15 @@ class KeptPacket:
         source: that it came from.
         kind: by which its payload is read.
         payload: as it was sent.
+        place: that it came from, such as a topic.
+        arrived: microseconds since 1970 (UTC).
     """
 
     source: str
-    kind: Kind
+    kind: PayloadFormat
     payload: bytes
+    place: str
+    arrived: int
 
 
 class Packets:
@@ -94,13 +99,16 @@ class Packets:
         with inbox.writing() as connection:
             tables.metadata.create_all(connection)
 
-    def receive(self, source: str, arrivals: Sequence[Arrival], cursor: Any = None) -> list[Fate]:
+    def receive(
+        self, source: str, arrivals: Sequence[Arrival], cursor: Mapping[str, Any] | None = None
+    ) -> list[Fate]:
         """Keep packets; they are on the disk when this returns, and may be acknowledged.
 
         Args:
             source: that they came from.
             arrivals: in their order.
-            cursor: where the source reads on, as JSON can say it; None: it stays.
+            cursor: where the source reads on, by those of its parts that have moved, as JSON can
+                say it.
 
         Returns:
             What becomes of each.
@@ -131,7 +139,9 @@ class Packets:
             if aside:
                 connection.execute(insert(tables.refused), aside)
             known.write()
-            _move_on(connection, source, entries, cursor)
+            _move_on(connection, source, entries)
+            for part, state in (cursor or {}).items():
+                _keep_cursor(connection, source, part, json.dumps(state))
             counts: dict[int, Counter[str]] = {}
             for one, fate in zip(arrivals, fates, strict=True):
                 count = counts.setdefault(one.arrived - one.arrived % HOUR, Counter())
@@ -155,11 +165,12 @@ class Packets:
         known = {one.name: one.latest for one in connection.execute(select(tables.source))}
         return {name: known.get(name) for name in self._sources}
 
-    def cursor(self, source: str) -> Any:
-        """Where a source reads on; None: from the beginning."""
+    def cursor(self, source: str) -> dict[str, Any]:
+        """Where a source reads on, by its parts."""
+        chosen = select(tables.cursor).where(tables.cursor.c.source == source)
         with self._inbox.reading() as connection:
-            found = _source(connection, source)
-        return json.loads(found["cursor"]) if found["cursor"] is not None else None
+            found = [whole(tables.cursor, one) for one in connection.execute(chosen)]
+        return {one.part: json.loads(one.state) for one in found}
 
     def numbers(self, source: str) -> dict[str, Numbers]:
         """The numbers that have come of each stream of a source."""
@@ -191,7 +202,8 @@ class Packets:
                     break
             chosen = select(tables.packet).where(waits & (c.first < end)).order_by(c.id)
             found = [whole(tables.packet, one) for one in connection.execute(chosen)]
-        return [KeptPacket(one.source, one.kind, bytes(one.payload)) for one in found], end
+        kept = [(one.source, one.kind, bytes(one.payload), one.place, one.arrived) for one in found]
+        return [KeptPacket(*one) for one in kept], end
 
     def seal(self, until: int, station: Station | None, cells: Sequence[Cell]) -> None:
         """Rows before a moment are final: give them to the twin, with what lies beside them.
@@ -323,6 +335,7 @@ def _entry(id: int, source: str, arrival: Arrival, fate: Fate) -> dict[str, Any]
         sequence=number.sequence if number else None,
         sha256=arrival.sha256,
         kind=arrival.kind,
+        place=arrival.place,
         first=arrival.first,
         last=arrival.last,
         arrived=arrival.arrived,
@@ -360,21 +373,24 @@ def _source(connection: Connection, name: str) -> dict[str, Any]:
     chosen = select(tables.source).where(tables.source.c.name == name)
     found = connection.execute(chosen).one_or_none()
     if found is None:
-        return {"name": name, "latest": None, "cursor": None}
+        return {"name": name, "latest": None}
     return values_of(tables.source, found)
 
 
-def _move_on(
-    connection: Connection, name: str, entries: Sequence[dict[str, Any]], cursor: Any
-) -> None:
+def _keep_cursor(connection: Connection, source: str, part: str, state: str) -> None:
+    c = tables.cursor.c
+    connection.execute(delete(tables.cursor).where((c.source == source) & (c.part == part)))
+    entry = with_checksum(source=source, part=part, state=state)
+    connection.execute(insert(tables.cursor).values(**entry))
+
+
+def _move_on(connection: Connection, name: str, entries: Sequence[dict[str, Any]]) -> None:
     """Keep how far a source has come."""
     known = _source(connection, name)
     moments = [one["last"] for one in entries]
     if known["latest"] is not None:
         moments.append(known["latest"])
     now = known | {"latest": max(moments, default=None)}
-    if cursor is not None:
-        now["cursor"] = json.dumps(cursor)
     if now != known:
         connection.execute(delete(tables.source).where(tables.source.c.name == name))
         connection.execute(insert(tables.source).values(**with_checksum(**now)))

@@ -32,6 +32,7 @@ packet = Table(
     Column("sequence", BigInteger),
     Column("sha256", Text),
     Column("kind", Text, nullable=False),
+    Column("place", Text, nullable=False),
     _number("first"),
     _number("last"),
     _number("arrived"),
@@ -76,13 +77,21 @@ account = Table(
     _number("refused"),
     _number(COLUMN),
 )
-# How far a source has come: the latest moment that it has sent, and where it reads on (JSON).
+# How far a source has come: the latest moment that it has sent.
 source = Table(
     "source",
     metadata,
     Column("name", Text, primary_key=True),
     Column("latest", BigInteger),
-    Column("cursor", Text),
+    _number(COLUMN),
+)
+# Where a source reads on, by the part of it, such as a file of a folder (JSON).
+cursor = Table(
+    "cursor",
+    metadata,
+    Column("source", Text, primary_key=True),
+    Column("part", Text, primary_key=True),
+    Column("state", Text, nullable=False),
     _number(COLUMN),
 )
 # One line: rows before this moment are final.

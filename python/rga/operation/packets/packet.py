@@ -1,6 +1,7 @@
 """A packet: what a logger sends at once."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 import numpy as np
@@ -41,9 +42,13 @@ class SensorPacket:
         channels: as the logger calls them.
         times: int64[n], microseconds since 1970 (UTC), rising.
         values: float64[n, channels], as the logger has them, NaN where one is missing.
+        units: by channel, where the logger states them.
+        timed: False: it has no times of its own, and is of when it arrived.
     """
 
     number: Number | None
     channels: tuple[str, ...]
     times: Moments
     values: FloatArray
+    units: Mapping[str, str] = field(default_factory=dict)
+    timed: bool = True

@@ -2,12 +2,13 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from datetime import timedelta
+from itertools import chain
 
 import numpy as np
 
 from rga.model import Model
 from rga.operation.inbox.packets import KeptPacket, Packets
-from rga.operation.packets.native import read_packet
+from rga.operation.packets.formats import PACKETS
 from rga.operation.packets.packet import EPOCH
 from rga.operation.rows.cells import SensorSamples, cell_of, cells_of
 from rga.operation.rows.grid import Grid
@@ -83,9 +84,10 @@ class Sealing:
         samples = []
         for source, reader in sorted(self._readers.items()):
             own = [one for one in kept if one.source == source]
-            packets = [read_packet(one.payload, source) for one in own if one.kind == "packet"]
-            samples += reader.of_packets(packets)
-            samples += [reader.of_file(one.payload) for one in own if one.kind == "file"]
+            told = [(one.kind, one.payload, one.place, one.arrived) for one in own]
+            packets = [reader.packets_of(*one) for one in told if one[0] in PACKETS]
+            samples += reader.of_packets(chain.from_iterable(packets))
+            samples += [reader.of_rows(*one)[0] for one in told if one[0] not in PACKETS]
         return samples
 
     def _station(self, samples: Sequence[SensorSamples]) -> Station:

@@ -1,16 +1,22 @@
 """A payload on its way into the inbox: what it is, when it is of, and whether it can be used."""
 
+from collections.abc import Callable, Sequence
 from hashlib import sha256
 
 from rga.errors import InputError
-from rga.operation.inbox.packets import Arrival, Kind
-from rga.operation.packets.native import is_native, read_packet
+from rga.operation.inbox.packets import Arrival
+from rga.operation.packets.formats import PACKETS, PayloadFormat
 from rga.operation.rows.samples import Reader
-from rga.operation.sources.clock import ClockRule
+from rga.operation.sources.clock import ClockWatch
 
 
 def arrival_of(
-    payload: bytes, arrived: int, where: str, reader: Reader, clock: ClockRule | None
+    payload: bytes,
+    arrived: int,
+    where: str,
+    reader: Reader,
+    clock: ClockWatch | None,
+    kind: PayloadFormat | None = None,
 ) -> Arrival:
     """A payload, read as far as it takes to keep it.
 
@@ -20,22 +26,50 @@ def arrival_of(
         where: it came from, such as a topic: another place, another payload.
         reader: of the source.
         clock: what is believed of its clock; None: all.
+        kind: its format, where the sender says it.
     """
-    kind: Kind = "file"
+    digest = sha256(where.encode() + b"\0" + payload).hexdigest()
+    kind = kind or reader.format_of(payload)
     number = None
     try:
-        if is_native(payload):
-            packet = read_packet(payload, where)
-            kind, number, times = "packet", packet.number, packet.times
+        if kind in PACKETS:
+            packets = reader.packets_of(kind, payload, where, arrived)
+            number, timed = packets[0].number, all(one.timed for one in packets)
+            moments = [one.times for one in packets]
         else:
-            times = reader.of_file(payload).times
+            samples, timed = reader.of_rows(kind, payload, where, arrived)
+            moments = [samples.times]
     except InputError as error:
-        return Arrival(payload, kind, arrived, sha256=_digest(where, payload), refused=str(error))
-    first, last = int(times[0]), int(times[-1])
-    fault = None if clock is None else clock.fault(first, last, arrived)
-    known = None if number else _digest(where, payload)
-    return Arrival(payload, kind, arrived, first, last, number, known, fault)
+        return Arrival(payload, kind, arrived, sha256=digest, refused=str(error), place=where)
+    first, last = min(int(one.min()) for one in moments), max(int(one.max()) for one in moments)
+    fault = None if clock is None else clock.refused(where, number, first, last, arrived)
+    # The same number may be sent again and again, and is another reading each time.
+    known = digest if timed and number is None else None
+    return Arrival(payload, kind, arrived, first, last, number, known, fault, where)
 
 
-def _digest(where: str, payload: bytes) -> str:
-    return sha256(where.encode() + b"\0" + payload).hexdigest()
+#: lines beyond which not every one is looked at where the first, the last and one between them
+#: cannot be used
+FEW = 16
+
+
+def arrivals_of_lines(
+    head: bytes, lines: Sequence[bytes], arrive: Callable[[bytes], Arrival]
+) -> list[Arrival]:
+    """Lines of a file as few payloads: those that cannot be used are apart from the others.
+
+    Args:
+        head: lines above all rows, which every payload begins with.
+        lines: each with its end.
+        arrive: reads a payload.
+    """
+    whole = arrive(head + b"".join(lines))
+    if whole.refused is None or len(lines) == 1:
+        return [whole]
+    middle = len(lines) // 2
+    if len(lines) > FEW:
+        some = (lines[0], lines[middle], lines[-1])
+        if all(arrive(head + line).refused is not None for line in some):
+            return [whole]
+    first = arrivals_of_lines(head, lines[:middle], arrive)
+    return first + arrivals_of_lines(head, lines[middle:], arrive)

@@ -1,19 +1,27 @@
 """A folder that loggers write files to: what is new in them, line by line where they grow."""
 
-from collections.abc import Iterator
+import stat
+import time
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from threading import Event
+from typing import Any, BinaryIO
 
+from rga.operation.packets.line_protocol import is_line_protocol
+from rga.operation.packets.native import is_native
 from rga.operation.packets.packet import MOST_BYTES
+from rga.operation.sources.source import Inlet
 
-#: bytes at the head of a file by which it is known when it has another name
+#: bytes at the head of a file, and before where it is read on, by which it is known again
 HEAD = 1024
 #: of a payload, so that its head has room as well
 _LONGEST = MOST_BYTES // 2
+#: how long a last line without an end is waited for [s]
+ENDLESS = 60.0
 #: first bytes of files that are written as a whole
-_WHOLE = (b"PAR1", b"TDSm", b"MATLAB", b"\x89HDF")
+_WHOLE = (b"PAR1", b"TDSm", b"MATLAB", b"\x89HDF", b"{", b"[")
 
 
 @dataclass(frozen=True)
@@ -22,83 +30,204 @@ class Piece:
 
     Attributes:
         where: the file.
-        payload: its head, and lines that are new; or all of it.
-        cursor: of the folder when the piece is kept.
+        head: lines above its rows; None: the file is read as a whole.
+        content: lines that are new; or all of it.
+        cursor: where the file is read on when the piece is kept.
     """
 
     where: str
-    payload: bytes
-    cursor: dict[str, Any]
+    head: bytes | None
+    content: bytes
+    cursor: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class _File:
+    path: Path
+    name: str
+    key: str
+    size: int
+    changed: int
 
 
 class Folder:
     """The files of a folder, as far as they were read.
 
-    A file is known by its number on the disk and its first bytes, whatever it is called; one that
-    was replaced is read anew. A line is read when its end is there, a file that is no text when
-    it has stopped growing.
+    A file is known by its number on the disk, or by its name where a share that was away gives it
+    another number; and it is the same file as long as its head, and what stands before the place
+    where it is read on, are the same. One that was replaced or cut is read anew. A line is read
+    when its end is there, a file that is no text or JSON when it has stopped growing. Files whose
+    names begin with a dot are left alone.
 
     Args:
         path: of the folder.
         files: names of the files, * for any text.
-        head_lines: before the first row of a text file.
+        head_lines: above the first row of a text file.
+        known: how far the files were read, as the cursors of pieces say it.
     """
 
-    def __init__(self, path: Path, files: str, head_lines: int) -> None:
+    def __init__(
+        self, path: Path, files: str, head_lines: int, known: Mapping[str, Any] | None = None
+    ) -> None:
         self._path, self._files, self._head_lines = path, files, head_lines
-        self._sizes: dict[str, int] = {}
+        self._known = dict(known or {})
+        self._by_name = {state["name"]: state for state in self._known.values()}
+        self._read: dict[str, tuple[int, int]] = {}
+        self._resting: dict[str, tuple[tuple[int, int], float]] = {}
+        self._faults: dict[str, str] = {}
+
+    def look(self, inlet: Inlet, ending: Event) -> str | None:
+        """Give what is new to an inlet; what is wrong with the folder, in words."""
+        if not self._path.is_dir():
+            return "the folder is away"
+        for piece in self.pieces():
+            if piece.head is None:
+                inlet.receive([(piece.where, piece.content)], piece.cursor)
+            else:
+                inlet.receive_lines(piece.where, piece.head, piece.content, piece.cursor)
+            if ending.is_set():
+                break
+        return self.fault
 
     @property
-    def is_there(self) -> bool:
-        """Whether the folder can be looked at: a share may not be mounted."""
-        return self._path.is_dir()
+    def fault(self) -> str | None:
+        """What is wrong with files, in words; None: nothing."""
+        if not self._faults:
+            return None
+        name, words = next(iter(self._faults.items()))
+        more = f", and {len(self._faults) - 1} more files" if len(self._faults) > 1 else ""
+        return f"{name}: {words}{more}" if name else words
 
-    def pieces(self, cursor: dict[str, Any] | None) -> Iterator[Piece]:
-        """What is new since a cursor, oldest file first.
+    def pieces(self) -> Iterator[Piece]:
+        """What is new, oldest file first; whoever asks for another piece has kept the last."""
+        self._faults.clear()
+        files = self._listed()
+        if self._known and not files:
+            self._faults[""] = "the folder is empty, and was not: a share may be away"
+        for number, file in enumerate(files):
+            if self._read.get(file.key) == (file.size, file.changed):
+                # It may have got another name.
+                if file.key in self._known:
+                    self._by_name[file.name] = self._known[file.key]
+                continue
+            try:
+                yield from self._pieces_of(file, youngest=number == len(files) - 1)
+            except FileNotFoundError:
+                continue
+            except OSError as error:
+                self._faults[file.name] = f"it cannot be read: {error.strerror or error}"
 
-        Args:
-            cursor: of the last piece that was kept; None: all is new.
-        """
-        known = dict(cursor or {})
-        files = [one for one in self._path.glob(self._files) if one.is_file()]
-        for path in sorted(files, key=lambda one: (one.stat().st_mtime_ns, one.name)):
-            with path.open("rb") as file:
-                head = file.read(HEAD)
-            if head.startswith(_WHOLE):
-                yield from self._whole(path, known)
+    def _listed(self) -> list[_File]:
+        """The files, oldest first."""
+        found = []
+        for path in self._path.glob(self._files):
+            name = path.relative_to(self._path).as_posix()
+            if path.name.startswith("."):
+                continue
+            try:
+                known = path.stat()
+            except FileNotFoundError:
+                continue
+            except OSError as error:
+                self._faults[name] = f"it cannot be read: {error.strerror or error}"
+                continue
+            if stat.S_ISREG(known.st_mode):
+                key = str(known.st_ino)
+                found.append(_File(path, name, key, known.st_size, known.st_mtime_ns))
+        return sorted(found, key=lambda one: (one.changed, one.name))
+
+    def _pieces_of(self, file: _File, youngest: bool) -> Iterator[Piece]:
+        with file.path.open("rb") as opened:
+            head = opened.read(HEAD)
+            if head.startswith(_WHOLE) or b"\0" in head or is_native(head):
+                yield from self._whole(file, opened)
             else:
-                yield from self._lines(path, known)
+                yield from self._lines(file, opened, youngest)
 
-    def _whole(self, path: Path, known: dict[str, Any]) -> Iterator[Piece]:
-        size, before = path.stat().st_size, self._sizes.get(path.name)
-        self._sizes[path.name] = size
-        if size != before or size > MOST_BYTES:
+    def _whole(self, file: _File, opened: BinaryIO) -> Iterator[Piece]:
+        if file.size > MOST_BYTES:
+            self._faults[file.name] = f"it has {file.size} bytes, and {MOST_BYTES} are allowed"
             return
-        content = path.read_bytes()
-        key, mark = _key(path), sha256(content).hexdigest()
-        if known.get(key) != mark:
-            known[key] = mark
-            yield Piece(path.name, content, dict(known))
+        if not self._rests(file, 0.0):
+            return
+        opened.seek(0)
+        content = opened.read(MOST_BYTES + 1)
+        mark = sha256(content).hexdigest()
+        state = {"name": file.name, "mark": mark, "offset": len(content), "tail": ""}
+        if all(before["mark"] != mark for before in self._states(file)):
+            yield Piece(file.name, None, content, {file.key: state})
+        self._keep(file, state)
+        self._read[file.key] = file.size, file.changed
 
-    def _lines(self, path: Path, known: dict[str, Any]) -> Iterator[Piece]:
-        key = _key(path)
-        with path.open("rb") as file:
-            head = b"".join(file.readline(_LONGEST) for _ in range(self._head_lines))
-            begin, mark = len(head), sha256(head[:HEAD]).hexdigest()
-            before = known.get(key)
-            offset = begin
-            if isinstance(before, list) and before[0] == mark and before[1] <= path.stat().st_size:
-                offset = before[1]
-            if not head.endswith(b"\n"):
-                return
-            file.seek(offset)
-            while end := (content := file.read(_LONGEST)).rfind(b"\n") + 1:
-                offset += end
-                file.seek(offset)
-                known[key] = [mark, offset]
-                yield Piece(path.name, head + content[:end], dict(known))
+    def _lines(self, file: _File, opened: BinaryIO, youngest: bool) -> Iterator[Piece]:
+        opened.seek(0)
+        first = opened.readline(_LONGEST)
+        count = 0 if is_line_protocol(first) else self._head_lines
+        opened.seek(0)
+        head = b"".join(opened.readline(_LONGEST) for _ in range(count))
+        mark = sha256(head[:HEAD]).hexdigest()
+        offset = self._read_on(file, opened, mark, len(head))
+        if count and not head.endswith(b"\n"):
+            return
+        while True:
+            opened.seek(offset)
+            content = opened.read(_LONGEST)
+            end = content.rfind(b"\n") + 1
+            if not end and content:
+                if len(content) == _LONGEST:
+                    self._faults[file.name] = f"a line has more than {_LONGEST} bytes"
+                    return
+                if not self._rests(file, ENDLESS):
+                    return
+                if youngest:
+                    self._faults[file.name] = "its last line has no end"
+                    return
+                # The logger goes on in another file, so that this is all of the line.
+                end = len(content)
+            if not end:
+                break
+            lines, offset = content[:end], offset + end
+            state = self._at(file, opened, mark, offset)
+            yield Piece(file.name, head, lines, {file.key: state})
+            self._keep(file, state)
+        # It may have got another number.
+        self._keep(file, self._at(file, opened, mark, offset))
+        self._read[file.key] = file.size, file.changed
+
+    def _at(self, file: _File, opened: BinaryIO, mark: str, offset: int) -> dict[str, Any]:
+        """How far a file was read."""
+        tail = _tail(opened, offset)
+        return {"name": file.name, "mark": mark, "offset": offset, "tail": tail}
+
+    def _read_on(self, file: _File, opened: BinaryIO, mark: str, begin: int) -> int:
+        """Where a file is read on: at its first row, if it is not the file that it was."""
+        offset = begin
+        for before in self._states(file):
+            known = before["mark"] == mark and offset < before["offset"] <= file.size
+            if known and before["tail"] == _tail(opened, before["offset"]):
+                offset = before["offset"]
+        return offset
+
+    def _states(self, file: _File) -> list[Any]:
+        """How far the file was read of this number, and that of this name."""
+        states = (self._known.get(file.key), self._by_name.get(file.name))
+        return [one for one in states if one is not None]
+
+    def _keep(self, file: _File, state: Any) -> None:
+        self._known[file.key] = self._by_name[file.name] = state
+
+    def _rests(self, file: _File, seconds: float) -> bool:
+        """Whether a file has not changed for so long; it was at least once as it is."""
+        now = time.monotonic()
+        changed, since = self._resting.get(file.key, (None, now))
+        if changed != (file.size, file.changed):
+            self._resting[file.key] = (file.size, file.changed), now
+            return False
+        return now - since >= seconds
 
 
-def _key(path: Path) -> str:
-    stat = path.stat()
-    return f"{stat.st_dev}:{stat.st_ino}"
+def _tail(opened: BinaryIO, offset: int) -> str:
+    """Mark of what stands before a place."""
+    begin = max(0, offset - HEAD)
+    opened.seek(begin)
+    return sha256(opened.read(offset - begin)).hexdigest()

@@ -3,7 +3,8 @@
 import json
 import ssl
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
@@ -16,9 +17,9 @@ from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
-from rga.errors import InputError
-from rga.operation.credentials import read_credentials
 from rga.operation.inbox.numbers import Numbers
+from rga.operation.sources.secrets import credentials_of
+from rga.operation.sources.source import Inlet, attempt
 
 #: messages that are kept together
 MOST_MESSAGES = 256
@@ -35,9 +36,6 @@ MOST_TOLD = 100
 #: how long to wait before writing is tried again [s]
 AGAIN = 1.0
 
-#: keeps what came on topics, and gives the numbers that have come by stream
-Keep = Callable[[Sequence[tuple[str, bytes]]], dict[str, Numbers]]
-
 
 class Broker:
     """Takes packets from a broker.
@@ -51,7 +49,10 @@ class Broker:
         topics: that hold data.
         twin, source: names, for the topics of the service.
         credentials: file of two lines, user and password.
-        keep: keeps what came; it raises InputError where nothing can be written for now.
+        inlet: keeps what came.
+
+    Raises:
+        InputError: the credentials cannot be read.
     """
 
     def __init__(
@@ -61,12 +62,12 @@ class Broker:
         twin: str,
         source: str,
         credentials: Path | None,
-        keep: Keep,
+        inlet: Inlet,
     ) -> None:
         parts = urlsplit(url)
         secure = parts.scheme == "mqtts"
         self._host, self._port = parts.hostname or "", parts.port or (8883 if secure else 1883)
-        self._topics, self._keep = tuple(topics), keep
+        self._topics, self._inlet = tuple(topics), inlet
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
         self._status = f"rga/v1/{twin}/status"
@@ -91,6 +92,8 @@ class Broker:
     def stop(self) -> None:
         """Keep what has come, and let the broker hold what comes."""
         self._ending.set()
+        if self._thread.ident is None:
+            return
         self._thread.join()
         self._client.publish(self._status, "offline", qos=1, retain=True)
         self._client.disconnect()
@@ -99,13 +102,15 @@ class Broker:
     def _made(self, name: str, secure: bool, credentials: Path | None) -> Client:
         client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
         if credentials is not None:
-            client.username_pw_set(*read_credentials(credentials))
+            client.username_pw_set(*credentials_of(credentials))
         if secure:
             client.tls_set_context(ssl.create_default_context())
         client.will_set(self._status, "offline", qos=1, retain=True)
         client.reconnect_delay_set(1, 60)
         client.on_connect, client.on_disconnect = self._connected, self._disconnected
         client.on_message = self._came
+        # Else a callback that fails would end the thread of the connection.
+        client.suppress_exceptions = True
         return client
 
     def _connected(self, client: Client, _: Any, flags: Any, reason: Any, *__: Any) -> None:
@@ -130,11 +135,17 @@ class Broker:
 
     def _work(self) -> None:
         """Keep what comes, in batches, until the end."""
+        batch: list[MQTTMessage] = []
         while not self._ending.is_set():
-            self._try_the_way()
-            if batch := self._batch():
-                self._keep_batch(batch)
+            wrong = attempt(self._try_the_way)
+            batch = batch or self._batch()
+            if batch and not (wrong := attempt(partial(self._keep_batch, batch))):
+                batch = []
             self._acknowledge()
+            if wrong:
+                # What is not kept is not acknowledged, and is tried again.
+                self.fault = wrong
+                self._ending.wait(AGAIN)
 
     def _batch(self) -> list[MQTTMessage]:
         """What has come meanwhile: the more there is, the more is kept at once."""
@@ -148,19 +159,12 @@ class Broker:
         return batch
 
     def _keep_batch(self, batch: Sequence[MQTTMessage]) -> None:
-        while True:
-            try:
-                numbers = self._keep([(one.topic, bytes(one.payload)) for one in batch])
-                break
-            except InputError as error:
-                self.fault = str(error)
-                # What is not kept comes again when the service does.
-                if self._ending.wait(AGAIN):
-                    return
+        """Keep messages, then acknowledge them."""
+        self._inlet.receive([(one.topic, bytes(one.payload)) for one in batch])
         self.fault = None
         for one in batch:
             self._client.ack(one.mid, one.qos)
-        self._untold = numbers
+        self._untold = self._inlet.numbers()
 
     def _acknowledge(self) -> None:
         """Tell senders what is kept, if that is news, and the last time is long enough ago."""

@@ -16,7 +16,7 @@ from rga.records.numbers import numbers_of
 from rga.records.table import StatedTime, Table
 from rga.records.times.counted import COMPACT, COUNTED, SECONDS, looks_like
 from rga.records.times.written import moments_by, possible_formats, without_late_midnights
-from rga.records.times.zone import in_zone, zone_of
+from rga.records.times.zone import first_repeated, in_zone, zone_of
 from rga.records.units import contradict, name_and_unit, unit_of
 
 
@@ -59,7 +59,8 @@ def read_clock(table: Table, time: TimeColumns) -> Clock:
                 f"{table.path}, columns {_listed(table.frame.columns)}",
                 "name it 'time', or give [time] columns (and the delimiter) in import.toml",
             )
-    clock = _Reading(table, stated, time.zone or stated.zone, notes).clock()
+    refused = time.repeated_hour == "refused"
+    clock = _Reading(table, stated, time.zone or stated.zone, notes, refused).clock()
     rows = np.arange(table.frame.height, dtype=float)
     if time.sampling_rate_hz is not None:
         return replace(clock, seconds=np.asarray(rows / time.sampling_rate_hz))
@@ -117,6 +118,7 @@ class _Reading:
     stated: StatedTime
     zone: str | None
     notes: list[str]
+    refuses_repeated: bool
 
     @property
     def where(self) -> str:
@@ -268,6 +270,13 @@ class _Reading:
                 self.notes.append("time stamps have no zone")
             return self._clock(elapsed, moments[0].isoformat())
         zone = zone_of(self.zone, str(self.table.path))
+        twice = first_repeated(pl.Series(moments), zone) if self.refuses_repeated else None
+        if twice is not None:
+            raise InputError(
+                f"the time {moments[twice]} exists twice in {self.zone}: summer time ends there",
+                self.table.where(twice, self.where),
+                "send times with their offset, or in UTC",
+            )
         stamps, gap = in_zone(pl.Series(moments), zone, self.notes)
         if gap is not None:
             raise InputError(

@@ -101,6 +101,25 @@ which runs back to 02:00:00'])
     return early, None
 
 
+def first_repeated(moments: pl.Series, zone: tzinfo) -> int | None:
+    """The first row of an hour that comes twice in a zone; None: there is none.
+
+    >>> from datetime import datetime
+    >>> night = pl.Series([datetime(2023, 10, 29, hour) for hour in (1, 2, 3)])
+    >>> first_repeated(night, ZoneInfo("Europe/Berlin"))
+    1
+    """
+    if not isinstance(zone, ZoneInfo):
+        return None
+    local = moments.cast(pl.Datetime("us"))
+    first, second = (
+        local.dt.replace_time_zone(zone.key, ambiguous=which, non_existent="null")
+        for which in ("earliest", "latest")
+    )
+    twice = (first != second).fill_null(False)
+    return int(twice.arg_true()[0]) if twice.any() else None
+
+
 def _gaps(
     read: NDArray[np.int64], rows: NDArray[np.intp], others: NDArray[np.int64], usual: float
 ) -> int:
