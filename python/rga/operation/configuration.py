@@ -1,46 +1,24 @@
 """What `rga serve` does: its twins, where their data comes from, and how rows are made of it."""
 
-import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, Field, model_validator
 
+from rga.operation.alarms.alarm_settings import AlarmSettings
+from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.sealing import Grid
+from rga.operation.settings_values import Duration, SettingsTable
 from rga.operation.sources.clock import ClockRule
 from rga.settings_files import read_table, validated
 
-_SIZES = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
-_DURATION = re.compile(rf"(\d+(?:\.\d+)?) ?({'|'.join(_SIZES)})")
-
-
-def duration_of(given: Any) -> float:
-    """Seconds of a duration, as people write it.
-
-    Raises:
-        ValueError: it is none.
-
-    >>> duration_of("10 min"), duration_of("0.5 s")
-    (600.0, 0.5)
-    """
-    found = _DURATION.fullmatch(given) if isinstance(given, str) else None
-    if found is None:
-        raise ValueError(f"{given!r} is no duration: write '60 s', '10 min', '2 h' or '7 d'")
-    return float(found[1]) * _SIZES[found[2]]
-
-
-Duration = Annotated[float, BeforeValidator(duration_of), Field(gt=0, le=366 * 86_400)]
 #: as it stands in addresses, topics and names of folders
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class RowSettings(_Table):
+class RowSettings(SettingsTable):
     """How rows are made of samples.
 
     Attributes:
@@ -67,7 +45,7 @@ class RowSettings(_Table):
         return self
 
 
-class ClockSettings(_Table):
+class ClockSettings(SettingsTable):
     """What is believed of the clock of a logger.
 
     Attributes:
@@ -86,7 +64,7 @@ class ClockSettings(_Table):
         return ClockRule(self.tolerance, self.backlog) if self.check else None
 
 
-class _Source(_Table):
+class _Source(SettingsTable):
     """What every source states.
 
     Attributes:
@@ -148,7 +126,7 @@ class FolderSource(_Source):
 Source = Annotated[HttpSource | MqttSource | FolderSource, Field(discriminator="kind")]
 
 
-class TwinSettings(_Table):
+class TwinSettings(SettingsTable):
     """A twin that is served.
 
     Attributes:
@@ -179,13 +157,14 @@ def source_name(source: HttpSource | MqttSource | FolderSource) -> str:
     return source.name or source.kind
 
 
-class ServiceSettings(_Table):
+class ServiceSettings(SettingsTable):
     """The service itself.
 
     Attributes:
         listen: address and port of the API and the pages.
         data: folder of the twins, beside the configuration.
         repository: URL of a PostgreSQL database for the repositories; None: they are in `data`.
+        link: address of the pages as people reach them, for notices; None: that of `listen`.
     """
 
     listen: Annotated[str, Field(pattern=r"^(\[[0-9a-f:]+\]|[A-Za-z0-9.-]+):\d{1,5}$")] = (
@@ -193,17 +172,27 @@ class ServiceSettings(_Table):
     )
     data: Path = Path("data")
     repository: str | None = None
+    link: Annotated[str, Field(pattern=r"^https?://[^\s]+$")] | None = None
+
+    @property
+    def address(self) -> str:
+        """Address of the pages, without a slash at its end."""
+        return (self.link or f"http://{self.listen}").rstrip("/")
 
 
-class Configuration(_Table):
+class Configuration(SettingsTable):
     """A file of `rga serve`.
 
     Attributes:
         service: the service itself.
+        alarms: when they are raised.
+        notify: where notices of them go.
         twin: the twins.
     """
 
     service: ServiceSettings = ServiceSettings()
+    alarms: AlarmSettings = AlarmSettings()
+    notify: list[NotifySettings] = Field(default_factory=list)
     twin: Annotated[list[TwinSettings], Field(min_length=1)]
 
     @model_validator(mode="after")
@@ -211,6 +200,9 @@ class Configuration(_Table):
         names = [one.name for one in self.twin]
         if double := next((one for one in names if names.count(one) > 1), None):
             raise ValueError(f"two twins are called {double!r}: give each a name of its own")
+        files = [one.name for one in self.notify]
+        if double := next((one for one in files if files.count(one) > 1), None):
+            raise ValueError(f"two tables notify have a url_file {double!r}: join or rename them")
         return self
 
 

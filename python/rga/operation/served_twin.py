@@ -1,6 +1,5 @@
 """One twin of a service: what its sources send becomes packets, rows, and steps of the twin."""
 
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
@@ -14,6 +13,7 @@ from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Fate, Packets
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
+from rga.operation.service_clock import ServiceClock, microseconds
 from rga.operation.sources.arrivals import arrival_of
 from rga.records.mapping import RecordMapping, read_mapping
 from rga.settings_files import read_table, validated
@@ -28,14 +28,21 @@ class ServedTwin:
         settings: of the twin.
         directory: of the twin, which is made.
         repository: URL of a PostgreSQL database, or None.
+        clock: of the service.
 
     Raises:
         InputError: its model, its settings or a mapping cannot be used.
     """
 
-    def __init__(self, settings: TwinSettings, directory: Path, repository: str | None) -> None:
-        self.name, self.directory = settings.name, directory
-        model = load_model(settings.model)
+    def __init__(
+        self,
+        settings: TwinSettings,
+        directory: Path,
+        repository: str | None,
+        clock: ServiceClock,
+    ) -> None:
+        self.name, self.directory, self._clock = settings.name, directory, clock
+        self.model = model = load_model(settings.model)
         live(
             model,
             directory,
@@ -52,8 +59,13 @@ class ServedTwin:
         self.packets = Packets(self._inbox)
         self._sealing = Sealing(self._inbox, self.packets, model, self._readers, settings.rows.grid)
         self._patience = settings.rows.patience
-        self._heard = dict.fromkeys(self._sources, time.monotonic())
+        self._heard = dict.fromkeys(self._sources, clock.monotonic())
         self._lock = Lock()
+
+    @property
+    def inbox(self) -> Inbox:
+        """What waits for the twin."""
+        return self._inbox
 
     @property
     def http_source(self) -> str | None:
@@ -76,23 +88,28 @@ class ServedTwin:
         Raises:
             InputError: nothing of them is kept: the disk is full.
         """
-        arrived, rule = time.time_ns() // 1000, self._sources[source].clock.rule
+        arrived, rule = microseconds(self._clock.now()), self._sources[source].clock.rule
         reader = self._readers[source]
         arrivals = [
             arrival_of(payload, arrived, where, reader, rule) for where, payload in payloads
         ]
         fates = self.packets.receive(source, arrivals, cursor)
-        self._heard[source] = time.monotonic()
+        # What cannot be used moves no row on, and is waited for no longer than silence.
+        if any(fate in ("waiting", "late") for fate in fates):
+            self._heard[source] = self._clock.monotonic()
         return [(fate, one.refused) for fate, one in zip(fates, arrivals, strict=True)]
 
     def numbers(self, source: str) -> dict[str, Numbers]:
         """The numbers that have come of each stream of a source."""
         return self.packets.numbers(source)
 
+    def silence(self, source: str) -> float:
+        """How long a source has sent nothing that can be used [s]."""
+        return self._clock.monotonic() - self._heard[source]
+
     def seal(self) -> int:
         """Make rows of what is final; how many are new."""
-        now = time.monotonic()
-        silent = [name for name, since in self._heard.items() if now - since > self._patience]
+        silent = [name for name in self._sources if self.silence(name) > self._patience]
         with self._lock:
             return self._sealing.seal(silent)
 

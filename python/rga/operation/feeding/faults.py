@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from rga.operation.configuration import Duration
+from rga.operation.settings_values import Duration
 from rga.settings_files import read_table, validated
 
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from rga.operation.packets.packet import MICROSECONDS
 
 MINUTE, DAY = 60.0, 86_400.0
+#: how the words begin that tell of a clock
+_AHEAD, _BEHIND = "its clock is", "its readings are"
 
 
 @dataclass(frozen=True)
@@ -29,11 +31,20 @@ class ClockRule:
         """
         ahead = (last - arrived) / MICROSECONDS
         if ahead > self.tolerance:
-            return f"its clock is {in_words(ahead)} ahead"
+            return f"{_AHEAD} {in_words(ahead)} ahead"
         behind = (arrived - first) / MICROSECONDS
         if behind > self.backlog:
-            return f"its readings are {in_words(behind)} old"
+            return f"{_BEHIND} {in_words(behind)} old"
         return None
+
+
+def tells_of_clock(reason: str) -> bool:
+    """Whether a packet was refused for the clock of its logger.
+
+    >>> tells_of_clock("its clock is 2 h ahead"), tells_of_clock("it is no packet")
+    (True, False)
+    """
+    return reason.startswith((_AHEAD, _BEHIND))
 
 
 def in_words(seconds: float) -> str:

@@ -1,0 +1,55 @@
+"""Values of a configuration as people write them: durations and rates."""
+
+import re
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+_SIZES = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
+_SPANS = {"hour": 3600.0, "day": 86_400.0}
+_RATE = re.compile(rf"([1-9]\d{{0,5}}) an? ({'|'.join(_SPANS)})")
+_DURATION = re.compile(rf"(\d+(?:\.\d+)?) ?({'|'.join(_SIZES)})")
+
+
+def duration_of(given: Any) -> float:
+    """Seconds of a duration, as people write it.
+
+    Raises:
+        ValueError: it is none.
+
+    >>> duration_of("10 min"), duration_of("0.5 s")
+    (600.0, 0.5)
+    """
+    found = _DURATION.fullmatch(given) if isinstance(given, str) else None
+    if found is None:
+        raise ValueError(f"{given!r} is no duration: write '60 s', '10 min', '2 h' or '7 d'")
+    return float(found[1]) * _SIZES[found[2]]
+
+
+Duration = Annotated[float, BeforeValidator(duration_of), Field(gt=0, le=366 * 86_400)]
+#: how long something is before it counts, perhaps not at all
+Wait = Annotated[float, BeforeValidator(duration_of), Field(ge=0, le=366 * 86_400)]
+
+
+def rate_of(given: Any) -> tuple[int, float]:
+    """How many within how many seconds a rate is, as people write it.
+
+    Raises:
+        ValueError: it is none.
+
+    >>> rate_of("12 an hour"), rate_of("5 a day")
+    ((12, 3600.0), (5, 86400.0))
+    """
+    found = _RATE.fullmatch(given) if isinstance(given, str) else None
+    if found is None:
+        raise ValueError(f"{given!r} is no rate: write '12 an hour' or '20 a day'")
+    return int(found[1]), _SPANS[found[2]]
+
+
+Rate = Annotated[tuple[int, float], BeforeValidator(rate_of)]
+
+
+class SettingsTable(BaseModel):
+    """A table of a configuration: what it does not know is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
