@@ -9,7 +9,7 @@ from sqlalchemy import Connection
 from rga.errors import InputError
 from rga.operation.alarms import alarm_store as store
 from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey, Observation
-from rga.operation.alarms.delays import Delays
+from rga.operation.alarms.delays import Delays, News
 from rga.operation.alarms.operator_alarm import AlarmTransition, Change, OperatorAlarm
 from rga.operation.service_clock import ServiceClock
 from rga.twin.repository.table_file import TableFile
@@ -129,8 +129,8 @@ class AlarmBook:
                     self._clear(connection, condition.key, "another has come")
                     self._raise(connection, condition)
                 raised = {one.key for one in seen.occurred}
-                for key in ripe:
-                    if key not in wrong:
+                for key, is_wrong in ripe:
+                    if not is_wrong:
                         self._clear(connection, key, "")
                     elif key not in raised:
                         self._raise(connection, wrong[key])
@@ -174,19 +174,19 @@ class AlarmBook:
         wrong: Mapping[ConditionKey, Condition],
         alarms: Mapping[ConditionKey, OperatorAlarm],
         judged: Collection[AlarmKind],
-    ) -> list[ConditionKey]:
-        """The conditions that are wrong or well for long enough while their alarm says otherwise.
+    ) -> list[News]:
+        """What is wrong or well for long enough while its alarm says otherwise.
 
-        One of which an alarm is raised is told again as soon as it has doubled.
+        A condition of which an alarm is raised is news again as soon as it has doubled.
         """
         active = {key: one for key, one in alarms.items() if one.is_active}
-        waiting = {key: self._delays[key.kind][0] for key in wrong if key not in active}
+        waiting = {(key, True): self._delays[key.kind][0] for key in wrong if key not in active}
         for key in active:
             if key not in wrong and key.kind in judged:
-                waiting[key] = self._delays[key.kind][1]
+                waiting[key, False] = self._delays[key.kind][1]
         passed = self._waiting.passed(twin, waiting, self._clock.monotonic())
         grown = [key for key, one in active.items() if key in wrong and _doubled(one, wrong[key])]
-        return [*(key for key in waiting if key in passed), *grown]
+        return [*passed, *((key, True) for key in grown)]
 
     def _raise(self, connection: Connection, condition: Condition) -> None:
         now, known = self._clock.now(), _standing(connection, condition.key)

@@ -31,7 +31,7 @@ class AlarmSettings(SettingsTable):
 
     disk: Annotated[float, Field(ge=0, le=1)] = 0.1
     lag: Duration = 3600.0
-    quality: DelaySettings = DelaySettings(off=600.0)
+    quality: DelaySettings = DelaySettings.model_validate({"off": "10 min"})
     source: DelaySettings = DelaySettings()
     service: DelaySettings = DelaySettings()
 

@@ -101,10 +101,12 @@ class RepositoryWatch:
     def _look_at(self, view: RunView, here: Place) -> SeenRun:
         before = here if self._place is None else self._place
         since = before.step if before.run == here.run else 0
-        events = [one for _, one in view.events_since(since)]
-        standing, rows = standing_of(view), view.rows
-        alarms = [one for one in events if one.kind == "alarm"]
-        occurred = tuple(self._gap(view, standing, one) for one in alarms)
+        occurred = tuple(
+            self._gap(view.after_step(step), event)
+            for step, event in view.events_since(since)
+            if event.kind == "alarm"
+        )
+        standing = standing_of(view)
         conditions = []
         if standing.alarm is not None or standing.doubted:
             conditions.append(occurred[-1] if occurred else self._lasting(view, standing))
@@ -116,12 +118,12 @@ class RepositoryWatch:
             if last.gain is not None:
                 words += f" (gain {last.gain:.2g} on rows held out)"
             conditions.append(Condition(key, words, _at(view, last.row)))
-        return SeenRun(tuple(conditions), occurred, here, rows)
+        return SeenRun(tuple(conditions), occurred, here, view.rows)
 
-    def _gap(self, view: RunView, standing: Standing, event: Event) -> Condition:
-        """What an alarm of the monitor says."""
-        told = event.row == standing.alarm and standing.since is not None
-        row = standing.since if told and standing.since is not None else event.row
+    def _gap(self, view: RunView, event: Event) -> Condition:
+        """What an alarm of the monitor says, in the run as it stood then."""
+        standing = standing_of(view)
+        row = event.row if standing.since is None else standing.since
         words = f"{event.words}; {self._rarity}" if self._rarity else event.words
         return Condition(self._key, words, _at(view, row), event.sensors)
 

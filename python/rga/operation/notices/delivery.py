@@ -2,8 +2,8 @@
 
 import logging
 from collections.abc import Callable
+from contextvars import ContextVar
 from datetime import timedelta
-from threading import get_ident
 
 from apprise import Apprise
 
@@ -14,6 +14,8 @@ from rga.operation.service_clock import ServiceClock
 
 #: after its time, how long the line of a day is still sent: later it would say nothing of it
 DAILY_SPAN = timedelta(hours=1)
+#: whoever hears what is said of the message that is being sent; it goes along to other threads
+_SENDING: ContextVar["_Complaints | None"] = ContextVar("sending", default=None)
 
 
 class Delivery:
@@ -82,24 +84,25 @@ class Delivery:
 
 
 class _Complaints(logging.Handler):
-    """What apprise says of the messages that this thread sends."""
+    """What apprise says of the message that is sent here, and not of those that others send."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)
-        self._thread = get_ident()
         self._logger = logging.getLogger("apprise")
         self.words = "it was not taken"
 
     def __enter__(self) -> "_Complaints":
+        self._token = _SENDING.set(self)
         self._logger.addHandler(self)
         return self
 
     def __exit__(self, *_: object) -> None:
         self._logger.removeHandler(self)
+        _SENDING.reset(self._token)
 
     def emit(self, record: logging.LogRecord) -> None:
         """Keep the last of them."""
-        if record.thread == self._thread:
+        if _SENDING.get() is self:
             self.words = in_a_line(record.getMessage())
 
 
