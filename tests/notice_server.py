@@ -1,4 +1,4 @@
-"""A server on this machine that notices are sent to: it fails, hangs or takes them, as it is told."""
+"""A server on this machine that notices are sent to: it fails, hangs or takes them."""
 
 import json
 import re

@@ -20,7 +20,7 @@ NO_RUN = ""
 
 
 @dataclass(frozen=True)
-class Place:
+class RunPlace:
     """Up to where the run of a twin was looked at.
 
     Attributes:
@@ -45,7 +45,7 @@ class SeenRun:
 
     conditions: tuple[Condition, ...]
     occurred: tuple[Condition, ...]
-    place: Place
+    place: RunPlace
     rows: int
 
 
@@ -61,7 +61,7 @@ class RepositoryWatch:
     """
 
     def __init__(
-        self, reading: TwinReading, settings: Settings, every: float, place: Place | None
+        self, reading: TwinReading, settings: Settings, every: float, place: RunPlace | None
     ) -> None:
         self._reading, self._name, self._place = reading, reading.name, place
         self._rarity = _rarity(settings, every)
@@ -89,8 +89,8 @@ class RepositoryWatch:
         if self._view is None:
             self._view = self._reading.view()
         if self._view is None:
-            return SeenRun((), (), Place(NO_RUN, 0), 0)
-        view, here = self._view, Place(self._view.identity.key, self._view.steps)
+            return SeenRun((), (), RunPlace(NO_RUN, 0), 0)
+        view, here = self._view, RunPlace(self._view.identity.key, self._view.steps)
         if self._seen is None or self._seen.place != here:
             # As it stood then: steps that are taken meanwhile are looked at the next time.
             self._seen = self._look_at(view.after_step(here.step), here)
@@ -98,7 +98,7 @@ class RepositoryWatch:
             self._place = here
         return self._seen
 
-    def _look_at(self, view: RunView, here: Place) -> SeenRun:
+    def _look_at(self, view: RunView, here: RunPlace) -> SeenRun:
         before = here if self._place is None else self._place
         since = before.step if before.run == here.run else 0
         occurred = tuple(

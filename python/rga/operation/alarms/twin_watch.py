@@ -9,7 +9,7 @@ from sqlalchemy import Connection, delete, insert, select
 from rga.errors import InputError
 from rga.operation.alarms import tables
 from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey, Observation
-from rga.operation.alarms.repository_watch import Place, RepositoryWatch, SeenRun
+from rga.operation.alarms.repository_watch import RepositoryWatch, RunPlace, SeenRun
 from rga.operation.alarms.sensor_quality import SensorQuality
 from rga.operation.alarms.source_watch import SourceWatch
 from rga.operation.configuration import TwinSettings, source_name
@@ -188,9 +188,9 @@ class _Watched:
     sensors: str
 
     @property
-    def place(self) -> Place:
+    def place(self) -> RunPlace:
         """Where the run was looked at."""
-        return Place(self.run, self.step)
+        return RunPlace(self.run, self.step)
 
     def write(self, twin: str, connection: Connection) -> None:
         """Keep it, in place of what was known of the twin."""

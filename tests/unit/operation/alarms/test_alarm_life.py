@@ -1,4 +1,4 @@
-"""The life of an alarm: whatever happens in whatever order, the book says what a small model says."""
+"""The life of an alarm: whatever happens, the book says what a small model of it says."""
 
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta

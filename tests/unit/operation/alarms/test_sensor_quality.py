@@ -31,7 +31,8 @@ def cells(spoil: Spoil, rows: int = ROWS, seed: int = 3) -> list[KeptCell]:
     draw = np.random.default_rng(seed)
     found = []
     for k in range(rows):
-        mean = draw.normal(size=len(NAMES)) + [0, 0, 15 + 5 * np.sin(2 * np.pi * k / 144)]
+        mean = draw.normal(size=len(NAMES))
+        mean[2] += 15 + 5 * np.sin(2 * np.pi * k / 144)
         values = {
             "count": np.full(len(NAMES), 5, np.uint32),
             "least": (mean - 0.1).astype(np.float32),

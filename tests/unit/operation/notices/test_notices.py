@@ -74,7 +74,7 @@ def test_transitions_of_a_twin_are_told_together_in_words(
 ) -> None:
     office.see(("silent", "D1"), ("stuck", "D2"))
     office.clock.pass_by(30)
-    office.book.acknowledge(1, "Ada", "the cable is cut")
+    office.book.acknowledge(1, "Ada", "cut")
     office.wait(29)
     assert server.bodies == []
     office.wait(1)
@@ -84,8 +84,7 @@ def test_transitions_of_a_twin_are_told_together_in_words(
     assert body.splitlines()[:-1] == [
         "alarm 1 (quality) raised: D1 is silent; since 2026-11-27 12:00 UTC",
         "alarm 2 (quality) raised: D2 is stuck; since 2026-11-27 12:00 UTC",
-        "alarm 1 (quality) acknowledged by Ada (the cable is cut): D1 is silent; since "
-        "2026-11-27 12:00 UTC",
+        "alarm 1 (quality) acknowledged by Ada (cut): D1 is silent; since 2026-11-27 12:00 UTC",
         "http://bridge/alarms",
     ]
     office.wait(HOUR)
