@@ -36,7 +36,7 @@ from rga.operation.sources.folder import Folder
 #: how often rows are sealed, and how long a worker rests where nothing is due [s]
 SEAL, REST = 0.2, 0.2
 #: how often it is looked for what is wrong, and for notices that are to be sent [s]
-WATCH, TELL = 1.0, 1.0
+WATCH, TELL = 2.0, 1.0
 #: how long the end of the service waits for a notice that is being sent [s]
 LAST_NOTICE = 5.0
 #: lines before the first row of a text file, where a mapping does not say it
@@ -227,15 +227,15 @@ def _keep(
 def _play(places: Sequence[Path], kind: Kind, repository: str | None, data: Path) -> None:
     """What a worker does until it is ended, or the service is gone."""
     worker = Worker(places, [kind], repository)
-    failures, told = WorkerFailures(service_file(data, alarm_tables.metadata)), None
+    told: dict[str, str] | None = None
     service = multiprocessing.parent_process()
     while service is None or service.is_alive():
         resting = not worker.round()
         failed = {place.name: words for place, words in worker.failed.items()}
         if failed != told:
             # Where that cannot be written, it is told after the next round.
-            with suppress(InputError):
-                failures.tell(kind, failed)
+            with suppress(InputError), service_file(data, alarm_tables.metadata) as file:
+                WorkerFailures(file).tell(kind, failed)
                 told = failed
         if resting:
             time.sleep(REST)

@@ -189,7 +189,7 @@ class AlarmBook:
         return [*passed, *((key, True) for key in grown)]
 
     def _raise(self, connection: Connection, condition: Condition) -> None:
-        now, known = self._clock.now(), _standing(connection, condition.key)
+        now, known = self._clock.now(), store.open_alarm(connection, condition.key)
         if known is None:
             alarm = OperatorAlarm.begun(store.next_alarm(connection), condition, now)
         else:
@@ -197,7 +197,7 @@ class AlarmBook:
         self._write(connection, alarm, "raised", None, "")
 
     def _clear(self, connection: Connection, key: ConditionKey, why: str) -> None:
-        known = _standing(connection, key)
+        known = store.open_alarm(connection, key)
         if known is not None and known.is_active:
             self._write(connection, known.cleared(self._clock.now()), "cleared", None, why)
 
@@ -243,9 +243,3 @@ def _there(connection: Connection, id: int) -> OperatorAlarm:
     if found is None:
         raise InputError(f"there is no alarm {id}", "alarms", "look at the list of alarms")
     return found
-
-
-def _standing(connection: Connection, key: ConditionKey) -> OperatorAlarm | None:
-    """The open alarm of a condition; None: there is none."""
-    alarms = store.open_alarms_of(connection, key.twin)
-    return next((one for one in alarms if one.key == key), None)

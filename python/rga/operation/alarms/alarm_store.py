@@ -8,6 +8,7 @@ from typing import Any
 from sqlalchemy import Connection, Row, func, insert, select, update
 
 from rga.operation.alarms import tables
+from rga.operation.alarms.condition import ConditionKey
 from rga.operation.alarms.operator_alarm import AlarmTransition, Change, OperatorAlarm
 from rga.operation.service_clock import microseconds, moment_of
 from rga.twin.repository.checksum import with_checksum
@@ -29,6 +30,15 @@ def open_alarms_of(connection: Connection, twin: str | None) -> list[OperatorAla
     own = c.twin.is_(None) if twin is None else c.twin == twin
     chosen = select(tables.alarm).where(c.is_open, own).order_by(c.id)
     return [_alarm(one) for one in connection.execute(chosen)]
+
+
+def open_alarm(connection: Connection, key: ConditionKey) -> OperatorAlarm | None:
+    """The one of a condition; None: there is none."""
+    c = tables.alarm.c
+    own = c.twin.is_(None) if key.twin is None else c.twin == key.twin
+    same = (c.kind == key.kind) & (c.cause == key.cause) & (c.subject == key.subject)
+    found = connection.execute(select(tables.alarm).where(c.is_open, own, same)).one_or_none()
+    return None if found is None else _alarm(found)
 
 
 def newest_alarms(connection: Connection, limit: int) -> list[OperatorAlarm]:

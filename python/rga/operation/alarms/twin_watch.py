@@ -25,6 +25,8 @@ from rga.twin.settings import Settings
 
 #: rows that are looked at at a time
 MOST_CELLS = 256
+#: rows that are looked at where nothing is known of the sensors
+MOST_PAST = 10_000
 #: rows after which it is kept how the sensors are; those behind are looked at again after a restart
 KEPT_EVERY = 64
 #: classes of alarms that need time to tell what is silent from what has not begun
@@ -137,15 +139,17 @@ class TwinWatch:
         return partial(self._next.write, self.name)
 
     def _of_sensors(self) -> list[Condition]:
-        station = self._twin.inbox.station
-        if station is None:
-            return []
         if self._quality is None:
+            station = self._twin.inbox.station
+            if station is None:
+                return []
             names = (*station.channels, *station.measured)
             state = None if self._stored is None else self._stored.sensors
             self._quality = SensorQuality(
                 self.name, names, self._twin.model, self._rows.every, self.patience, state or None
             )
+            past = self._twin.packets.sealed - MOST_PAST * self._rows.grid.every
+            self._quality.last = max(self._quality.last, past)
         while cells := cells_after(self._twin.inbox, self._quality.last, MOST_CELLS):
             for cell in cells:
                 self._quality.take(cell)

@@ -109,16 +109,14 @@ class Outbox:
             InputError: nothing can be written.
         """
         now = self._clock.now()
-        most, span = self._recipients[recipient].at_most
         with self._file.reading() as connection:
-            groups = _waiting(connection, recipient)
-            written = _written_since(connection, recipient, now - timedelta(seconds=span))
-        due = [one for one in groups.values() if _is_over(one[0]["written_at"], GATHERED, now)]
-        # Dictionaries keep their order: the group of the oldest notice is the first.
-        told = due[: max(0, most - written)]
-        if told:
+            groups = _waiting(connection, recipient).values()
+            # Dictionaries keep their order: the group of the oldest notice is the first.
+            due = [one for one in groups if _is_over(one[0]["written_at"], GATHERED, now)]
+            room = self._room(connection, recipient, now) if due else 0
+        if room:
             with self._file.writing() as connection:
-                for notices in told:
+                for notices in due[:room]:
                     self._write(connection, recipient, notices, now)
 
     def add_daily(self, recipient: str, day: str, words: str) -> None:
@@ -137,13 +135,13 @@ class Outbox:
 
     def due(self, recipient: str) -> list[OutgoingMessage]:
         """The messages that are to be sent now, the oldest first."""
-        now, longest = self._clock.now(), LONGEST_PAUSE
-        return [
-            one
-            for one in self._of_fate("waiting")
-            # A clock that was set back does not keep a message from being sent.
-            if one.recipient == recipient and not now < one.next_try <= now + longest
-        ]
+        now, c = self._clock.now(), tables.message.c
+        chosen = select(tables.message).where(c.recipient == recipient, c.fate == "waiting")
+        with self._file.reading() as connection:
+            found = connection.execute(chosen.order_by(c.written_at, c.id))
+            waiting = [_message(one) for one in found]
+        # A clock that was set back does not keep a message from being sent.
+        return [one for one in waiting if not now < one.next_try <= now + LONGEST_PAUSE]
 
     def tried(self, message: OutgoingMessage, fault: str | None) -> None:
         """A message was sent.
@@ -165,26 +163,40 @@ class Outbox:
         with self._file.writing() as connection:
             _update(connection, message.id, values)
 
-    def undelivered(self) -> list[OutgoingMessage]:
-        """The messages that did not arrive: those that are given up, and those sent again."""
-        again = [one for one in self._of_fate("waiting") if one.tries]
-        return sorted(
-            [*self._of_fate("undelivered"), *again], key=lambda one: (one.written_at, one.id)
-        )
+    def undelivered(self, limit: int = 1000) -> list[OutgoingMessage]:
+        """The last so many messages that did not arrive: given up, or sent again.
+
+        They are in the order in which they were written.
+        """
+        c = tables.message.c
+        found = []
+        with self._file.reading() as connection:
+            for some in (c.fate == "undelivered", (c.fate == "waiting") & (c.tries > 0)):
+                chosen = select(tables.message).where(some).order_by(c.written_at.desc())
+                found += [_message(one) for one in connection.execute(chosen.limit(limit))]
+        return sorted(found, key=lambda one: (one.written_at, one.id))[-limit:]
 
     def failing(self) -> dict[str, str]:
         """Why messages do not arrive, by the recipients who do not get theirs."""
-        c = tables.message.c
-        last = select(c.recipient, func.max(c.written_at)).where(c.fate == "delivered")
+        c, failing = tables.message.c, {}
+        latest = {one.recipient: one for one in self.undelivered() if one.tries >= FEW_TRIES}
         with self._file.reading() as connection:
-            arrived = {one[0]: one[1] for one in connection.execute(last.group_by(c.recipient))}
-        return {
-            one.recipient: one.fault
-            for one in self.undelivered()
-            if one.recipient in self._recipients
-            and one.tries >= FEW_TRIES
-            and microseconds(one.written_at) > arrived.get(one.recipient, 0)
-        }
+            for name, one in latest.items():
+                arrived = select(func.max(c.written_at)).where(
+                    c.recipient == name, c.fate == "delivered"
+                )
+                if name in self._recipients and microseconds(one.written_at) > (
+                    connection.scalar(arrived) or 0
+                ):
+                    failing[name] = one.fault
+        return failing
+
+    def _room(self, connection: Connection, recipient: str, now: datetime) -> int:
+        """How many more messages a recipient wants now."""
+        most, span = self._recipients[recipient].at_most
+        c, since = tables.message.c, microseconds(now - timedelta(seconds=span))
+        recent = select(func.count()).where(c.recipient == recipient, c.written_at > since)
+        return max(0, most - int(connection.scalar(recent) or 0))
 
     def _write(
         self,
@@ -204,12 +216,6 @@ class Outbox:
             same = tables.notice.c.number == one["number"]
             entry = with_checksum(**dict(one) | {"message": id})
             connection.execute(update(tables.notice).where(same).values(**entry))
-
-    def _of_fate(self, fate: Fate) -> list[OutgoingMessage]:
-        c = tables.message.c
-        chosen = select(tables.message).where(c.fate == fate).order_by(c.written_at, c.id)
-        with self._file.reading() as connection:
-            return [_message(one) for one in connection.execute(chosen)]
 
     def _give_up_others(self, connection: Connection) -> None:
         """Give up what is for recipients who are no longer there."""
@@ -238,12 +244,6 @@ def _waiting(connection: Connection, recipient: str) -> dict[str | None, list[di
         values = values_of(tables.notice, entry)
         groups.setdefault(values["twin"], []).append(values)
     return groups
-
-
-def _written_since(connection: Connection, recipient: str, moment: datetime) -> int:
-    c = tables.message.c
-    recent = (c.recipient == recipient) & (c.written_at > microseconds(moment))
-    return int(connection.scalar(select(func.count()).where(recent)) or 0)
 
 
 def _insert(

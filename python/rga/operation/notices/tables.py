@@ -46,5 +46,6 @@ message = Table(
     _text("fate"),
     _text("fault"),
     _number(COLUMN),
-    Index("messages_to_send", "recipient", "fate"),
+    Index("messages_of_fate", "fate", "written_at"),
+    Index("messages_of_recipient", "recipient", "fate", "written_at"),
 )
