@@ -3,11 +3,13 @@
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, Field, model_validator
 
+from rga.operation.alarms.alarm_settings import AlarmSettings
+from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.grid import Grid
-from rga.operation.settings_types import Duration, Name, SettingsTable
+from rga.operation.settings_types import Duration, Name, SettingsTable, duration_of
 from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated
 
@@ -42,6 +44,16 @@ class RowSettings(SettingsTable):
 Source = Annotated[AnySource, Field(discriminator="kind")]
 
 
+class RetentionSettings(SettingsTable):
+    """How long what nobody needs any more is kept.
+
+    Attributes:
+        raw: packets, once rows were made of them [s]; None: for ever.
+    """
+
+    raw: Annotated[float, BeforeValidator(duration_of), Field(ge=7 * 86_400)] | None = None
+
+
 class TwinSettings(SettingsTable):
     """A twin that is served.
 
@@ -50,6 +62,7 @@ class TwinSettings(SettingsTable):
         model, settings: files, beside the configuration.
         seed: of everything random.
         rows: how they are made of samples.
+        retention: how long packets are kept.
         source: where samples come from.
     """
 
@@ -58,6 +71,7 @@ class TwinSettings(SettingsTable):
     settings: Path
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 0
     rows: RowSettings = RowSettings()
+    retention: RetentionSettings = RetentionSettings()
     source: Annotated[list[Source], Field(min_length=1)]
 
     @model_validator(mode="after")
@@ -75,6 +89,7 @@ class ServiceSettings(SettingsTable):
         listen: address and port of the API and the pages.
         data: folder of the twins, beside the configuration.
         repository: URL of a PostgreSQL database for the repositories; None: they are in `data`.
+        link: address of the pages as people reach them, for notices; None: that of `listen`.
     """
 
     listen: Annotated[str, Field(pattern=r"^(\[[0-9a-f:]+\]|[A-Za-z0-9.-]+):\d{1,5}$")] = (
@@ -82,6 +97,12 @@ class ServiceSettings(SettingsTable):
     )
     data: Path = Path("data")
     repository: str | None = None
+    link: Annotated[str, Field(pattern=r"^https?://[^\s]+$")] | None = None
+
+    @property
+    def address(self) -> str:
+        """Address of the pages, without a slash at its end."""
+        return (self.link or f"http://{self.listen}").rstrip("/")
 
 
 class Configuration(SettingsTable):
@@ -89,10 +110,14 @@ class Configuration(SettingsTable):
 
     Attributes:
         service: the service itself.
+        alarms: when they are raised.
+        notify: where notices of them go.
         twin: the twins.
     """
 
     service: ServiceSettings = ServiceSettings()
+    alarms: AlarmSettings = AlarmSettings()
+    notify: list[NotifySettings] = Field(default_factory=list)
     twin: Annotated[list[TwinSettings], Field(min_length=1)]
 
     @model_validator(mode="after")
@@ -100,6 +125,9 @@ class Configuration(SettingsTable):
         names = [one.name for one in self.twin]
         if double := next((one for one in names if names.count(one) > 1), None):
             raise ValueError(f"two twins are called {double!r}: give each a name of its own")
+        files = [one.name for one in self.notify]
+        if double := next((one for one in files if files.count(one) > 1), None):
+            raise ValueError(f"two tables notify have a url_file {double!r}: join or rename them")
         return self
 
 

@@ -1,6 +1,5 @@
 """One twin of a service: what its sources send becomes packets, rows, and steps of the twin."""
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,11 +10,13 @@ from rga.errors import InputError
 from rga.jobs.live import live
 from rga.model import load_model
 from rga.operation.configuration import TwinSettings
+from rga.operation.inbox.archive import PacketArchive
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Arrival, Packets
 from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
+from rga.operation.service_clock import ServiceClock, microseconds
 from rga.operation.sources.arrivals import arrival_of, arrivals_of_lines
 from rga.operation.sources.clock import ClockWatch
 from rga.operation.sources.opened import opened
@@ -34,14 +35,21 @@ class ServedTwin:
         settings: of the twin.
         directory: of the twin, which is made.
         repository: URL of a PostgreSQL database, or None.
+        clock: of the service.
 
     Raises:
         InputError: its model, its settings or a mapping cannot be used.
     """
 
-    def __init__(self, settings: TwinSettings, directory: Path, repository: str | None) -> None:
-        self.name, self.directory = settings.name, directory
-        model = load_model(settings.model)
+    def __init__(
+        self,
+        settings: TwinSettings,
+        directory: Path,
+        repository: str | None,
+        clock: ServiceClock,
+    ) -> None:
+        self.name, self.directory, self._clock = settings.name, directory, clock
+        self.model = model = load_model(settings.model)
         live(
             model,
             directory,
@@ -65,8 +73,10 @@ class ServedTwin:
         grid = settings.rows.grid
         self.packets = Packets(self.inbox, grid, self._sources)
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
+        days = None if settings.retention.raw is None else settings.retention.raw / 86_400
+        self.archive = PacketArchive(self.inbox, directory, days)
         self._patience = settings.rows.patience
-        self._heard = dict.fromkeys(self._sources, time.monotonic())
+        self._heard = dict.fromkeys(self._sources, clock.monotonic())
         # Sources that were silent when rows were last made of all that had come.
         self._sealed_for: set[str] | None = None
         self._lock = Lock()
@@ -123,7 +133,7 @@ class ServedTwin:
         Raises:
             InputError: nothing of them is kept: the disk is full.
         """
-        arrived = time.time_ns() // 1000
+        arrived = microseconds(self._clock.now())
         arrivals = [
             self._arrival(source, where, payload, arrived, kind) for where, payload in payloads
         ]
@@ -141,7 +151,7 @@ class ServedTwin:
             lines: of rows.
             cursor: where the source reads on, by those of its parts that have moved.
         """
-        arrived = time.time_ns() // 1000
+        arrived = microseconds(self._clock.now())
         arrivals = arrivals_of_lines(
             head,
             [line + b"\n" for line in lines.removesuffix(b"\n").split(b"\n")],
@@ -159,7 +169,9 @@ class ServedTwin:
         self, source: str, arrivals: Sequence[Arrival], cursor: Mapping[str, Any] | None
     ) -> list[Outcome]:
         fates = self.packets.receive(source, arrivals, cursor)
-        self._heard[source] = time.monotonic()
+        # What cannot be used moves no row on, and is waited for no longer than silence.
+        if any(fate in ("waiting", "late") for fate in fates):
+            self._heard[source] = self._clock.monotonic()
         self._sealed_for = None
         return [(fate, one.refused) for fate, one in zip(fates, arrivals, strict=True)]
 
@@ -167,10 +179,13 @@ class ServedTwin:
         """The numbers that have come of each stream of a source."""
         return self.packets.numbers(source)
 
+    def silence(self, source: str) -> float:
+        """How long a source has sent nothing that can be used [s]."""
+        return self._clock.monotonic() - self._heard[source]
+
     def seal(self) -> int:
         """Make rows of what is final; how many are new."""
-        now = time.monotonic()
-        silent = {name for name, since in self._heard.items() if now - since > self._patience}
+        silent = {name for name in self._sources if self.silence(name) > self._patience}
         with self._lock:
             if silent == self._sealed_for:
                 return 0

@@ -6,6 +6,8 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 _SIZES = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
+_SPANS = {"hour": 3600.0, "day": 86_400.0}
+_RATE = re.compile(rf"([1-9]\d{{0,5}}) an? ({'|'.join(_SPANS)})")
 _DURATION = re.compile(rf"(\d+(?:\.\d+)?) ?({'|'.join(_SIZES)})")
 
 
@@ -25,6 +27,26 @@ def duration_of(given: Any) -> float:
 
 
 Duration = Annotated[float, BeforeValidator(duration_of), Field(gt=0, le=366 * 86_400)]
+#: how long something is before it counts, perhaps not at all [s]
+Wait = Annotated[float, BeforeValidator(duration_of), Field(ge=0, le=366 * 86_400)]
+
+
+def rate_of(given: Any) -> tuple[int, float]:
+    """How many within how many seconds a rate is, as people write it.
+
+    Raises:
+        ValueError: it is none.
+
+    >>> rate_of("12 an hour"), rate_of("5 a day")
+    ((12, 3600.0), (5, 86400.0))
+    """
+    found = _RATE.fullmatch(given) if isinstance(given, str) else None
+    if found is None:
+        raise ValueError(f"{given!r} is no rate: write '12 an hour' or '20 a day'")
+    return int(found[1]), _SPANS[found[2]]
+
+
+Rate = Annotated[tuple[int, float], BeforeValidator(rate_of)]
 #: as it stands in addresses, topics and names of folders
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
 

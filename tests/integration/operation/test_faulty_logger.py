@@ -15,6 +15,7 @@ from rga.operation.feeding.sent_record import SentRecord
 from rga.operation.inbox.account import Account
 from rga.operation.packets.packet import MICROSECONDS, Number
 from rga.operation.served_twin import ServedTwin
+from rga.operation.service_clock import ServiceClock
 from served.made_service import MIDNIGHT, write_service
 
 #: seconds of the record, and of a row
@@ -87,7 +88,7 @@ def test_counts_are_as_scripted(
             "source": [{"kind": "http", "clock": {"check": False}}],
         }
     )
-    twin = ServedTwin(settings, tmp_path / "east", None)
+    twin = ServedTwin(settings, tmp_path / "east", None, ServiceClock())
     values = np.random.default_rng(seed).normal(size=(SECONDS, 2))
     times = MIDNIGHT + MICROSECONDS * np.arange(SECONDS)
     record = SentRecord(("D1", "temperature"), times, values, "s")

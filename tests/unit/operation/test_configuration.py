@@ -46,6 +46,15 @@ position = "id"
 kind = "opcua"
 url = "opc.tcp://plant:4840"
 nodes = { D1 = "ns=2;s=D1" }
+[alarms]
+disk = 0.2
+lag = "2 h"
+quality = { off = "0 s" }
+[[notify]]
+url_file = "mail.secret"
+on = ["alarm", "proposal", "silent", "source", "disk"]
+at_most = "12 an hour"
+all_is_well = "07:00"
 """
 
 
@@ -73,6 +82,18 @@ def test_a_configuration_is_read(tmp_path: Path) -> None:
     assert table.password == tmp_path / "plant.secret"
     assert isinstance(server, OpcUaSource)
     assert server.stated.format == "packet"
+    assert found.alarms.delays["quality"] == (60.0, 0.0)
+    assert (found.alarms.disk, found.alarms.lag) == (0.2, 7200.0)
+    (notify,) = found.notify
+    assert notify.url_file == tmp_path / "mail.secret"
+    assert notify.at_most == (12, 3600.0)
+    assert str(notify.all_is_well) == "07:00:00"
+    assert found.service.address == "http://127.0.0.1:8471"
+
+
+def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
+    text = SOUND.replace("[service]", '[service]\nlink = "https://bridges.example/"')
+    assert read_configuration(written(tmp_path, text)).service.address == "https://bridges.example"
 
 
 @pytest.mark.parametrize(
@@ -105,6 +126,16 @@ def test_a_configuration_is_read(tmp_path: Path) -> None:
         ("opc.tcp://plant:4840", "http://plant", "no server"),
         ("opc.tcp://plant", "opc.tcp://a:b@plant", "password"),
         ('nodes = { D1 = "ns=2;s=D1" }', "nodes = {}", "nodes"),
+        ('"12 an hour"', '"12 a week"', "no rate"),
+        ('"12 an hour"', '"0 an hour"', "no rate"),
+        ('"silent"', '"mood"', "notify.0.on"),
+        ('on = ["alarm", "proposal", "silent", "source", "disk"]', "on = []", "notify.0.on"),
+        ('"07:00"', '"07:00+01:00"', "it is in UTC"),
+        ('"07:00"', '"noon"', "all_is_well"),
+        ("disk = 0.2", "disk = 2", "alarms.disk"),
+        ("[[notify]]", "[[notify]]\nurl = 'x'", "notify.0.url"),
+        ("[service]", "[service]\nlink = 'bridge'", "service.link"),
+        ('"0 s"', '"-1 s"', "no duration"),
         ('kind = "folder"', 'kind = "folder"\nname = "mqtt"', "two sources are called 'mqtt'"),
     ],
 )
@@ -116,7 +147,13 @@ def test_what_is_wrong_is_told(old: str, new: str, words: str, tmp_path: Path) -
     assert "serve.toml" in str(refused.value)
 
 
+def test_two_addresses_of_one_name_are_refused(tmp_path: Path) -> None:
+    text = f'{SOUND}[[notify]]\nurl_file = "other/mail.secret"\n'
+    with pytest.raises(InputError, match=r"have a url_file 'mail\.secret'"):
+        read_configuration(written(tmp_path, text))
+
+
 def test_two_twins_of_one_name_are_refused(tmp_path: Path) -> None:
-    twin = SOUND[SOUND.index("[[twin]]") :]
+    twin = SOUND[SOUND.index("[[twin]]") : SOUND.index("[alarms]")]
     with pytest.raises(InputError, match="two twins are called 'pratt-7'"):
         read_configuration(written(tmp_path, SOUND + twin))

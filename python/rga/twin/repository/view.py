@@ -66,8 +66,11 @@ class RunView:
             reached = row
         else:
             raise TypeError("as_of takes either a row or a time")
-        source = replace(self._source, until=self._source.step_at(reached))
-        return RunView(source, self.identity, self.begun_at)
+        return self.after_step(self._source.step_at(reached))
+
+    def after_step(self, number: int) -> "RunView":
+        """The run as it stood when a step had been acknowledged."""
+        return RunView(replace(self._source, until=number), self.identity, self.begun_at)
 
     @property
     def steps(self) -> int:
@@ -241,18 +244,12 @@ class RunView:
 
     def events(self) -> tuple[Event, ...]:
         """What happened to the twin."""
-        return tuple(
-            Event(
-                entry.kind,
-                entry.row,
-                json.loads(entry.time),
-                entry.words,
-                tuple(json.loads(entry.sensors)),
-                entry.gap_before,
-                entry.gap_after,
-            )
-            for entry in self._source.entries(tables.event)
-        )
+        return tuple(_event(entry) for entry in self._source.entries(tables.event))
+
+    def events_since(self, step: int) -> tuple[tuple[int, Event], ...]:
+        """What happened in the steps behind one, each with the number of its step."""
+        found = self._source.entries(tables.event, where=[tables.event.c.step > step])
+        return tuple((entry.step, _event(entry)) for entry in found)
 
     def proposals(self) -> tuple[Proposal, ...]:
         """Changes of the model that diagnoses proposed."""
@@ -308,6 +305,18 @@ class RunView:
 
 def _place(entry: Row[Any]) -> tuple[int, int]:
     return entry.step, entry.ordinal
+
+
+def _event(entry: Row[Any]) -> Event:
+    return Event(
+        entry.kind,
+        entry.row,
+        json.loads(entry.time),
+        entry.words,
+        tuple(json.loads(entry.sensors)),
+        entry.gap_before,
+        entry.gap_after,
+    )
 
 
 def _message(entry: Row[Any]) -> StoredMessage:

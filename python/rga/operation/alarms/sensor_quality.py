@@ -1,0 +1,148 @@
+"""Whether sensors still say something, by what lies beside each row."""
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rga.model import Model
+from rga.operation.alarms.condition import Condition, ConditionKey
+from rga.operation.inbox.kept_cells import KeptCell
+from rga.operation.inbox.packets import NEVER
+from rga.operation.service_clock import moment_of
+
+#: what can be wrong with a sensor, and how that is said of it
+CAUSES: Mapping[str, str] = {
+    "silent": "sends nothing",
+    "stuck": "has stood still",
+    "out of range": "reads what its range does not hold",
+    "conflict": "is sent with two values for one moment",
+}
+#: rows one after the other after which a range is left or values conflict: one may be a spike
+FEW_ROWS = 3
+#: rows at the least after which a sensor is stuck, and how many times its longest standstill
+STILL_ROWS, STILL_TIMES = 30, 10
+#: how long a sensor is known before it can be stuck [µs]: a night and a day
+KNOWN = 86_400_000_000
+
+
+class SensorQuality:
+    """Follows the sensors and measured contexts of a twin, row by row.
+
+    A sensor is stuck where all its samples are one value for ten times as long as it ever stood
+    still before: readings that are rounded stand still for a while, and those of a calm night for
+    hours. Contexts stand still where nothing happens, and are not judged, but for those of which
+    the model states a noise.
+
+    Args:
+        twin: name of it.
+        names: of sensors, then measured contexts, in the order of the cells.
+        model: of the twin.
+        every: length of a row [s].
+        patience: after which a sensor is silent [s].
+        state: that `to_json` gave; None: nothing is known yet.
+
+    Attributes:
+        last: begin of the last row, microseconds since 1970 (UTC); NEVER: none was taken.
+    """
+
+    def __init__(
+        self,
+        twin: str,
+        names: Sequence[str],
+        model: Model,
+        every: float,
+        patience: float,
+        state: str | None = None,
+    ) -> None:
+        self._twin, self._names = twin, tuple(names)
+        context = model.context
+        ranges = [context[one].range if one in context else (-np.inf, np.inf) for one in names]
+        # As the cells are kept: a bound is no narrower than the reading that equals it.
+        self._low, self._high = np.array(ranges, dtype=np.float32).reshape(-1, 2).T
+        self._varies = np.array(
+            [one not in context or context[one].noise is not None for one in names], dtype=np.bool_
+        )
+        self._silent_rows = max(1, int(np.ceil(patience / every)))
+        n = len(self._names)
+        #: rows one after the other, and begin of the first of them, by cause
+        self._rows = {cause: np.zeros(n, np.int64) for cause in CAUSES}
+        self._since = {cause: np.zeros(n, np.int64) for cause in CAUSES}
+        self._value = np.full(n, np.nan, np.float32)
+        self._longest = np.zeros(n, np.int64)
+        self._first: int | None = None
+        self.last = NEVER
+        if state is not None:
+            self._restore(json.loads(state))
+
+    def take(self, cell: KeptCell) -> None:
+        """Follow the sensors over one more row."""
+        self._first = cell.begin if self._first is None else self._first
+        self.last = cell.begin
+        came = cell.count > 0
+        still = came & (cell.least == cell.most) & (cell.least == self._value)
+        ended = came & ~still
+        longest = np.maximum(self._longest, self._rows["stuck"])
+        self._longest = np.where(ended, longest, self._longest)
+        self._value = np.where(came, cell.most, self._value)
+        self._follow("silent", ~came, came, cell.begin)
+        self._follow("stuck", still & self._varies, ended, cell.begin)
+        outside = came & ((cell.least < self._low) | (cell.most > self._high))
+        self._follow("out of range", outside, came & ~outside, cell.begin)
+        conflicts = cell.conflicts > 0
+        self._follow("conflict", conflicts, came & ~conflicts, cell.begin)
+
+    def conditions(self) -> list[Condition]:
+        """What is wrong with which sensor after the last row."""
+        found = []
+        for cause, words in CAUSES.items():
+            rows = self._rows[cause]
+            for k in np.flatnonzero(rows >= self._wanted(cause)):
+                name = self._names[k]
+                key = ConditionKey(self._twin, "quality", cause, name)
+                since = moment_of(int(self._since[cause][k]))
+                found.append(Condition(key, f"{name} {words}", since, (name,)))
+        return found
+
+    def to_json(self) -> str:
+        """What is known, as text."""
+        known: dict[str, Any] = {
+            "names": self._names,
+            "first": self._first,
+            "last": self.last,
+            "rows": {cause: rows.tolist() for cause, rows in self._rows.items()},
+            "since": {cause: since.tolist() for cause, since in self._since.items()},
+            "value": [None if np.isnan(one) else float(one) for one in self._value],
+            "longest": self._longest.tolist(),
+        }
+        return json.dumps(known)
+
+    def _restore(self, known: Mapping[str, Any]) -> None:
+        if tuple(known["names"]) != self._names:
+            return
+        self._first, self.last = known["first"], known["last"]
+        self._rows = {cause: np.array(known["rows"][cause], np.int64) for cause in CAUSES}
+        self._since = {cause: np.array(known["since"][cause], np.int64) for cause in CAUSES}
+        value = [np.nan if one is None else one for one in known["value"]]
+        self._value = np.array(value, np.float32)
+        self._longest = np.array(known["longest"], np.int64)
+
+    def _follow(
+        self, cause: str, wrong: NDArray[np.bool_], well: NDArray[np.bool_], begin: int
+    ) -> None:
+        """Count rows that are wrong; where a row says neither, nothing changes."""
+        rows = np.where(well, 0, self._rows[cause])
+        self._since[cause] = np.where(wrong & (rows == 0), begin, self._since[cause])
+        self._rows[cause] = np.where(wrong, rows + 1, rows)
+
+    def _wanted(self, cause: str) -> NDArray[np.int64] | int:
+        """Rows one after the other from which something is wrong."""
+        if cause == "silent":
+            return self._silent_rows
+        if cause != "stuck":
+            return FEW_ROWS
+        if self._first is None or self.last - self._first < KNOWN:
+            return np.iinfo(np.int64).max
+        return np.maximum(max(STILL_ROWS, self._silent_rows), STILL_TIMES * self._longest)

@@ -1,0 +1,1 @@
+"""Notices of alarms: kept until they have arrived."""

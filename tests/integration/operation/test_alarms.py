@@ -1,0 +1,359 @@
+"""What a service raises alarms of, and what it does not: nothing of a calm stream or a restart."""
+
+import json
+import shutil
+from collections import Counter, namedtuple
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rga
+from live_streams import SETTINGS, SINKS_AT, sinking
+from rga.errors import InputError
+from rga.model import read_model
+from rga.operation.alarms import service_watch
+from rga.operation.configuration import read_configuration
+from rga.operation.packets.native import write_packet
+from rga.operation.packets.packet import Number, SensorPacket
+from rga.operation.service import Service
+from rga.operation.service_clock import microseconds
+from rga.operation.service_file import FILE_NAME
+from rga.records import Record
+from rga.twin import Reject
+from service_times import NOON, SetClock
+
+CONFIGURATION = """
+[service]
+data = "data"
+[alarms]
+lag = "5 h"
+[alarms.source]
+on = "0 s"
+[[notify]]
+url_file = "mail.secret"
+on = ["gap", "quality", "source", "service", "proposal"]
+"""
+TWIN = """
+[[twin]]
+name = "{name}"
+model = "model.json"
+settings = "settings.json"
+rows = {{ every = "10 min", lateness = "30 min", patience = "1 h" }}
+[[twin.source]]
+kind = "http"
+"""
+EVERY, PATIENCE = 600.0, 3600.0
+MICROSECONDS_OF_A_ROW = round(EVERY * 1e6)
+
+
+class Bridge:
+    """A service that is looked at by hand, with a logger that sends a row every ten minutes."""
+
+    def __init__(self, folder: Path, record: Record, twins: tuple[str, ...] = ("east",)) -> None:
+        self.folder, self.record, self.clock = folder, record, SetClock()
+        text = CONFIGURATION + "".join(TWIN.format(name=name) for name in twins)
+        (folder / "serve.toml").write_text(text, "utf-8")
+        (folder / "mail.secret").write_text("json://127.0.0.1:9", "utf-8")
+        self.sent = 0
+        self.start()
+
+    def start(self) -> None:
+        self.service = Service(read_configuration(self.folder / "serve.toml"), self.clock)
+
+    def restart(self) -> None:
+        self.service.stop()
+        self.start()
+
+    def send(self, rows: int = 1, skipped: int = 0, spoil: Any = None, twin: str = "east") -> None:
+        """Let rows pass, each sent at its time and played."""
+        for _ in range(rows):
+            self.clock.pass_by(EVERY)
+            self.receive(self.sent, spoil, twin)
+            self.sent += 1
+            self.look(play=self.sent % 10 == 0)
+        self.sent += skipped
+
+    def receive(
+        self, number: int, spoil: Any = None, twin: str = "east", known: Number | None = None
+    ) -> None:
+        names = (*self.record.sensors, *self.record.contexts)
+        row = number % len(self.record)
+        values = np.array(
+            [*self.record.readings[row], *(one[row] for one in self.record.contexts.values())]
+        )
+        if spoil is not None:
+            spoil(values)
+        times = microseconds(NOON) + np.array([number * MICROSECONDS_OF_A_ROW])
+        packet = SensorPacket(known or Number("s", number), names, times, values[None])
+        self.service.twins[twin].receive("http", [("http", write_packet(packet, binary=True))])
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass in which nothing is sent."""
+        for _ in range(round(seconds / 60)):
+            self.clock.pass_by(60)
+            self.look(play=False)
+
+    def look(self, play: bool) -> None:
+        for twin in self.service.twins.values():
+            twin.seal()
+            if play:
+                with rga.LiveTwin(twin.directory) as live:
+                    live.play()
+        self.service.supervision.round()
+
+    @property
+    def changes(self) -> list[tuple[str, str, str]]:
+        """Class, cause and change of all transitions."""
+        book = self.service.alarms
+        return [
+            (alarm.kind, alarm.cause, one.change)
+            for one in book.transitions(0, 1000)
+            for alarm in [book.of(one.alarm)]
+        ]
+
+    @property
+    def notices(self) -> int:
+        """Notices that were written."""
+        with self.service._file.reading() as connection:
+            return len(connection.exec_driver_sql("SELECT * FROM notice").all())
+
+
+def made(folder: Path, content: dict[str, Any], measured: Any, rows: int, sinks: bool) -> Bridge:
+    """A bridge in a folder of its own."""
+    folder.mkdir(exist_ok=True)
+    (folder / "model.json").write_text(json.dumps(content), "utf-8")
+    settings = SETTINGS.model_dump(mode="json") | {"adopt": "ask"}
+    (folder / "settings.json").write_text(json.dumps(settings), "utf-8")
+    return Bridge(folder, sinking(read_model(content, "bridge"), measured, rows, sinks=sinks))
+
+
+@pytest.fixture
+def calm(
+    measured_bridge: dict[str, Any], measured_record: Callable[..., Record], tmp_path: Path
+) -> Bridge:
+    return made(tmp_path, measured_bridge, measured_record, 120, sinks=False)
+
+
+@pytest.fixture(scope="module")
+def sunk(
+    measured_bridge: dict[str, Any],
+    measured_record: Callable[..., Record],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Bridge:
+    """A bridge whose bearing has sunk; `before.sqlite` is what the service knew before."""
+    folder = tmp_path_factory.mktemp("sunk")
+    bridge = made(folder, measured_bridge, measured_record, 120, sinks=True)
+    bridge.send(60)
+    assert bridge.changes == []
+    bridge.service.stop()
+    shutil.copy(folder / "data" / FILE_NAME, folder / "before.sqlite")
+    bridge.start()
+    bridge.send(60)
+    return bridge
+
+
+def monitor_alarms(bridge: Bridge) -> int:
+    """Alarms of the monitor that the repository knows of."""
+    with rga.LiveTwin(bridge.service.twins["east"].directory) as live:
+        return sum(one.kind == "alarm" for one in live.twin.history().events)
+
+
+def test_where_nothing_sinks_nothing_is_told(calm: Bridge) -> None:
+    calm.send(120)
+    assert monitor_alarms(calm) == 0
+    assert calm.changes == []
+    assert calm.notices == 0
+
+
+def test_a_bearing_that_sinks_is_told_of_once(sunk: Bridge) -> None:
+    count = Counter(sunk.changes)
+    assert count["gap", "alarm", "raised"] == monitor_alarms(sunk) >= 1
+    assert count["proposal", "proposal", "raised"] == 1
+    assert sunk.notices == len(sunk.changes)
+    first = next(one for one in reversed(sunk.service.alarms.all(10)) if one.kind == "gap")
+    assert first.twin == "east"
+    assert first.sensors
+    assert "without a change such an alarm comes once in 10000 rows (69.4 days)" in first.words
+    since = (first.since - NOON).total_seconds() / EVERY
+    assert f"since row {since:.0f};" in first.words
+    assert SINKS_AT - 5 <= since <= SINKS_AT + 20
+
+
+def test_what_was_said_is_said_again_by_no_restart(sunk: Bridge) -> None:
+    said = sunk.changes
+    for _ in range(3):
+        sunk.restart()
+        sunk.look(play=True)
+    assert sunk.changes == said
+
+
+def test_what_a_twin_said_while_the_service_was_away_is_told_once(
+    sunk: Bridge, tmp_path: Path
+) -> None:
+    sunk.service.stop()
+    folder = shutil.copytree(sunk.folder, tmp_path / "again")
+    sunk.start()
+    shutil.copy(folder / "before.sqlite", folder / "data" / FILE_NAME)
+    bridge = Bridge(folder, sunk.record)
+    book = bridge.service.alarms
+    book._tell, tell = _fails, book._tell
+    bridge.look(play=False)
+    assert bridge.changes == []
+    assert "no room" in bridge.service.faults["east", "alarms"]
+    book._tell = tell
+    for _ in range(3):
+        bridge.look(play=False)
+    assert Counter(bridge.changes)["gap", "alarm", "raised"] == monitor_alarms(bridge)
+    assert ("east", "alarms") not in bridge.service.faults
+    assert bridge.notices == len(bridge.changes)
+
+
+def test_what_is_decided_is_no_alarm_any_more(sunk: Bridge) -> None:
+    said = sunk.changes
+    with rga.LiveTwin(sunk.service.twins["east"].directory) as live:
+        live.ask(Reject(who="Ada", why="the bearing was greased"))
+        live.play()
+    sunk.look(play=True)
+    assert sunk.changes == [*said, ("proposal", "proposal", "cleared")]
+
+
+def _fails(*_: object) -> None:
+    raise InputError("there is no room", "disk", "make some")
+
+
+@pytest.mark.parametrize("restarts", [10, pytest.param(100, marks=pytest.mark.thorough)])
+def test_restarts_give_no_notice(calm: Bridge, restarts: int) -> None:
+    calm.send(10)
+    for _ in range(restarts):
+        calm.restart()
+        calm.look(play=False)
+        calm.clock.pass_by(50 * 60)
+        calm.look(play=False)
+    assert calm.changes == []
+    assert calm.notices == 0
+    # As long, without a restart the silence is told of.
+    calm.wait(PATIENCE)
+    assert calm.changes == [("source", "down", "raised")]
+    calm.restart()
+    calm.wait(PATIENCE + 120)
+    assert calm.changes == [("source", "down", "raised")]
+
+
+def test_a_source_that_is_down_is_told_of_until_it_sends(calm: Bridge) -> None:
+    calm.wait(PATIENCE)
+    assert calm.changes == [("source", "down", "raised")]
+    calm.wait(PATIENCE)
+    (alarm,) = calm.service.alarms.open()
+    assert alarm.words == "source http has sent nothing for 60 min"
+    assert alarm.since == NOON
+    calm.send(2)
+    down = [one for one in calm.changes if one[1] == "down"]
+    assert down == [("source", "down", "raised"), ("source", "down", "cleared")]
+    # What it kept meanwhile is old, or its clock is behind.
+    assert ("source", "clock", "raised") in calm.changes
+
+
+def test_what_is_refused_is_no_sign_of_life(calm: Bridge) -> None:
+    for _ in range(round(PATIENCE / 60)):
+        calm.service.twins["east"].receive("http", [("http", b"{}")])
+        calm.wait(60)
+    assert calm.changes == [("source", "down", "raised")]
+
+
+def test_packets_that_never_came_are_told_of(calm: Bridge) -> None:
+    calm.send(8)
+    calm.send(3, skipped=1)
+    assert calm.changes == []
+    calm.send(8)
+    assert calm.changes == [("source", "missing", "raised")]
+    (alarm,) = calm.service.alarms.open()
+    assert alarm.words == "source http: 1 packet never came"
+    calm.receive(11)
+    calm.send(2)
+    assert calm.changes[-1] == ("source", "missing", "cleared")
+
+
+def test_a_clock_that_is_ahead_is_told_of(calm: Bridge) -> None:
+    calm.send(8)
+    calm.receive(1000, known=Number("another", 0))
+    calm.send(1)
+    assert calm.changes == [("source", "clock", "raised")]
+    assert "its clock is" in calm.service.alarms.open()[0].words
+    calm.send(9)
+    assert calm.changes == [("source", "clock", "raised"), ("source", "clock", "cleared")]
+
+
+def test_a_sensor_that_is_silent_is_named(calm: Bridge) -> None:
+    calm.send(20)
+
+    def silent(values: np.ndarray[Any, Any]) -> None:
+        values[1] = np.nan
+
+    calm.send(20, spoil=silent)
+    assert calm.changes == [("quality", "silent", "raised")]
+    (alarm,) = calm.service.alarms.open()
+    assert alarm.sensors == (calm.record.sensors[1],)
+    calm.restart()
+    calm.send(5, spoil=silent)
+    assert len(calm.changes) == 1
+    calm.send(12)
+    assert calm.changes[1:] == [("quality", "silent", "cleared")]
+
+
+def test_a_twin_that_is_not_played_lags_and_is_told_why(calm: Bridge) -> None:
+    calm.send(8)
+    for _ in range(50):
+        calm.clock.pass_by(EVERY)
+        calm.receive(calm.sent)
+        calm.sent += 1
+        calm.look(play=False)
+    assert calm.changes == [("service", "lag", "raised")]
+    calm.service._failures.tell("watch", {"east": "its repository is damaged"})
+    for _ in range(3):
+        calm.clock.pass_by(60)
+        calm.look(play=False)
+    parked = next(one for one in calm.service.alarms.open() if one.cause == "parked")
+    assert parked.words == "the twin is not played: its repository is damaged"
+    calm.service._failures.tell("watch", {})
+    calm.send(3)
+    assert set(calm.changes[2:]) == {
+        ("service", "lag", "cleared"),
+        ("service", "parked", "cleared"),
+    }
+
+
+def test_a_disk_that_is_nearly_full_is_told_of(
+    calm: Bridge, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usage = namedtuple("usage", "total used free")
+    room = [20]
+    monkeypatch.setattr(
+        service_watch.shutil, "disk_usage", lambda _: usage(100, 100 - room[0], room[0])
+    )
+    calm.send(10)
+    assert calm.changes == []
+    room[0] = 9
+    calm.send(3)
+    assert calm.changes == [("service", "disk", "raised")]
+    assert calm.service.alarms.open()[0].twin is None
+    room[0] = 11
+    calm.send(3)
+    assert calm.changes[1:] == [("service", "disk", "cleared")]
+
+
+def test_a_twin_that_cannot_be_read_keeps_no_other_from_being_looked_at(calm: Bridge) -> None:
+    calm.service.stop()
+    bridge = Bridge(calm.folder, calm.record, ("west", "east"))
+    bridge.send(9)
+    west = bridge.service.twins["west"].directory / "twin.sqlite"
+    west.write_bytes(b"no repository" * 1000)
+    bridge.wait(2 * PATIENCE)
+    found = {(one.twin, one.kind, one.cause) for one in bridge.service.alarms.open()}
+    assert found == {
+        ("west", "service", "repository"),
+        ("west", "source", "down"),
+        ("east", "source", "down"),
+    }
