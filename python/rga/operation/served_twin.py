@@ -57,7 +57,7 @@ class ServedTwin:
             for name, one in self._sources.items()
         }
         self._clocks = {
-            name: ClockWatch(one.clock.rule)
+            name: ClockWatch(one.clock.rule, settings.rows.lateness)
             for name, one in self._sources.items()
             if one.clock.rule is not None
         }
@@ -67,6 +67,7 @@ class ServedTwin:
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
         self._lock = Lock()
+        self._taking = {name: Lock() for name in self._sources}
 
     @property
     def source_names(self) -> list[str]:
@@ -121,10 +122,11 @@ class ServedTwin:
             InputError: nothing of them is kept: the disk is full.
         """
         arrived = time.time_ns() // 1000
-        arrivals = [
-            self._arrival(source, where, payload, arrived, kind) for where, payload in payloads
-        ]
-        return self._keep(source, arrivals, cursor)
+        with self._taking[source]:
+            arrivals = [
+                self._arrival(source, where, payload, arrived, kind) for where, payload in payloads
+            ]
+            return self._keep(source, arrivals, cursor)
 
     def receive_lines(
         self, source: str, where: str, head: bytes, lines: bytes, cursor: Mapping[str, Any]
@@ -139,12 +141,12 @@ class ServedTwin:
             cursor: where the source reads on, by those of its parts that have moved.
         """
         arrived = time.time_ns() // 1000
-        arrivals = arrivals_of_lines(
-            head,
-            [line + b"\n" for line in lines.removesuffix(b"\n").split(b"\n")],
-            lambda payload: self._arrival(source, where, payload, arrived, None),
-        )
-        return self._keep(source, arrivals, cursor)
+        parts = [line + b"\n" for line in lines.removesuffix(b"\n").split(b"\n")]
+        with self._taking[source]:
+            arrivals = arrivals_of_lines(
+                head, parts, lambda payload: self._arrival(source, where, payload, arrived, None)
+            )
+            return self._keep(source, arrivals, cursor)
 
     def _arrival(
         self, source: str, where: str, payload: bytes, arrived: int, kind: PayloadFormat | None
@@ -155,7 +157,15 @@ class ServedTwin:
     def _keep(
         self, source: str, arrivals: Sequence[Arrival], cursor: Mapping[str, Any] | None
     ) -> list[Outcome]:
-        fates = self.packets.receive(source, arrivals, cursor)
+        clock = self._clocks.get(source)
+        try:
+            fates = self.packets.receive(source, arrivals, cursor)
+        except BaseException:
+            if clock is not None:
+                clock.undo()
+            raise
+        if clock is not None:
+            clock.keep()
         self._heard[source] = time.monotonic()
         return [(fate, one.refused) for fate, one in zip(fates, arrivals, strict=True)]
 

@@ -97,6 +97,7 @@ def test_a_configuration_is_read(tmp_path: Path) -> None:
         ("site/{channel}", "site/channel", "one level of the topic"),
         ('columns = ["time", "D1"]', "", "needs columns"),
         ('format = "row"', "", "needs columns"),
+        ('format = "row"', 'format = "number"', "names no channel"),
         ('["time", "D1"]', '["D1", "D1"]', "name every column once"),
         ("postgresql://rga@plant", "postgresql://rga:secret@plant", "url holds a password"),
         ("postgresql://rga@plant/history", "plant", "no address of a database"),
