@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Field, model_validator
 
 from rga.operation.packets.packet import MICROSECONDS
-from rga.operation.rows.sealing import Grid
+from rga.operation.rows.grid import Grid
 from rga.operation.settings_types import Duration, Name, SettingsTable
 from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated

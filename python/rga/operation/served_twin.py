@@ -61,11 +61,14 @@ class ServedTwin:
             for name, one in self._sources.items()
             if one.clock.rule is not None
         }
-        self._inbox = Inbox(directory)
-        self.packets = Packets(self._inbox)
-        self._sealing = Sealing(self._inbox, self.packets, model, self._readers, settings.rows.grid)
+        self.inbox = Inbox(directory)
+        grid = settings.rows.grid
+        self.packets = Packets(self.inbox, grid, self._sources)
+        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
+        # Sources that were silent when rows were last made of all that had come.
+        self._sealed_for: set[str] | None = None
         self._lock = Lock()
         self._taking = {name: Lock() for name in self._sources}
 
@@ -167,6 +170,7 @@ class ServedTwin:
         if clock is not None:
             clock.keep()
         self._heard[source] = time.monotonic()
+        self._sealed_for = None
         return [(fate, one.refused) for fate, one in zip(fates, arrivals, strict=True)]
 
     def numbers(self, source: str) -> dict[str, Numbers]:
@@ -176,13 +180,20 @@ class ServedTwin:
     def seal(self) -> int:
         """Make rows of what is final; how many are new."""
         now = time.monotonic()
-        silent = [name for name, since in self._heard.items() if now - since > self._patience]
+        silent = {name for name, since in self._heard.items() if now - since > self._patience}
         with self._lock:
-            return self._sealing.seal(silent)
+            if silent == self._sealed_for:
+                return 0
+            self._sealed_for = silent
+            try:
+                return self._sealing.seal(silent)
+            except BaseException:
+                self._sealed_for = None
+                raise
 
     def close(self) -> None:
         """Close the file of the inbox."""
-        self._inbox.close()
+        self.inbox.close()
 
 
 def live_settings(path: Path) -> Settings:

@@ -1,19 +1,15 @@
 """The service: sources, rows and workers, from the start to the end."""
 
-import multiprocessing
-import time
-from collections.abc import Collection, Sequence
 from functools import partial
-from pathlib import Path
 from threading import Event, Thread
 
-from rga.jobs.worker import Kind, Worker
 from rga.operation.configuration import Configuration
 from rga.operation.served_twin import ServedTwin
 from rga.operation.sources.source import DataSource, attempt
+from rga.operation.workers import Workers
 
-#: how often rows are sealed, and how long a worker rests where nothing is due [s]
-SEAL, REST = 0.2, 0.2
+#: how often rows are sealed [s]
+SEAL = 0.2
 
 
 class Service:
@@ -26,15 +22,17 @@ class Service:
         twins: by name.
         faults: what keeps a source or the rows of a twin from going on, in words, by twin and
             source.
+        workers: play the twins.
     """
 
     def __init__(self, configuration: Configuration) -> None:
         service = configuration.service
-        self._repository, self._data = service.repository, service.data
         self.twins = {
             one.name: ServedTwin(one, service.data / one.name, service.repository)
             for one in configuration.twin
         }
+        places = [one.directory for one in self.twins.values()]
+        self.workers = Workers(places, service.repository)
         self.faults: dict[tuple[str, str], str] = {}
         self._ending = Event()
         self._sealing = Thread(target=self._seal, name="rows", daemon=True)
@@ -43,19 +41,13 @@ class Service:
             for twin in self.twins.values()
             for name, source in twin.sources().items()
         }
-        self._workers: list[multiprocessing.process.BaseProcess] = []
 
     def start(self) -> None:
         """Begin to take data in and to play the twins."""
         for source in self._sources.values():
             source.start()
         self._sealing.start()
-        spawn = multiprocessing.get_context("spawn")
-        places = [one.directory for one in self.twins.values()]
-        for kind in ("watch", "heavy"):
-            work = partial(_play, places, [kind], self._repository)
-            self._workers.append(spawn.Process(target=work, name=kind, daemon=True))
-            self._workers[-1].start()
+        self.workers.start()
 
     def stop(self) -> None:
         """Let go of everything: what was acknowledged is kept."""
@@ -64,9 +56,7 @@ class Service:
             source.stop()
         if self._sealing.ident is not None:
             self._sealing.join()
-        for worker in self._workers:
-            worker.terminate()
-            worker.join()
+        self.workers.stop()
         for twin in self.twins.values():
             twin.close()
 
@@ -89,12 +79,3 @@ class Service:
 
 def _seal(twin: ServedTwin) -> None:
     twin.seal()
-
-
-def _play(places: Sequence[Path], kinds: Collection[Kind], repository: str | None) -> None:
-    """What a worker does until it is ended, or the service is gone."""
-    worker = Worker(places, kinds, repository)
-    service = multiprocessing.parent_process()
-    while service is None or service.is_alive():
-        if not worker.round():
-            time.sleep(REST)

@@ -16,13 +16,14 @@ from paho.mqtt.client import Client, MQTTv5
 from paho.mqtt.enums import CallbackAPIVersion
 
 from live_streams import SETTINGS
-from mosquitto import Mosquitto, mosquitto
 from rga.dashboard.app import app_of
 from rga.operation.configuration import read_configuration
 from rga.operation.inbox.account import Account
 from rga.operation.served_twin import ServedTwin
 from rga.operation.service import Service
 from rga.twin.hardware.inbox import Inbox
+from rga_bench.operation.broker import Mosquitto
+from served.brokers import mosquitto
 
 __all__ = ["mosquitto"]
 

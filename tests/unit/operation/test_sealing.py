@@ -16,8 +16,9 @@ from rga.operation.packets.formats import StatedFormat
 from rga.operation.packets.native import write_packet
 from rga.operation.packets.packet import MICROSECONDS, Number, SensorPacket
 from rga.operation.packets.topics import TopicPattern
+from rga.operation.rows.grid import Grid
 from rga.operation.rows.samples import Reader
-from rga.operation.rows.sealing import Grid, Sealing
+from rga.operation.rows.sealing import Sealing
 from rga.operation.sources.arrivals import arrival_of
 from rga.operation.sources.clock import ClockRule, ClockWatch
 from rga.records.mapping import Channel, RecordMapping, TimeColumns
@@ -52,8 +53,8 @@ class Twin:
 
     def start(self) -> None:
         self.inbox = Inbox(self._folder)
-        self.packets = Packets(self.inbox)
         grid = Grid(every=MINUTE, lateness=2 * MINUTE)
+        self.packets = Packets(self.inbox, grid, self.readers)
         self.sealing = Sealing(self.inbox, self.packets, self._model, self.readers, grid)
 
     def send(

@@ -65,7 +65,8 @@ class Broker:
         inlet: Inlet,
     ) -> None:
         parts = urlsplit(url)
-        self._host, self._port = parts.hostname or "", parts.port or 1883
+        secure = parts.scheme == "mqtts"
+        self._host, self._port = parts.hostname or "", parts.port or (8883 if secure else 1883)
         self._topics, self._inlet = tuple(topics), inlet
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
@@ -74,7 +75,8 @@ class Broker:
         self._ending = Event()
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
-        self._client = self._made(f"rga-{twin}-{source}", parts.scheme == "mqtts", credentials)
+        self._untold: dict[str, Numbers] = {}
+        self._client = self._made(f"rga-{twin}-{source}", secure, credentials)
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
 
@@ -139,6 +141,7 @@ class Broker:
             batch = batch or self._batch()
             if batch and not (wrong := attempt(partial(self._keep_batch, batch))):
                 batch = []
+            self._acknowledge()
             if wrong:
                 # What is not kept is not acknowledged, and is tried again.
                 self.fault = wrong
@@ -148,7 +151,7 @@ class Broker:
         """What has come meanwhile: the more there is, the more is kept at once."""
         batch: list[MQTTMessage] = []
         try:
-            batch.append(self._waiting.get(timeout=1.0))
+            batch.append(self._waiting.get(timeout=ACKNOWLEDGE / 4))
             while len(batch) < MOST_MESSAGES:
                 batch.append(self._waiting.get_nowait())
         except Empty:
@@ -161,13 +164,14 @@ class Broker:
         self.fault = None
         for one in batch:
             self._client.ack(one.mid, one.qos)
-        self._acknowledge(self._inlet.numbers())
+        self._untold = self._inlet.numbers()
 
-    def _acknowledge(self, numbers: dict[str, Numbers]) -> None:
+    def _acknowledge(self) -> None:
+        """Tell senders what is kept, if that is news, and the last time is long enough ago."""
         now = time.monotonic()
-        if now - self._told < ACKNOWLEDGE:
+        if not self._untold or now - self._told < ACKNOWLEDGE:
             return
-        self._told = now
+        numbers, self._told, self._untold = self._untold, now, {}
         for stream, known in numbers.items():
             told, untold = known.gaps[:MOST_TOLD], known.gaps[MOST_TOLD:]
             # Whoever reads it takes what is below the next and not missing for kept.

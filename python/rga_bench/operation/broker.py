@@ -1,15 +1,15 @@
-"""A broker for tests: mosquitto, where it is installed."""
+"""A broker that can be killed: mosquitto, where it is installed."""
 
 import shutil
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-import pytest
+from rga.errors import InputError
 
+#: of the broker; None: it is not installed
 PROGRAM = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin")
 
 
@@ -37,8 +37,13 @@ class Mosquitto:
         return f"mqtt://127.0.0.1:{self.port}"
 
     def start(self) -> None:
-        """Start it, and wait until it answers."""
-        assert PROGRAM is not None
+        """Start it, and wait until it answers.
+
+        Raises:
+            InputError: it is not installed, or does not answer.
+        """
+        if PROGRAM is None:
+            raise InputError("mosquitto is not installed", "broker", "install it, as by apt-get")
         self._process = subprocess.Popen(
             [PROGRAM, "-c", str(self._configuration)],
             stdout=subprocess.DEVNULL,
@@ -49,22 +54,10 @@ class Mosquitto:
             with suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1):
                 return
             time.sleep(0.05)
-        raise TimeoutError("mosquitto does not answer")
+        raise InputError("mosquitto does not answer", self.url, "try again on an idle machine")
 
     def kill(self) -> None:
         """End it at once, as when power is lost."""
         if self._process is not None:
             self._process.kill()
             self._process.wait()
-
-
-@pytest.fixture
-def mosquitto(tmp_path: Path) -> Iterator[Mosquitto]:
-    """A broker that runs."""
-    if PROGRAM is None:
-        pytest.skip("mosquitto is not installed")
-    (tmp_path / "broker").mkdir()
-    broker = Mosquitto(tmp_path / "broker")
-    broker.start()
-    yield broker
-    broker.kill()
