@@ -11,8 +11,9 @@ from rga.jobs.live import live
 from rga.model import load_model
 from rga.operation.configuration import TwinSettings
 from rga.operation.inbox.archive import PacketArchive
+from rga.operation.inbox.arrival import Arrival
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.inbox.packets import Arrival, Packets
+from rga.operation.inbox.packets import Packets
 from rga.operation.packets.formats import PayloadFormat
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
@@ -65,7 +66,7 @@ class ServedTwin:
             for name, one in self._sources.items()
         }
         self._clocks = {
-            name: ClockWatch(one.clock.rule)
+            name: ClockWatch(one.clock.rule, settings.rows.lateness)
             for name, one in self._sources.items()
             if one.clock.rule is not None
         }
@@ -80,6 +81,7 @@ class ServedTwin:
         # Sources that were silent when rows were last made of all that had come.
         self._sealed_for: set[str] | None = None
         self._lock = Lock()
+        self._taking = {name: Lock() for name in self._sources}
 
     @property
     def source_names(self) -> list[str]:
@@ -134,10 +136,11 @@ class ServedTwin:
             InputError: nothing of them is kept: the disk is full.
         """
         arrived = microseconds(self._clock.now())
-        arrivals = [
-            self._arrival(source, where, payload, arrived, kind) for where, payload in payloads
-        ]
-        return self._keep(source, arrivals, cursor)
+        with self._taking[source]:
+            arrivals = [
+                self._arrival(source, where, payload, arrived, kind) for where, payload in payloads
+            ]
+            return self._keep(source, arrivals, cursor)
 
     def receive_lines(
         self, source: str, where: str, head: bytes, lines: bytes, cursor: Mapping[str, Any]
@@ -152,12 +155,12 @@ class ServedTwin:
             cursor: where the source reads on, by those of its parts that have moved.
         """
         arrived = microseconds(self._clock.now())
-        arrivals = arrivals_of_lines(
-            head,
-            [line + b"\n" for line in lines.removesuffix(b"\n").split(b"\n")],
-            lambda payload: self._arrival(source, where, payload, arrived, None),
-        )
-        return self._keep(source, arrivals, cursor)
+        parts = [line + b"\n" for line in lines.removesuffix(b"\n").split(b"\n")]
+        with self._taking[source]:
+            arrivals = arrivals_of_lines(
+                head, parts, lambda payload: self._arrival(source, where, payload, arrived, None)
+            )
+            return self._keep(source, arrivals, cursor)
 
     def _arrival(
         self, source: str, where: str, payload: bytes, arrived: int, kind: PayloadFormat | None
@@ -168,7 +171,15 @@ class ServedTwin:
     def _keep(
         self, source: str, arrivals: Sequence[Arrival], cursor: Mapping[str, Any] | None
     ) -> list[Outcome]:
-        fates = self.packets.receive(source, arrivals, cursor)
+        clock = self._clocks.get(source)
+        try:
+            fates = self.packets.receive(source, arrivals, cursor)
+        except BaseException:
+            if clock is not None:
+                clock.undo()
+            raise
+        if clock is not None:
+            clock.keep()
         # What cannot be used moves no row on, and is waited for no longer than silence.
         if any(fate in ("waiting", "late") for fate in fates):
             self._heard[source] = self._clock.monotonic()

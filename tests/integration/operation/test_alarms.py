@@ -23,7 +23,7 @@ from rga.operation.service_clock import microseconds
 from rga.operation.service_file import FILE_NAME
 from rga.records import Record
 from rga.twin import Reject
-from service_times import NOON, SetClock
+from served.service_times import NOON, SetClock
 
 CONFIGURATION = """
 [service]
@@ -311,13 +311,14 @@ def test_a_twin_that_is_not_played_lags_and_is_told_why(calm: Bridge) -> None:
         calm.sent += 1
         calm.look(play=False)
     assert calm.changes == [("service", "lag", "raised")]
-    calm.service._failures.tell("watch", {"east": "its repository is damaged"})
+    east = calm.service.twins["east"].directory
+    calm.service.workers._told["watch"] = {east: "its repository is damaged"}
     for _ in range(3):
         calm.clock.pass_by(60)
         calm.look(play=False)
     parked = next(one for one in calm.service.alarms.open() if one.cause == "parked")
     assert parked.words == "the twin is not played: its repository is damaged"
-    calm.service._failures.tell("watch", {})
+    calm.service.workers._told["watch"] = {}
     calm.send(3)
     assert set(calm.changes[2:]) == {
         ("service", "lag", "cleared"),

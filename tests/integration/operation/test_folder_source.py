@@ -5,7 +5,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from threading import Event
+from threading import Event, Thread
 from typing import Any
 
 import numpy as np
@@ -199,7 +199,7 @@ def test_a_source_goes_on_by_itself_and_says_what_is_wrong(
     append(tmp_path / "logger" / "a.dat", HEAD + line(0) + line(1))
     source = service._sources["east", "folder"]
     source.start()
-    service._sealing.start()
+    Thread(target=service._seal, daemon=True).start()
     assert failed.wait(20)
     wait_for(lambda: service.faults.get(("east", "folder")) == "RuntimeError: a fault of rga")
     monkeypatch.setattr(twin, "receive_lines", receive)
@@ -210,7 +210,7 @@ def test_a_source_goes_on_by_itself_and_says_what_is_wrong(
 def test_a_clock_is_told_once(made: Callable[..., Service], tmp_path: Path) -> None:
     service = made(more="")
     twin = service.twins["east"]
-    service._sealing.start()
+    Thread(target=service._seal, daemon=True).start()
     poll = look(twin)
     append(tmp_path / "logger" / "a.dat", HEAD)
     for minute in range(5):

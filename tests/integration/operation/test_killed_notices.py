@@ -10,9 +10,8 @@ from multiprocessing import get_context
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 
-import notices_to_kill
-from notice_server import NoticeServer, notice_server
 from rga.operation.service_file import FILE_NAME
+from served.notice_server import NoticeServer, notice_server
 
 #: `RGA_TEST_KILLS=200` kills more often
 KILLS = int(os.environ.get("RGA_TEST_KILLS", "4"))

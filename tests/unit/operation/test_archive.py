@@ -8,7 +8,8 @@ import pytest
 from rga.operation.inbox import archive
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.archive import DAY, KEPT_DAYS, PacketArchive
-from rga.operation.inbox.packets import HOUR, Arrival, Packets
+from rga.operation.inbox.arrival import Arrival
+from rga.operation.inbox.packets import HOUR, Packets
 from rga.operation.packets.packet import Number
 from rga.operation.rows.grid import Grid
 from rga.twin.hardware.inbox import Inbox

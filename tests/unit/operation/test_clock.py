@@ -3,10 +3,14 @@
 import pytest
 
 from rga.operation.packets.packet import MICROSECONDS, Number
-from rga.operation.sources.clock import STILL, ClockRule, ClockWatch
+from rga.operation.sources.clock import ClockRule, ClockSight, ClockWatch
 
 NOON = 1_795_435_200_000_000
 MINUTE, HOUR = 60 * MICROSECONDS, 3600 * MICROSECONDS
+
+
+def sight(place: str, number: Number | None, first: int, last: int, arrived: int) -> ClockSight:
+    return ClockSight(place, frozenset(["D1"]), number, first, last, arrived)
 
 
 class Logger:
@@ -30,7 +34,7 @@ class Logger:
         self._count += 1
         number = Number("s", self._count) if self._numbered else None
         moment = self.now + ahead
-        return self.watch.refused("site", number, moment, moment, self.now)
+        return self.watch.refused(sight("site", number, moment, moment, self.now))
 
 
 @pytest.fixture(params=[True, False], ids=["numbered", "plain"])
@@ -94,7 +98,7 @@ def test_what_was_kept_while_the_network_was_away_is_believed(logger: Logger) ->
     moments = range(last + MINUTE, logger.now, MINUTE)
     for k, moment in enumerate(moments, 100):
         number = Number("s", k) if logger._numbered else None
-        assert logger.watch.refused("site", number, moment, moment, logger.now) is None
+        assert logger.watch.refused(sight("site", number, moment, moment, logger.now)) is None
     logger._count = 1000
     assert logger.watch.fault is None
     assert logger.send(10) == [None] * 10
@@ -108,28 +112,51 @@ def test_the_first_packet_is_believed_when_it_is_older(logger: Logger) -> None:
 def test_what_fills_a_gap_is_believed() -> None:
     watch = ClockWatch(ClockRule())
     for number, moment in ((0, NOON), (9, NOON + HOUR), (5, NOON + MINUTE), (6, NOON)):
-        assert watch.refused("a", Number("s", number), moment, moment, NOON + HOUR) is None
+        assert watch.refused(sight("a", Number("s", number), moment, moment, NOON + HOUR)) is None
 
 
 def test_disorder_on_the_way_is_no_clock_that_runs_back() -> None:
     watch = ClockWatch(ClockRule())
-    late = round(STILL) * MICROSECONDS
+    late = MINUTE
     for k in range(0, 600, 2):
         for moment in (NOON + k * MICROSECONDS, NOON + k * MICROSECONDS - late):
-            assert watch.refused("a", None, moment, moment, NOON + k * MICROSECONDS) is None
+            assert watch.refused(sight("a", None, moment, moment, NOON + k * MICROSECONDS)) is None
 
 
 def test_loggers_are_told_apart_and_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
     watch = ClockWatch(ClockRule())
     for name in "abc":
-        watch.refused(name, None, NOON + 2 * HOUR, NOON + 2 * HOUR, NOON)
+        watch.refused(sight(name, None, NOON + 2 * HOUR, NOON + 2 * HOUR, NOON))
     assert watch.fault == "a: its clock is 2 h ahead, and 2 more of the loggers"
-    watch.refused("b", None, NOON, NOON, NOON)
+    watch.refused(sight("b", None, NOON, NOON, NOON))
     assert watch.fault == "a: its clock is 2 h ahead, and 1 more of the loggers"
     # Of what was not heard of for long, nothing is known.
-    watch.refused("b", None, NOON + HOUR, NOON + HOUR, NOON + HOUR)
+    watch.refused(sight("b", None, NOON + HOUR, NOON + HOUR, NOON + HOUR))
     assert watch.fault is None
     monkeypatch.setattr("rga.operation.sources.clock.MOST_STREAMS", 2)
     for k in range(10):
-        watch.refused(str(k), None, NOON, NOON, NOON)
-    assert len(watch._streams) == 2
+        watch.refused(sight(str(k), None, NOON, NOON, NOON))
+    assert len(watch._shown) == 2
+
+
+def test_what_is_not_kept_comes_again_and_is_believed(logger: Logger) -> None:
+    logger.send(5)
+    logger.watch.keep()
+    numbers = [Number("s", k) if logger._numbered else None for k in (6, 7, 8)]
+    for minutes in range(30):
+        # The disk is full, and the same packets are tried again.
+        arrived = logger.now + 3 * MINUTE + minutes * MINUTE
+        for k, number in enumerate(numbers, 1):
+            moment = logger.now + k * MINUTE
+            assert logger.watch.refused(sight("site", number, moment, moment, arrived)) is None
+        logger.watch.undo()
+
+
+def test_loggers_that_send_other_channels_have_clocks_of_their_own() -> None:
+    watch = ClockWatch(ClockRule())
+    for k in range(60):
+        now = NOON + k * 10 * MINUTE
+        for channel, behind in (("D1", 0), ("D2", 9 * MINUTE)):
+            moment, late = now - behind, now + behind // 2
+            shown = ClockSight("http", frozenset([channel]), None, moment, moment, late)
+            assert watch.refused(shown) is None

@@ -118,6 +118,7 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
         ("site/{channel}", "site/channel", "one level of the topic"),
         ('columns = ["time", "D1"]', "", "needs columns"),
         ('format = "row"', "", "needs columns"),
+        ('format = "row"', 'format = "number"', "names no channel"),
         ('["time", "D1"]', '["D1", "D1"]', "name every column once"),
         ("postgresql://rga@plant", "postgresql://rga:secret@plant", "url holds a password"),
         ("postgresql://rga@plant/history", "plant", "no address of a database"),

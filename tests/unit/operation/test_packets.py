@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rga.operation.inbox.account import Account
-from rga.operation.inbox.packets import HOUR, NEVER, REMEMBERED, Arrival, Packets
+from rga.operation.inbox.arrival import Arrival
+from rga.operation.inbox.known_packets import REMEMBERED
+from rga.operation.inbox.packets import HOUR, NEVER, Packets
 from rga.operation.packets.packet import Number
 from rga.operation.rows.grid import Grid
 from rga.twin.hardware.inbox import Inbox

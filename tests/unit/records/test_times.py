@@ -114,6 +114,15 @@ def test_many_stamps_at_once_are_as_each_alone(pattern: str) -> None:
 NIGHT = ["00:30", "01:00", "01:30", "02:00", "02:30", "02:00", "02:30", "03:00"]
 
 
+def test_the_hour_that_comes_twice_may_be_refused(tmp_path: Path) -> None:
+    night = ["2024-10-27 01:30:00", "2024-10-27 02:30:00", "2024-10-27 03:30:00"]
+    with pytest.raises(InputError, match=r"02:30:00 exists twice in Europe/Berlin.*line 3"):
+        clock(tmp_path, "time", night, zone="Europe/Berlin", repeated_hour="refused")
+    for stamps, zone in ((night, "+01:00"), ([night[0], night[2]], "Europe/Berlin")):
+        found = clock(tmp_path, "time", stamps, zone=zone, repeated_hour="refused")
+        assert len(found.seconds) == len(stamps)
+
+
 def test_the_hour_that_comes_twice_is_told_apart_by_the_rows(tmp_path: Path) -> None:
     stamps = [f"2023-10-29 {at}" for at in NIGHT]
     found = clock(tmp_path, "time", stamps, zone="Europe/Berlin")

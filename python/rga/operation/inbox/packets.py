@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from sqlalchemy import Connection, Table, delete, func, insert, select, update
@@ -14,9 +14,11 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.operation.inbox import tables
 from rga.operation.inbox.account import Account
+from rga.operation.inbox.arrival import Arrival, Fate
+from rga.operation.inbox.known_packets import KnownPackets
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.packets.formats import PayloadFormat
-from rga.operation.packets.packet import EPOCH, MICROSECONDS, Number
+from rga.operation.packets.packet import EPOCH, MICROSECONDS
 from rga.operation.rows.cells import Cell
 from rga.operation.rows.grid import Grid
 from rga.twin.hardware.inbox import Inbox
@@ -25,40 +27,11 @@ from rga.twin.repository.checksum import with_checksum
 from rga.twin.repository.faults import whole
 from rga.twin.repository.table_file import only_entry, values_of
 
-Fate = Literal["waiting", "late", "duplicate", "refused"]
-#: how long a packet without a number is known again [µs]
-REMEMBERED = 24 * 3600 * MICROSECONDS
 HOUR = 3600 * MICROSECONDS
 #: before any moment
 NEVER = -(2**62)
 #: bytes that are kept of what cannot be used
 KEPT_OF_REFUSED = 64 * 1024
-
-
-@dataclass(frozen=True)
-class Arrival:
-    """A packet as it arrives.
-
-    Attributes:
-        payload: as it was sent.
-        kind: by which it is read again.
-        arrived: microseconds since 1970 (UTC), by the clock of this machine.
-        place: that it came from, such as a topic, without which it cannot be read again.
-        first, last: moments of its samples, microseconds since 1970 (UTC).
-        number: None: the logger counts none.
-        sha256: of what tells it from others, where it has no number.
-        refused: why it cannot be used; None: it can.
-    """
-
-    payload: bytes
-    kind: PayloadFormat
-    arrived: int
-    first: int = 0
-    last: int = 0
-    number: Number | None = None
-    sha256: str | None = None
-    refused: str | None = None
-    place: str = ""
 
 
 @dataclass(frozen=True)
@@ -118,7 +91,7 @@ class Packets:
         """
         with self._inbox.writing() as connection:
             sealed, latest = _until(connection), self._latest(connection)
-            known = _Known(connection, source)
+            known = KnownPackets(connection, source)
             entries: list[dict[str, Any]] = []
             aside: list[dict[str, Any]] = []
             number, refused = _last(connection, tables.packet), _last(connection, tables.refused)
@@ -255,63 +228,6 @@ class Packets:
             key = values.pop("source"), values.pop("hour")
             accounts[key] = Account(**values, waiting=waits.pop(key, 0))
         return accounts | {key: Account(waiting=count) for key, count in waits.items()}
-
-
-class _Known:
-    """What is known of the packets of a source, while others of it arrive."""
-
-    def __init__(self, connection: Connection, source: str) -> None:
-        self._connection, self._source = connection, source
-        self._streams: dict[str, Numbers] = {}
-        self._contents: set[str] = set()
-
-    def fate_of(self, arrival: Arrival, until: int) -> tuple[Fate, str | None]:
-        """What becomes of a packet, and why if it is refused."""
-        reason = arrival.refused
-        if arrival.number is not None:
-            numbers = self._numbers(arrival.number.stream)
-            if not numbers.takes(arrival.number.sequence):
-                reason = "its number leaves more gaps than are kept of a stream"
-            elif not numbers.take(arrival.number.sequence):
-                return "duplicate", None
-        elif reason is None and arrival.sha256 is not None:
-            if self._has_come(arrival.sha256, arrival.arrived):
-                return "duplicate", None
-            self._contents.add(arrival.sha256)
-        if reason is not None:
-            return "refused", reason
-        return ("late" if arrival.last < until else "waiting"), None
-
-    def write(self) -> None:
-        """Keep the numbers that have come."""
-        for name, numbers in self._streams.items():
-            c = tables.stream.c
-            where = (c.source == self._source) & (c.stream == name)
-            self._connection.execute(delete(tables.stream).where(where))
-            gaps = json.dumps(numbers.gaps)
-            entry = with_checksum(source=self._source, stream=name, next=numbers.next, gaps=gaps)
-            self._connection.execute(insert(tables.stream).values(**entry))
-
-    def _numbers(self, stream: str) -> Numbers:
-        if stream not in self._streams:
-            c = tables.stream.c
-            where = (c.source == self._source) & (c.stream == stream)
-            found = self._connection.execute(select(tables.stream).where(where)).one_or_none()
-            known = Numbers()
-            if found is not None:
-                values = values_of(tables.stream, found)
-                known = Numbers(values["next"], map(tuple, json.loads(values["gaps"])))
-            self._streams[stream] = known
-        return self._streams[stream]
-
-    def _has_come(self, sha256: str, arrived: int) -> bool:
-        if sha256 in self._contents:
-            return True
-        c = tables.packet.c
-        same = (c.sha256 == sha256) & (c.source == self._source)
-        recent = c.arrived.between(arrived - REMEMBERED, arrived + REMEMBERED)
-        found = select(c.id).where(same & recent).limit(1)
-        return self._connection.execute(found).one_or_none() is not None
 
 
 def _last(connection: Connection, table: Table) -> int:

@@ -78,7 +78,9 @@ def read_line_protocol(payload: bytes, where: str, arrived: int) -> list[SensorP
         for field, written in _FIELD.findall(found["fields"]):
             value = _value(written, place)
             if value is not None:
-                points.append(SensorReading(_ESCAPE.sub(r"\1", f"{series} {field}"), moment, value))
+                name = f"{series} {field}"
+                name = _ESCAPE.sub(r"\1", name) if "\\" in name else name
+                points.append(SensorReading(name, moment, value))
     return packets_of(points, {}, where, timed=timed)
 
 

@@ -57,10 +57,12 @@ def packets_of(
             raise InputError(
                 f"nothing measures {value:g}", where, "leave a reading out where it is missing"
             )
-        own = layers.setdefault(channel, [])
-        layer = next((one for one in own if moment not in one), None)
-        if layer is None:
-            own.append(layer := {})
+        own = layers.setdefault(channel, [{}])
+        layer = own[0]
+        if moment in layer:
+            layer = next((one for one in own if moment not in one), {})
+            if not layer:
+                own.append(layer)
         layer[moment] = value
     _check(layers, where)
     alike: dict[tuple[int, tuple[int, ...]], dict[str, dict[int, float]]] = {}

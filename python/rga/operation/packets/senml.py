@@ -3,7 +3,7 @@
 Source: RFC 8428, Sensor Measurement Lists, section 4 (base fields and resolution).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import msgspec
@@ -47,47 +47,47 @@ def read_senml(payload: bytes, where: str, arrived: int) -> list[SensorPacket]:
         ) from None
     units: dict[str, str] = {}
     points, timed = [], True
-    for record in _resolved(records, where):
-        time = record["t"]
+    for name, unit, time, value in _resolved(records, where):
         moment = round(time * MICROSECONDS)
         if time < _RELATIVE:
             moment, timed = arrived + moment, False
-        points.append(SensorReading(record["n"], checked(moment, where), record["v"]))
-        unit = record["u"]
-        if units.setdefault(record["n"], unit) != unit:
+        points.append(SensorReading(name, checked(moment, where), value))
+        if units.setdefault(name, unit) != unit:
             raise InputError(
-                f"{record['n']!r} is in {units[record['n']]!r} and in {unit!r}", where, "use one"
+                f"{name!r} is in {units[name]!r} and in {unit!r}", where, "use one unit"
             )
     return packets_of(points, units, where, timed=timed)
 
 
-def _resolved(records: list[_Record], where: str) -> Iterator[dict[str, Any]]:
-    """Records that hold a number: name, time, value and unit."""
+def _resolved(records: list[_Record], where: str) -> Iterator[tuple[str, str, float, float]]:
+    """Name, unit, time [s] and value of records that hold a number."""
     base: _Record = {}
+    name, unit, time, value = "", "", 0.0, 0.0
     for record in records:
-        base.update({key: one for key, one in record.items() if key in _BASE})
-        _check_known(record, base, where)
+        if changed := record.keys() & _BASE:
+            base.update({key: record[key] for key in changed})
+            name, unit = (_text(base.get(key, ""), where) for key in ("bn", "bu"))
+            time, value = (_number(base.get(key, 0), where) for key in ("bt", "bv"))
+            if _number(base.get("bver", _VERSION), where) > _VERSION:
+                raise InputError(
+                    f"SenML of version {base['bver']} is not known",
+                    where,
+                    f"write version {_VERSION}",
+                )
+        if unknown := next((key for key in record if key.endswith("_")), None):
+            raise InputError(
+                f"the field {unknown[:20]!r} must be understood, and is not", where, "leave it out"
+            )
         if "v" in record:
-            yield {
-                "n": _text(base.get("bn", ""), where) + _text(record.get("n", ""), where),
-                "t": _number(base.get("bt", 0), where) + _number(record.get("t", 0), where),
-                "v": _number(base.get("bv", 0), where) + _number(record["v"], where),
-                "u": _text(record.get("u", base.get("bu", "")), where),
-            }
+            yield (
+                name + _text(record.get("n", ""), where),
+                _text(record.get("u", unit), where),
+                time + _number(record.get("t", 0), where),
+                value + _number(record["v"], where),
+            )
 
 
-_BASE = {"bn", "bt", "bu", "bv", "bs", "bver"}
-
-
-def _check_known(record: Mapping[str, Any], base: Mapping[str, Any], where: str) -> None:
-    if _number(base.get("bver", _VERSION), where) > _VERSION:
-        raise InputError(
-            f"SenML of version {base['bver']} is not known", where, f"write version {_VERSION}"
-        )
-    if unknown := next((key for key in record if key.endswith("_")), None):
-        raise InputError(
-            f"the field {unknown[:20]!r} must be understood, and is not", where, "leave it out"
-        )
+_BASE = {"bn", "bt", "bu", "bv", "bver"}
 
 
 def _number(value: Any, where: str) -> float:

@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from hashlib import sha256
 
 from rga.errors import InputError
-from rga.operation.inbox.packets import Arrival
+from rga.operation.inbox.arrival import Arrival
 from rga.operation.packets.formats import PACKETS, PayloadFormat
 from rga.operation.rows.samples import Reader
-from rga.operation.sources.clock import ClockWatch
+from rga.operation.sources.clock import ClockSight, ClockWatch
 
 
 def arrival_of(
@@ -36,13 +36,16 @@ def arrival_of(
             packets = reader.packets_of(kind, payload, where, arrived)
             number, timed = packets[0].number, all(one.timed for one in packets)
             moments = [one.times for one in packets]
+            channels = frozenset(name for one in packets for name in one.channels)
         else:
             samples, timed = reader.of_rows(kind, payload, where, arrived)
-            moments = [samples.times]
+            moments, channels = [samples.times], frozenset(samples.names)
     except InputError as error:
         return Arrival(payload, kind, arrived, sha256=digest, refused=str(error), place=where)
     first, last = min(int(one.min()) for one in moments), max(int(one.max()) for one in moments)
-    fault = None if clock is None else clock.refused(where, number, first, last, arrived)
+    fault = None
+    if clock is not None:
+        fault = clock.refused(ClockSight(where, channels, number, first, last, arrived))
     # The same number may be sent again and again, and is another reading each time.
     known = digest if timed and number is None else None
     return Arrival(payload, kind, arrived, first, last, number, known, fault, where)

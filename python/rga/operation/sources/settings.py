@@ -82,6 +82,13 @@ class HttpSource(PayloadSettings):
 
     kind: Literal["http"]
 
+    @field_validator("format")
+    @classmethod
+    def _named(cls, stated: PayloadFormat | None) -> PayloadFormat | None:
+        if stated == "number":
+            raise ValueError("a number that is sent to the service names no channel")
+        return stated
+
 
 class MqttSource(PayloadSettings):
     """A broker that loggers send to.

@@ -5,8 +5,8 @@ from threading import Event, Thread
 from typing import Any, Protocol
 
 from rga.errors import InputError
+from rga.operation.inbox.arrival import Fate
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.inbox.packets import Fate
 
 #: the place that a payload came from, and the payload
 Placed = tuple[str, bytes]

@@ -16,7 +16,7 @@ from rga.operation.alarms.alarm_book import AlarmBook
 from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey, Observation
 from rga.operation.alarms.operator_alarm import AlarmTransition, OperatorAlarm
 from rga.operation.service_file import service_file
-from service_times import NOON, SetClock
+from served.service_times import NOON, SetClock
 
 DELAYS: dict[AlarmKind, tuple[float, float]] = {
     "gap": (0, 0), "quality": (60, 120), "source": (0, 60), "service": (30, 30), "proposal": (0, 0),

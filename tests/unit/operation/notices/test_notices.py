@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from notice_server import NoticeServer, notice_server
 from rga.errors import InputError
 from rga.operation.alarms import tables
 from rga.operation.alarms.alarm_book import AlarmBook
@@ -16,7 +15,8 @@ from rga.operation.notices.delivery import Delivery
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.notices.outbox import Outbox
 from rga.operation.service_file import service_file
-from service_times import NOON, SetClock
+from served.notice_server import NoticeServer, notice_server
+from served.service_times import NOON, SetClock
 
 KINDS: frozenset[AlarmKind] = frozenset({"gap", "quality", "source", "service", "proposal"})
 HOUR, DAY = 3600.0, 86_400.0

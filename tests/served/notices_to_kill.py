@@ -11,7 +11,7 @@ from rga.operation.notices.delivery import Delivery
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.notices.outbox import Outbox
 from rga.operation.service_file import service_file
-from service_times import SetClock
+from served.service_times import SetClock
 
 
 def main(folder: Path, rounds: int) -> None:
