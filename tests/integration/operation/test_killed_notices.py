@@ -58,7 +58,7 @@ def told_until_it_is_killed(folder: Path, server: NoticeServer, draw: random.Ran
 def run(folder: Path, rounds: int) -> ForkServerProcess:
     """A process that tells of alarms; what it needs is imported once for all of them."""
     context = get_context("forkserver")
-    context.set_forkserver_preload(["notices_to_kill"])
+    context.set_forkserver_preload(["served.notices_to_kill"])
     process = context.Process(target=notices_to_kill.main, args=(folder, rounds))
     process.start()
     return process
