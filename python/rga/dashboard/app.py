@@ -3,9 +3,14 @@
 from dataclasses import asdict
 from typing import Any
 
-from fastapi import FastAPI, HTTPException, Request
+from fastapi import Depends, FastAPI, HTTPException, Request
 from starlette.concurrency import run_in_threadpool
 
+from rga.dashboard.access.access import Access
+from rga.dashboard.access.guard import Guard
+from rga.dashboard.access.login import router as login
+from rga.dashboard.access.login import to_login
+from rga.dashboard.access.may import NotLoggedIn, may
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.operation.packets.packet import MOST_BYTES
@@ -21,8 +26,15 @@ def app_of(service: Service) -> FastAPI:
 
     Args:
         service: that runs.
+
+    Raises:
+        InputError: anybody could come in.
     """
     app = FastAPI(title="rga", docs_url=None, redoc_url=None, openapi_url="/api/v1/openapi.json")
+    app.state.access = Access(service.configuration.service)
+    app.add_middleware(Guard, access=app.state.access)
+    app.add_exception_handler(NotLoggedIn, to_login)
+    app.include_router(login)
 
     def twin_of(name: str) -> ServedTwin:
         if name not in service.twins:
@@ -33,7 +45,7 @@ def app_of(service: Service) -> FastAPI:
     def health() -> dict[str, str]:
         return {"state": "up"}
 
-    @app.post("/api/v1/twins/{twin}/packets")
+    @app.post("/api/v1/twins/{twin}/packets", dependencies=[Depends(may("ingest"))])
     async def packets(twin: str, request: Request) -> dict[str, Any]:
         """Take a packet in; the answer comes when it is on the disk."""
         served = twin_of(twin)
@@ -53,7 +65,7 @@ def app_of(service: Service) -> FastAPI:
             told["stored" if fate == "waiting" else fate] = 1
         return told
 
-    @app.get("/api/v1/twins/{twin}/account")
+    @app.get("/api/v1/twins/{twin}/account", dependencies=[Depends(may("viewer"))])
     def account(twin: str) -> dict[str, Any]:
         """What became of every packet, by source."""
         served = twin_of(twin)

@@ -1,6 +1,7 @@
 """What `rga serve` does: its twins, where their data comes from, and how rows are made of it."""
 
 import re
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
@@ -34,6 +35,14 @@ def duration_of(given: Any) -> float:
 Duration = Annotated[float, BeforeValidator(duration_of), Field(gt=0, le=366 * 86_400)]
 #: as it stands in addresses, topics and names of folders
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
+
+
+def _address(given: Any) -> str:
+    return str(ip_address(given))
+
+
+#: of a machine, as numbers
+Address = Annotated[str, BeforeValidator(_address)]
 
 
 class _Table(BaseModel):
@@ -186,6 +195,9 @@ class ServiceSettings(_Table):
         listen: address and port of the API and the pages.
         data: folder of the twins, beside the configuration.
         repository: URL of a PostgreSQL database for the repositories; None: they are in `data`.
+        certificate, key: files of TLS, beside the configuration; None: plain HTTP.
+        trusted_proxies: addresses of proxies that are believed for whom they call.
+        user_header: by which they say whom they have let in; None: they let nobody in.
     """
 
     listen: Annotated[str, Field(pattern=r"^(\[[0-9a-f:]+\]|[A-Za-z0-9.-]+):\d{1,5}$")] = (
@@ -193,6 +205,18 @@ class ServiceSettings(_Table):
     )
     data: Path = Path("data")
     repository: str | None = None
+    certificate: Path | None = None
+    key: Path | None = None
+    trusted_proxies: tuple[Address, ...] = ()
+    user_header: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9-]{0,63}$")] | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> "ServiceSettings":
+        if (self.certificate is None) != (self.key is None):
+            raise ValueError("certificate and key come together")
+        if self.user_header is not None and not self.trusted_proxies:
+            raise ValueError("user_header: anybody could send it; name a proxy in trusted_proxies")
+        return self
 
 
 class Configuration(_Table):

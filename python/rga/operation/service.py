@@ -34,6 +34,7 @@ class Service:
         configuration: of it.
 
     Attributes:
+        configuration: of it.
         twins: by name.
         faults: what keeps a source or the rows of a twin from going on, in words, by twin and
             source.
@@ -47,7 +48,7 @@ class Service:
             for one in configuration.twin
         }
         self.faults: dict[tuple[str, str], str] = {}
-        self._configuration = configuration
+        self.configuration = configuration
         self._ending = Event()
         self._threads: list[Thread] = []
         self._brokers: list[Any] = []
@@ -56,7 +57,7 @@ class Service:
     def start(self) -> None:
         """Begin to take data in and to play the twins."""
         self._threads = [Thread(target=self._seal, name="rows", daemon=True)]
-        for twin in self._configuration.twin:
+        for twin in self.configuration.twin:
             for source in twin.source:
                 self._begin(self.twins[twin.name], source)
         for thread in self._threads:
