@@ -5,12 +5,14 @@ from typing import Any
 
 from fastapi import Depends, FastAPI, HTTPException, Request
 from starlette.concurrency import run_in_threadpool
+from starlette.staticfiles import StaticFiles
 
 from rga.dashboard.access.access import Access
 from rga.dashboard.access.guard import Guard
 from rga.dashboard.access.login import router as login
 from rga.dashboard.access.login import to_login
 from rga.dashboard.access.may import NotLoggedIn, may
+from rga.dashboard.pages.routes import pages_of
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.operation.packets.packet import MOST_BYTES
@@ -22,7 +24,7 @@ AGAIN = 5
 
 
 def app_of(service: Service) -> FastAPI:
-    """The API of a service.
+    """The API and the pages of a service.
 
     Args:
         service: that runs.
@@ -35,6 +37,8 @@ def app_of(service: Service) -> FastAPI:
     app.add_middleware(Guard, access=app.state.access)
     app.add_exception_handler(NotLoggedIn, to_login)
     app.include_router(login)
+    app.include_router(pages_of(service))
+    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
 
     def twin_of(name: str) -> ServedTwin:
         if name not in service.twins:

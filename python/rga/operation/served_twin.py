@@ -29,6 +29,11 @@ class ServedTwin:
         directory: of the twin, which is made.
         repository: URL of a PostgreSQL database, or None.
 
+    Attributes:
+        sources: their names.
+        inbox: rows and commands that wait for it.
+        packets: that have come.
+
     Raises:
         InputError: its model, its settings or a mapping cannot be used.
     """
@@ -45,12 +50,13 @@ class ServedTwin:
             repository=repository,
         ).close()
         self._sources = {source_name(one): one for one in settings.source}
+        self.sources = tuple(self._sources)
         self._readers = {
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }
-        self._inbox = Inbox(directory)
-        self.packets = Packets(self._inbox)
-        self._sealing = Sealing(self._inbox, self.packets, model, self._readers, settings.rows.grid)
+        self.inbox = Inbox(directory)
+        self.packets = Packets(self.inbox)
+        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, settings.rows.grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
         self._lock = Lock()
@@ -98,7 +104,7 @@ class ServedTwin:
 
     def close(self) -> None:
         """Close the file of the inbox."""
-        self._inbox.close()
+        self.inbox.close()
 
 
 def live_settings(path: Path) -> Settings:

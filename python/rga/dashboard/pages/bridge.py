@@ -26,7 +26,7 @@ from rga.report.figures.of_run.run_gap import mean
 #: half of a 90 % interval [standard deviations]
 HALF_WIDTH = 1.645
 #: events that the page lists
-LISTED = 12
+LISTED = 8
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     return found | {
         "now": now,
         "gap": None if now.recent is None else number(now.recent, 2),
-        "level": gap_level(now.recent),
+        "level_now": gap_level(now.recent),
         "age": age_words(now.time, Surroundings.now()),
         "rows": rows,
         "sensor_of": {one.number: one for one in rows},
@@ -95,12 +95,12 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
         "drawings": elevations(
             twin.given, _marked(now, twin.given), {k: one.recent or 0.0 for k, one in now.sensors.items()}
         ),
-        "marked": now.undecided.words if now.undecided else "",
+        "marked": now.undecided is not None,
         "strip": _strip(seen.name, series, window, marks(seen.name, events, window)),
         "versions": _versions(seen, window, now),
         "contexts": _contexts(twin.given, now, series, window),
         "span": chosen.span,
-        "spans": tuple(SPANS),
+        "spans_known": tuple(SPANS),
         "events": happened(seen.name, events)[:LISTED],
     }
 

@@ -22,7 +22,9 @@ SIGNS = {
     "command": "✎",
     "novel context": "+",
 }
+#: those that are marked over time, the weightiest first, and how many marks there are at most
 MARKED = ("alarm", "proposal", "version", "rollback", "recalibration", "recall", "calibration")
+MOST_MARKS = 40
 
 
 @dataclass(frozen=True)
@@ -62,13 +64,19 @@ def happened(twin: str, events: Iterable[Event]) -> list[Happened]:
 
 
 def marks(twin: str, events: Iterable[Event], window: Window) -> list[Mark]:
-    """Events that are marked over time."""
-    found = []
+    """Events that are marked over time; of those at one place the sign of the weightiest."""
+    places: dict[int, list[Event]] = {}
     for one in events:
         if one.kind in MARKED:
-            time = of_event(one.time)
-            at = window.share((time - window.start).total_seconds())
-            found.append(Mark(round(at, 2), one.kind, f"{one.kind}: {one.words}", as_of(twin, time)))
+            at = window.share((of_event(one.time) - window.start).total_seconds())
+            places.setdefault(round(at), []).append(one)
+    found = []
+    for here in list(places.values())[-MOST_MARKS:]:
+        first = min(here, key=lambda one: MARKED.index(one.kind))
+        time = of_event(first.time)
+        at = window.share((time - window.start).total_seconds())
+        words = "; ".join(f"{one.kind}: {one.words}" for one in here)
+        found.append(Mark(round(at, 2), first.kind, words, as_of(twin, time)))
     return found
 
 
