@@ -111,6 +111,25 @@ class TwinReading:
                 self._now = twin_now(twin, view, dict(zip(*self._noise_by_name(twin), strict=True)))
             return self._now
 
+    def as_of(self, elapsed: float) -> TwinNow | None:
+        """Where the twin stood when its rows had reached a time [s since the first].
+
+        Returns:
+            None where it had not begun then.
+
+        Raises:
+            InputError: its repository cannot be read.
+        """
+        with self._lock:
+            twin = self.twin
+            if twin is None:
+                return None
+            past = self._begun().as_of(time=max(0.0, elapsed))
+            if past.row < 0 or not past.versions():
+                return None
+            noise = dict(zip(*self._noise_by_name(twin), strict=True))
+            return twin_now(Twin(past, self._place), past, noise)
+
     def events(self) -> tuple[Event, ...]:
         """What happened to the twin, in order."""
         view = self._view()

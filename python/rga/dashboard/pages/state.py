@@ -1,0 +1,67 @@
+"""How a twin is, in a word, and how much it needs somebody to look."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from rga.dashboard.pages.times import span_words
+from rga.operation.reading.twin_now import TwinNow
+from rga.quantities import number
+from rga.twin.status import NEXT
+
+#: rows that are not played yet, from which on a twin is said to be behind
+BEHIND = 50
+LEARNS = ("initialise", "gather", "calibrate")
+
+
+@dataclass(frozen=True)
+class State:
+    """How a twin is.
+
+    Attributes:
+        word: that says it.
+        style: by which the style sheet gives it a colour.
+        sign: a shape beside the word.
+        need: of attention; the least comes first.
+        words: the same in a sentence.
+    """
+
+    word: str
+    style: str
+    sign: str
+    need: int
+    words: str
+
+
+def damaged(words: str) -> State:
+    """Of a twin whose repository cannot be read."""
+    return State("damaged", "bad", "✕", 0, f"Its repository cannot be read: {words}")
+
+
+def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> State:
+    """How a twin is.
+
+    Args:
+        now: where it stands; None before it has begun.
+        at: when this is asked.
+        patience: after which it counts as silent [s].
+        lag: rows that it has not played yet.
+    """
+    if now is None or now.time is None:
+        return State("no rows yet", "wait", "○", 5, "It waits for its first rows.")
+    if now.out_of_sync:
+        words = "Readings have left what the model lets expect; the reason is being looked for."
+        return State("alarm", "bad", "▲", 1, words)
+    if now.undecided is not None:
+        words = f"A cause was found and waits for a decision: {now.undecided.words}."
+        return State("to decide", "warn", "◆", 2, words)
+    silence = (at - now.time).total_seconds()
+    if silence > 2 * patience and lag == 0:
+        words = f"The newest row is {span_words(silence)} old: its sources are silent."
+        return State("silent", "warn", "◇", 3, words)
+    if now.stage in LEARNS:
+        words = f"{number(now.rows)} rows have come; {NEXT[now.stage]}."
+        return State("learning", "wait", "◌", 5, words)
+    if lag > BEHIND:
+        return State("behind", "warn", "◁", 4, f"{lag} rows wait to be played.")
+    extra = f" It has {', '.join(now.causes)} beyond the model as given." if now.causes else ""
+    return State("in step", "good", "●", 6, f"Readings are as the model lets expect.{extra}")
