@@ -1,13 +1,16 @@
 """Plays many live twins in turn: a lease on each, what is due, and on to the next."""
 
+import time
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Literal
 
 from rga.errors import InputError
 from rga.files import as_path
 from rga.jobs.live import LiveTwin
+from rga.jobs.run import FILE
+from rga.twin.hardware.inbox import INBOX
 from rga.twin.history import Event
 from rga.twin.repository import InUse
 from rga.twin.runner import Running
@@ -15,6 +18,8 @@ from rga.twin.runner import Running
 Kind = Literal["watch", "heavy"]
 #: failures of a twin one after the other, after which a worker leaves it alone
 MOST_FAILURES = 3
+#: how long a twin is not looked at while nothing is written where it is [s]
+UNCHANGED = 5.0
 
 
 class Worker:
@@ -45,10 +50,19 @@ class Worker:
         self._directories = [as_path(one, "directories") for one in directories]
         self._kinds, self._repository = frozenset(kinds), repository
         self._failures: Counter[Path] = Counter()
+        self._idle: dict[Path, tuple[float, list[int]]] = {}
         self.failed: dict[Path, str] = {}
 
-    def round(self) -> dict[Path, list[Event]]:
+    def round(
+        self, told: Callable[[Path | None], None] = lambda directory: None
+    ) -> dict[Path, list[Event]]:
         """Play what is due in every twin that no other plays.
+
+        A twin in which nothing was due is not looked at again before something is written in its
+        directory, or for some seconds.
+
+        Args:
+            told: called with the twin that is looked at next, and with None at the end.
 
         Returns:
             What happened, for every twin to which something did.
@@ -57,6 +71,11 @@ class Worker:
         for directory in self._directories:
             if self._failures[directory] >= MOST_FAILURES:
                 continue
+            written = _written(directory)
+            since, before = self._idle.get(directory, (0.0, None))
+            if written == before and time.monotonic() - since < UNCHANGED:
+                continue
+            told(directory)
             try:
                 with LiveTwin(directory, self._repository, patience=0.0) as twin:
                     events = twin.play(self._takes)
@@ -68,9 +87,24 @@ class Worker:
                 continue
             self._failures[directory] = 0
             self.failed.pop(directory, None)
+            self._idle[directory] = time.monotonic(), written
             if events:
                 happened[directory] = events
+        told(None)
         return happened
 
     def _takes(self, running: Running) -> bool:
         return ("watch" if running.is_short else "heavy") in self._kinds
+
+
+def _written(directory: Path) -> list[int]:
+    """When the files of a twin were last written [ns]; 0 for those that are not there."""
+    files = [f"{name}{log}" for name in (INBOX, FILE) for log in ("", "-wal")]
+    return [_changed(directory / name) for name in files]
+
+
+def _changed(file: Path) -> int:
+    try:
+        return file.stat().st_mtime_ns
+    except OSError:
+        return 0

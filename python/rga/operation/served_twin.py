@@ -59,6 +59,8 @@ class ServedTwin:
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, settings.rows.grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
+        # Sources that were silent when rows were last made of all that had come.
+        self._sealed_for: set[str] | None = None
         self._lock = Lock()
 
     @property
@@ -89,6 +91,7 @@ class ServedTwin:
         ]
         fates = self.packets.receive(source, arrivals, cursor)
         self._heard[source] = time.monotonic()
+        self._sealed_for = None
         return [(fate, one.refused) for fate, one in zip(fates, arrivals, strict=True)]
 
     def numbers(self, source: str) -> dict[str, Numbers]:
@@ -98,9 +101,16 @@ class ServedTwin:
     def seal(self) -> int:
         """Make rows of what is final; how many are new."""
         now = time.monotonic()
-        silent = [name for name, since in self._heard.items() if now - since > self._patience]
+        silent = {name for name, since in self._heard.items() if now - since > self._patience}
         with self._lock:
-            return self._sealing.seal(silent)
+            if silent == self._sealed_for:
+                return 0
+            self._sealed_for = silent
+            try:
+                return self._sealing.seal(silent)
+            except BaseException:
+                self._sealed_for = None
+                raise
 
     def close(self) -> None:
         """Close the file of the inbox."""

@@ -1,15 +1,11 @@
 """The service: sources, rows and workers, from the start to the end."""
 
-import multiprocessing
-import time
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from threading import Event, Thread
 from typing import Any
 
 from rga.errors import InputError
-from rga.jobs.worker import Kind, Worker
 from rga.operation.configuration import (
     Configuration,
     FolderSource,
@@ -20,9 +16,10 @@ from rga.operation.configuration import (
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.served_twin import ServedTwin
 from rga.operation.sources.folder import Folder
+from rga.operation.workers import Workers
 
-#: how often rows are sealed, and how long a worker rests where nothing is due [s]
-SEAL, REST = 0.2, 0.2
+#: how often rows are sealed [s]
+SEAL = 0.2
 #: lines before the first row of a text file, where a mapping does not say it
 HEAD_LINES = 1
 
@@ -38,21 +35,22 @@ class Service:
         twins: by name.
         faults: what keeps a source or the rows of a twin from going on, in words, by twin and
             source.
+        workers: play the twins.
     """
 
     def __init__(self, configuration: Configuration) -> None:
         service = configuration.service
-        self._repository, self._data = service.repository, service.data
         self.twins = {
             one.name: ServedTwin(one, service.data / one.name, service.repository)
             for one in configuration.twin
         }
+        places = [one.directory for one in self.twins.values()]
+        self.workers = Workers(places, service.repository)
         self.faults: dict[tuple[str, str], str] = {}
         self.configuration = configuration
         self._ending = Event()
         self._threads: list[Thread] = []
         self._brokers: list[Any] = []
-        self._workers: list[multiprocessing.process.BaseProcess] = []
 
     def start(self) -> None:
         """Begin to take data in and to play the twins."""
@@ -62,12 +60,7 @@ class Service:
                 self._begin(self.twins[twin.name], source)
         for thread in self._threads:
             thread.start()
-        spawn = multiprocessing.get_context("spawn")
-        places = [one.directory for one in self.twins.values()]
-        for kind in ("watch", "heavy"):
-            work = partial(_play, places, [kind], self._repository)
-            self._workers.append(spawn.Process(target=work, name=kind, daemon=True))
-            self._workers[-1].start()
+        self.workers.start()
 
     def stop(self) -> None:
         """Let go of everything: what was acknowledged is kept."""
@@ -76,9 +69,7 @@ class Service:
             broker.stop()
         for thread in self._threads:
             thread.join()
-        for worker in self._workers:
-            worker.terminate()
-            worker.join()
+        self.workers.stop()
         for twin in self.twins.values():
             twin.close()
 
@@ -130,12 +121,3 @@ def _keep(
 ) -> dict[str, Numbers]:
     twin.receive(source, payloads)
     return twin.numbers(source)
-
-
-def _play(places: Sequence[Path], kinds: Collection[Kind], repository: str | None) -> None:
-    """What a worker does until it is ended, or the service is gone."""
-    worker = Worker(places, kinds, repository)
-    service = multiprocessing.parent_process()
-    while service is None or service.is_alive():
-        if not worker.round():
-            time.sleep(REST)

@@ -1,7 +1,9 @@
 """What somebody may do."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
+
+from rga.errors import InputError
 
 #: of a person
 Role = Literal["viewer", "operator", "admin"]
@@ -10,6 +12,8 @@ Purpose = Literal["ingest", "read", "operate"]
 #: what is asked of whoever calls: to send packets, to look, to decide, to rule over users
 Right = Literal["ingest", "viewer", "operator", "admin"]
 
+_ROLES: tuple[Role, ...] = get_args(Role)
+_PURPOSES: tuple[Purpose, ...] = get_args(Purpose)
 _RIGHTS: dict[str, frozenset[Right]] = {
     "ingest": frozenset({"ingest"}),
     "read": frozenset({"viewer"}),
@@ -47,3 +51,31 @@ class Who:
         (True, False, False)
         """
         return right in _RIGHTS[self.role] and self.twin in (None, twin)
+
+
+def role_named(given: str, where: str) -> Role:
+    """A role by its name.
+
+    Raises:
+        InputError: it is none.
+    """
+    for one in _ROLES:
+        if one == given:
+            return one
+    raise _unknown(f"{given!r} is no role", where, _ROLES)
+
+
+def purpose_named(given: str, where: str) -> Purpose:
+    """A purpose by its name.
+
+    Raises:
+        InputError: it is none.
+    """
+    for one in _PURPOSES:
+        if one == given:
+            return one
+    raise _unknown(f"no token is for {given!r}", where, _PURPOSES)
+
+
+def _unknown(what: str, where: str, known: tuple[str, ...]) -> InputError:
+    return InputError(what, where, f"take one of {', '.join(known)}")

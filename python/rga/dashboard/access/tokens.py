@@ -2,12 +2,12 @@
 
 import time
 from dataclasses import dataclass
-from typing import get_args
 
 from sqlalchemy import delete, insert, select
 
 from rga.dashboard.access import tables
 from rga.dashboard.access.drawn import Clock, digest, drawn
+from rga.dashboard.access.names import check_is_free, check_name
 from rga.dashboard.access.roles import Purpose, Who
 from rga.errors import InputError
 from rga.twin.repository.checksum import with_checksum
@@ -46,22 +46,16 @@ class Tokens:
         """Make a token, and return the secret, which is kept nowhere.
 
         Raises:
-            InputError: there is a token of this name, or it can be for no such purpose.
+            InputError: there is a user or token of this name, or it is none.
         """
         where = f"token {name!r}"
-        if purpose not in get_args(Purpose):
-            known = ", ".join(get_args(Purpose))
-            raise InputError(f"no token is for {purpose!r}", where, f"take one of {known}")
-        if not name.isprintable() or not 1 <= len(name) <= 200:
-            raise InputError("this is no name", where, "take 1 to 200 visible letters")
+        check_name(name, where)
         secret = drawn()
         entry = with_checksum(
             sha256=digest(secret), name=name, purpose=purpose, twin=twin, made=self._clock()
         )
         with self._file.writing() as connection:
-            same = select(tables.token).where(tables.token.c.name == name)
-            if connection.execute(same).first() is not None:
-                raise InputError("there is such a token", where, "remove it, or take another name")
+            check_is_free(connection, name, where)
             connection.execute(insert(tables.token).values(**entry))
         return secret
 

@@ -1,18 +1,14 @@
 """The users of a service."""
 
-from typing import get_args
-
 from sqlalchemy import delete, func, insert, select, update
 
 from rga.dashboard.access import tables
+from rga.dashboard.access.names import check_is_free, check_name
 from rga.dashboard.access.passwords import NOBODYS, hashed, matches
 from rga.dashboard.access.roles import Role
 from rga.errors import InputError
 from rga.twin.repository.checksum import with_checksum
 from rga.twin.repository.table_file import TableFile, values_of
-
-#: letters of a name
-LONGEST_NAME = 64
 
 
 class Users:
@@ -45,21 +41,25 @@ class Users:
         """Let somebody in from now on.
 
         Raises:
-            InputError: there is such a user, or the name or the password is none.
+            InputError: there is such a user or token, or the name or the password is none.
         """
         where = f"user {name!r}"
-        if not name.isprintable() or name != name.strip() or not 1 <= len(name) <= LONGEST_NAME:
-            raise InputError("this is no name", where, f"take 1 to {LONGEST_NAME} visible letters")
-        if role not in get_args(Role):
-            raise InputError(
-                f"{role!r} is no role", where, f"take one of {', '.join(get_args(Role))}"
-            )
+        check_name(name, where)
         entry = with_checksum(name=name, role=role, hash=hashed(password, name))
         with self._file.writing() as connection:
-            known = select(tables.user).where(tables.user.c.name == name)
-            if connection.execute(known).one_or_none() is not None:
-                raise InputError("there is such a user", where, "remove it first")
+            check_is_free(connection, name, where)
             connection.execute(insert(tables.user).values(**entry))
+
+    def check_is_new(self, name: str) -> None:
+        """Whether somebody of this name can be added.
+
+        Raises:
+            InputError: there is such a user or token, or this is no name.
+        """
+        where = f"user {name!r}"
+        check_name(name, where)
+        with self._file.reading() as connection:
+            check_is_free(connection, name, where)
 
     def remove(self, name: str) -> None:
         """Let somebody in no more; open sessions end.

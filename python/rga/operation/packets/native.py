@@ -194,10 +194,13 @@ def _times(written: NativePacket, rows: int, where: str) -> Moments:
     """Moments of the rows, int64[n]."""
     if written.t is not None and written.dt is not None:
         raise InputError("it has dt and t", where, "give one of the two")
+    start = (written.t0 - EPOCH) // timedelta(microseconds=1)
+    if rows == 1 and written.t is None:
+        return np.array([start])
     if written.t is None:
-        if rows > 1 and written.dt is None:
+        if written.dt is None:
             raise InputError(f"{rows} rows have no times", where, "give dt or t")
-        since = np.arange(rows) * (written.dt or 0.0)
+        since = np.arange(rows) * written.dt
     else:
         since = np.array(written.t, dtype=float)
         if len(since) != rows:
@@ -211,5 +214,4 @@ def _times(written: NativePacket, rows: int, where: str) -> Moments:
         raise InputError(
             "its times do not rise by a microsecond at least", where, "write rows as they follow"
         )
-    start = (written.t0 - EPOCH) // timedelta(microseconds=1)
     return np.asarray(start + after)

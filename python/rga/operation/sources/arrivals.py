@@ -21,7 +21,6 @@ def arrival_of(
         reader: of the source.
         clock: what is believed of its clock; None: all.
     """
-    digest = sha256(where.encode() + b"\0" + payload).hexdigest()
     kind: Kind = "file"
     number = None
     try:
@@ -31,8 +30,12 @@ def arrival_of(
         else:
             times = reader.of_file(payload).times
     except InputError as error:
-        return Arrival(payload, kind, arrived, sha256=digest, refused=str(error))
+        return Arrival(payload, kind, arrived, sha256=_digest(where, payload), refused=str(error))
     first, last = int(times[0]), int(times[-1])
     fault = None if clock is None else clock.fault(first, last, arrived)
-    known = None if number else digest
+    known = None if number else _digest(where, payload)
     return Arrival(payload, kind, arrived, first, last, number, known, fault)
+
+
+def _digest(where: str, payload: bytes) -> str:
+    return sha256(where.encode() + b"\0" + payload).hexdigest()

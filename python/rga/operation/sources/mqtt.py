@@ -19,8 +19,8 @@ from paho.mqtt.subscribeoptions import SubscribeOptions
 from rga.errors import InputError
 from rga.operation.inbox.numbers import Numbers
 
-#: messages that are kept together, and how long the first of them waits for others [s]
-MOST_MESSAGES, LONGEST_WAIT = 256, 0.05
+#: messages that are kept together
+MOST_MESSAGES = 256
 #: messages that the broker sends before the first of them is acknowledged
 RECEIVE_MAXIMUM = 100
 #: how long the broker keeps what is sent while the service is away [s]
@@ -138,16 +138,14 @@ class Broker:
                 self._keep_batch(batch)
 
     def _batch(self) -> list[MQTTMessage]:
+        """What has come meanwhile: the more there is, the more is kept at once."""
+        batch: list[MQTTMessage] = []
         try:
-            batch = [self._waiting.get(timeout=1.0)]
+            batch.append(self._waiting.get(timeout=1.0))
+            while len(batch) < MOST_MESSAGES:
+                batch.append(self._waiting.get_nowait())
         except Empty:
-            return []
-        until = time.monotonic() + LONGEST_WAIT
-        while len(batch) < MOST_MESSAGES:
-            try:
-                batch.append(self._waiting.get(timeout=max(0.0, until - time.monotonic())))
-            except Empty:
-                break
+            pass
         return batch
 
     def _keep_batch(self, batch: Sequence[MQTTMessage]) -> None:

@@ -1,0 +1,130 @@
+"""The processes that play the twins of a service: each is begun anew when it ends."""
+
+import multiprocessing
+import time
+from collections import Counter
+from collections.abc import Sequence
+from ctypes import c_int
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+from threading import Event, Thread
+
+from rga.jobs.worker import MOST_FAILURES, Kind, Worker
+
+#: how long a worker rests where nothing is due [s]
+REST = 0.2
+KINDS: tuple[Kind, ...] = ("watch", "heavy")
+NONE = -1
+
+
+class Workers:
+    """Plays the twins of a service, short steps and long ones in processes of their own.
+
+    What a worker was at when it was killed is done again by the next. A twin at which workers
+    ended three times is left alone, so that it does not keep the others from being played.
+
+    Args:
+        places: directories of the twins.
+        repository: URL of a PostgreSQL database, or None.
+
+    """
+
+    def __init__(self, places: Sequence[Path], repository: str | None) -> None:
+        self._places, self._repository = list(places), repository
+        self._spawn = multiprocessing.get_context("spawn")
+        self._ended: Counter[Path] = Counter()
+        self._at: dict[Kind, tuple[list[Path], c_int]] = {}
+        self._told: dict[Kind, dict[Path, str]] = {}
+        self._left_alone: dict[Path, str] = {}
+        self._ending = Event()
+        self._threads: list[Thread] = []
+
+    @property
+    def failed(self) -> dict[Path, str]:
+        """Why a twin cannot be played, by its directory."""
+        found = dict(self._left_alone)
+        for told in list(self._told.values()):
+            found |= told
+        return found
+
+    @property
+    def at(self) -> dict[Kind, Path]:
+        """The twins that are played right now, by the kind of worker."""
+        found = [(kind, places, at.value) for kind, (places, at) in list(self._at.items())]
+        return {kind: places[number] for kind, places, number in found if number != NONE}
+
+    def start(self) -> None:
+        """Begin to play."""
+        self._threads = [
+            Thread(target=self._keep_one, args=[kind], name=f"worker {kind}", daemon=True)
+            for kind in KINDS
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    def stop(self) -> None:
+        """End: what a worker is at is done again by the next."""
+        self._ending.set()
+        for thread in self._threads:
+            thread.join()
+
+    def _keep_one(self, kind: Kind) -> None:
+        """A worker of a kind, and another when it ends."""
+        while not self._ending.is_set():
+            places = [one for one in self._places if one not in self._left_alone]
+            # Without a lock, which a worker that is killed might hold for ever.
+            at = self._spawn.RawValue("i", NONE)
+            self._at[kind] = places, at
+            here, there = self._spawn.Pipe(duplex=False)
+            work = (places, kind, self._repository, at, there)
+            process = self._spawn.Process(target=_play, args=work, name=kind, daemon=True)
+            process.start()
+            there.close()
+            self._listen(kind, process, here)
+            if not self._ending.is_set():
+                self._count(places, at.value, process.exitcode)
+
+    def _listen(self, kind: Kind, process: BaseProcess, told: "Connection[object, object]") -> None:
+        """Hear which twins fail until the worker ends, or everything does."""
+        while process.is_alive() and not self._ending.is_set():
+            try:
+                if told.poll(REST):
+                    self._told[kind] = dict(told.recv())  # type: ignore[call-overload]
+            except (EOFError, OSError):
+                self._ending.wait(REST)
+        process.terminate()
+        process.join()
+        told.close()
+
+    def _count(self, places: Sequence[Path], at: int, code: int | None) -> None:
+        if at == NONE:
+            # It ended at nothing: another may fare better a little later.
+            self._ending.wait(1.0)
+            return
+        self._ended[places[at]] += 1
+        if self._ended[places[at]] >= MOST_FAILURES:
+            words = f"its worker ended {MOST_FAILURES} times (exit code {code}): is there memory?"
+            self._left_alone[places[at]] = words
+
+
+def _play(
+    places: Sequence[Path],
+    kind: Kind,
+    repository: str | None,
+    at: c_int,
+    told: "Connection[object, object]",
+) -> None:
+    """What a worker does until it is ended, or the service is gone."""
+    worker, before = Worker(places, [kind], repository), dict[Path, str]()
+    service = multiprocessing.parent_process()
+
+    def looks(directory: Path | None) -> None:
+        at.value = NONE if directory is None else places.index(directory)
+
+    while service is None or service.is_alive():
+        if not worker.round(looks):
+            time.sleep(REST)
+        if worker.failed != before:
+            before = dict(worker.failed)
+            told.send(before)
