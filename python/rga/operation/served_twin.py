@@ -30,6 +30,7 @@ class ServedTwin:
         repository: URL of a PostgreSQL database, or None.
 
     Attributes:
+        model: as it was given.
         sources: their names.
         inbox: rows and commands that wait for it.
         packets: that have come.
@@ -40,7 +41,7 @@ class ServedTwin:
 
     def __init__(self, settings: TwinSettings, directory: Path, repository: str | None) -> None:
         self.name, self.directory = settings.name, directory
-        model = load_model(settings.model)
+        self.model = model = load_model(settings.model)
         live(
             model,
             directory,
@@ -54,9 +55,9 @@ class ServedTwin:
         self._readers = {
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }
-        self.inbox = Inbox(directory)
-        self.packets = Packets(self.inbox)
-        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, settings.rows.grid)
+        self.inbox, grid = Inbox(directory), settings.rows.grid
+        self.packets = Packets(self.inbox, grid, self._sources)
+        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
         # Sources that were silent when rows were last made of all that had come.

@@ -17,6 +17,7 @@ from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from rga.errors import InputError
+from rga.operation.credentials import read_credentials
 from rga.operation.inbox.numbers import Numbers
 
 #: messages that are kept together
@@ -63,7 +64,8 @@ class Broker:
         keep: Keep,
     ) -> None:
         parts = urlsplit(url)
-        self._host, self._port = parts.hostname or "", parts.port or 1883
+        secure = parts.scheme == "mqtts"
+        self._host, self._port = parts.hostname or "", parts.port or (8883 if secure else 1883)
         self._topics, self._keep = tuple(topics), keep
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
@@ -72,7 +74,7 @@ class Broker:
         self._ending = Event()
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
-        self._client = self._made(f"rga-{twin}-{source}", parts.scheme == "mqtts", credentials)
+        self._client = self._made(f"rga-{twin}-{source}", secure, credentials)
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
 
@@ -96,12 +98,7 @@ class Broker:
     def _made(self, name: str, secure: bool, credentials: Path | None) -> Client:
         client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
         if credentials is not None:
-            lines = credentials.read_text("utf-8").splitlines()
-            if len(lines) < 2:
-                raise InputError(
-                    "a file of credentials has two lines", str(credentials), "user, then password"
-                )
-            client.username_pw_set(lines[0], lines[1])
+            client.username_pw_set(*read_credentials(credentials))
         if secure:
             client.tls_set_context(ssl.create_default_context())
         client.will_set(self._status, "offline", qos=1, retain=True)
