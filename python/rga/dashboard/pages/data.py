@@ -9,6 +9,7 @@ from rga.dashboard.pages.heading import heading, heading_of_damaged
 from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
+from rga.operation.inbox.refused import refused_packets
 from rga.operation.packets.packet import EPOCH
 from rga.quantities import fixed, percent
 
@@ -63,12 +64,12 @@ class RefusedLine:
 
 def data_page(seen: Seen) -> dict[str, Any]:
     """What the page of data shows; it can be drawn whatever became of the repository."""
-    packets, now = seen.served.packets, None
+    now = None
     try:
         now = seen.reading.now()
         top = heading(seen, now)
     except InputError as error:
-        top = heading_of_damaged(seen.name, error)
+        top = heading_of_damaged(seen, error)
     disk = shutil.disk_usage(seen.served.directory)
     return {
         "heading": top,
@@ -76,7 +77,7 @@ def data_page(seen: Seen) -> dict[str, Any]:
         "sources": _sources(seen),
         "refused": [
             RefusedLine(one.source, time_of(one.arrived), one.reason, safe_sample(one.payload))
-            for one in packets.refused(REFUSED)
+            for one in refused_packets(seen.served.inbox, REFUSED)
         ],
         "lag": seen.lag(now),
         "rows": seen.served.inbox.rows,

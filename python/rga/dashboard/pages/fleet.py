@@ -26,7 +26,7 @@ class Card:
 
     Attributes:
         heading: its name and how it is.
-        drawing: of the structure; None where it cannot be read.
+        drawing: of the structure.
         gap, level: of the last rows, in words.
         line: path of the gap over 30 days.
         version: of the model that is in force; 0: none.
@@ -36,7 +36,7 @@ class Card:
     """
 
     heading: Heading
-    drawing: Elevation | None
+    drawing: Elevation
     gap: str
     level: GapLevel
     line: str
@@ -58,13 +58,13 @@ def _card(seen: Seen) -> Card:
     try:
         return _readable(seen)
     except InputError as error:
-        return _empty(heading_of_damaged(seen.name, error))
+        return _empty(seen, heading_of_damaged(seen, error))
 
 
 def _readable(seen: Seen) -> Card:
     now, twin = seen.reading.now(), seen.reading.twin
     if now is None or twin is None:
-        return _empty(heading(seen, now))
+        return _empty(seen, heading(seen, now))
     line, alarms = "", 0
     if now.time is not None:
         last = seen.reading.elapsed(now.time)
@@ -80,7 +80,7 @@ def _readable(seen: Seen) -> Card:
         )
     return Card(
         heading=heading(seen, now),
-        drawing=outline(twin.given),
+        drawing=outline(seen.served.model),
         gap="" if now.recent is None else number(now.recent, 2),
         level=gap_level(now.recent),
         line=line,
@@ -91,5 +91,5 @@ def _readable(seen: Seen) -> Card:
     )
 
 
-def _empty(top: Heading) -> Card:
-    return Card(top, None, "", gap_level(None), "", 0, 0, None, "")
+def _empty(seen: Seen, top: Heading) -> Card:
+    return Card(top, outline(seen.served.model), "", gap_level(None), "", 0, 0, None, "")

@@ -130,7 +130,7 @@ def _page(
         raise HTTPException(404, f"there is no {error.args[0]!r}") from None
     except InputError as error:
         shown = {
-            "heading": heading_of_damaged(seen.name, error),
+            "heading": heading_of_damaged(seen, error),
             "tab": tab,
             "words": str(error),
         }

@@ -61,16 +61,6 @@ class Arrival:
 
 
 @dataclass(frozen=True)
-class RefusedPacket:
-    """A packet that cannot be used: where it came from, when [µs], why, and how it begins."""
-
-    source: str
-    arrived: int
-    reason: str
-    payload: bytes
-
-
-@dataclass(frozen=True)
 class KeptPacket:
     """A packet that is kept.
 
@@ -179,14 +169,6 @@ class Packets:
                 one.stream: Numbers(one.next, map(tuple, json.loads(one.gaps)))
                 for one in connection.execute(chosen).all()
             }
-
-    def refused(self, most: int) -> list[RefusedPacket]:
-        """The latest packets that cannot be used, the last first."""
-        c = tables.refused.c
-        chosen = select(tables.refused).order_by(c.id.desc()).limit(most)
-        with self._inbox.reading() as connection:
-            found = [whole(tables.refused, one) for one in connection.execute(chosen)]
-        return [RefusedPacket(one.source, one.arrived, one.reason, one.payload) for one in found]
 
     def between(self, begin: int, end: int, most_bytes: int) -> tuple[list[KeptPacket], int]:
         """What waits with samples within [begin, end) [µs], in the order of arrival.
