@@ -48,9 +48,9 @@ class ServedTwin:
         self._readers = {
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }
-        self._inbox = Inbox(directory)
-        self.packets = Packets(self._inbox)
-        self._sealing = Sealing(self._inbox, self.packets, model, self._readers, settings.rows.grid)
+        self.inbox = Inbox(directory)
+        self.packets = Packets(self.inbox)
+        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, settings.rows.grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
         # Sources that were silent when rows were last made of all that had come.
@@ -108,7 +108,7 @@ class ServedTwin:
 
     def close(self) -> None:
         """Close the file of the inbox."""
-        self._inbox.close()
+        self.inbox.close()
 
 
 def live_settings(path: Path) -> Settings:

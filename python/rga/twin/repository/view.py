@@ -66,8 +66,11 @@ class RunView:
             reached = row
         else:
             raise TypeError("as_of takes either a row or a time")
-        source = replace(self._source, until=self._source.step_at(reached))
-        return RunView(source, self.identity, self.begun_at)
+        return self.at_step(self._source.step_at(reached))
+
+    def at_step(self, number: int) -> "RunView":
+        """The run as it stood after a step."""
+        return RunView(replace(self._source, until=number), self.identity, self.begun_at)
 
     @property
     def steps(self) -> int:
@@ -239,8 +242,9 @@ class RunView:
         entries = self._source.entries(tables.findings)
         return tuple(StoredFindings(entry.row, entry.findings) for entry in entries)
 
-    def events(self) -> tuple[Event, ...]:
-        """What happened to the twin."""
+    def events(self, after: int = 0) -> tuple[Event, ...]:
+        """What happened to the twin in steps behind one, in order."""
+        behind = self._source.entries(tables.event, where=[tables.event.c.step > after])
         return tuple(
             Event(
                 entry.kind,
@@ -251,7 +255,7 @@ class RunView:
                 entry.gap_before,
                 entry.gap_after,
             )
-            for entry in self._source.entries(tables.event)
+            for entry in behind
         )
 
     def proposals(self) -> tuple[Proposal, ...]:
@@ -283,10 +287,16 @@ class RunView:
             for entry in self._source.entries(tables.command)
         )
 
-    def messages(self, kind: str | None = None) -> tuple[StoredMessage, ...]:
-        """The log of queries and responses, or of one kind."""
+    def messages(
+        self, kind: str | None = None, latest: int | None = None
+    ) -> tuple[StoredMessage, ...]:
+        """The log of queries and responses, or of one kind; all, or the latest so many."""
         where = [] if kind is None else [tables.message.c.kind == kind]
-        return tuple(_message(one) for one in self._source.entries(tables.message, where=where))
+        if latest is None:
+            found = self._source.entries(tables.message, where=where)
+        else:
+            found = self._source.latest(tables.message, latest, *where)
+        return tuple(map(_message, found))
 
     def last_message(self, kind: str) -> StoredMessage | None:
         """The last message of a kind; None where there is none."""
