@@ -1,17 +1,48 @@
 """The server of the HTTP door, within bounds that nobody outside can pass."""
 
+import asyncio
+
 import uvicorn
 from starlette.types import ASGIApp
+from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 from rga.errors import InputError
 from rga.operation.configuration import ServiceSettings
 
-#: calls and streams at once; more are answered by 503
+#: connections and calls at once; more are answered by 503
 MOST_CALLS = 500
-#: how long a connection may be idle, and the service waits for open ones as it ends [s]
-IDLE, ENDING = 30, 3
-#: bytes of a line of a request with its headers
+#: how long a connection may be idle, a call may take until its body, at most twice, and the
+#: service waits for open calls as it ends [s]
+IDLE, SAYING, ENDING = 30, 20.0, 3
+#: bytes of what a call says before its body
 MOST_HEADERS = 32 * 1024
+
+
+class BoundedProtocol(H11Protocol):
+    """HTTP on connections that are closed where they do not say what they want."""
+
+    #: how often is looked whether they have said something [s]
+    look = SAYING
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Wait for calls."""
+        super().connection_made(transport)
+        self.loop.call_later(self.look, self._close_unless_called, None)
+
+    def _close_unless_called(self, last: RequestResponseCycle | None) -> None:
+        """Close the connection where nothing was called since it was last looked at.
+
+        Args:
+            last: call that was over then.
+        """
+        if self.transport.is_closing():
+            return
+        call: RequestResponseCycle | None = self.cycle
+        over = call is None or call.response_complete
+        if over and call is last:
+            self.transport.close()
+        else:
+            self.loop.call_later(self.look, self._close_unless_called, call if over else None)
 
 
 def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
@@ -35,7 +66,7 @@ def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
         proxy_headers=False,
         server_header=False,
         log_level="warning",
-        http="h11",
+        http=BoundedProtocol,
         ws="none",
         h11_max_incomplete_event_size=MOST_HEADERS,
         limit_concurrency=MOST_CALLS,

@@ -34,7 +34,8 @@ def duration_of(given: Any) -> float:
 
 Duration = Annotated[float, BeforeValidator(duration_of), Field(gt=0, le=366 * 86_400)]
 #: as it stands in addresses, topics and names of folders
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
+NAME_PATTERN = r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$"
+Name = Annotated[str, Field(pattern=NAME_PATTERN)]
 
 
 def _address(given: Any) -> str:

@@ -19,7 +19,8 @@ def serve(configuration: ConfigurationFile) -> None:
 
     chosen = read_configuration(configuration)
     service = Service(chosen)
-    server = server_of(app_of(service), chosen.service)
+    app = app_of(service, lambda: server.should_exit)
+    server = server_of(app, chosen.service)
     service.start()
     scheme = "http" if chosen.service.certificate is None else "https"
     typer.echo(f"rga serves {', '.join(service.twins)} at {scheme}://{chosen.service.listen}")

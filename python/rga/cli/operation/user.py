@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 LARGEST_PASSWORD = 4096
 
 
-class Action(StrEnum):
+class UserAction(StrEnum):
     """What is done."""
 
     add = "add"
@@ -47,7 +47,7 @@ PasswordFile = Annotated[
 
 def user(
     configuration: ConfigurationFile,
-    action: Annotated[Action, typer.Argument(metavar="add|remove|token")],
+    action: Annotated[UserAction, typer.Argument(metavar="add|remove|token")],
     name: Name,
     role: RoleName = None,
     twin: TwinName = None,
@@ -61,9 +61,9 @@ def user(
 
     chosen = read_configuration(configuration)
     with service_file(chosen.service.data, tables.metadata) as file:
-        if action is Action.token:
+        if action is UserAction.token:
             _make_token(file, chosen, name, role or "ingest", twin)
-        elif action is Action.add:
+        elif action is UserAction.add:
             _add(Users(file), name, role or "viewer", password_file)
         else:
             _remove(file, name)

@@ -10,7 +10,7 @@ from rga.dashboard.access import tables
 from rga.dashboard.access.drawn import Clock
 from rga.dashboard.access.failures import Failures
 from rga.dashboard.access.login_log import LoginLog
-from rga.dashboard.access.proxies import Origin, is_loopback, origin_of
+from rga.dashboard.access.proxies import CallOrigin, is_loopback, origin_of
 from rga.dashboard.access.roles import Who
 from rga.dashboard.access.sessions import Sessions
 from rga.dashboard.access.tokens import Tokens
@@ -67,7 +67,7 @@ class Access:
                 "give certificate and key, or name the proxy that has them in trusted_proxies",
             )
 
-    def origin_of(self, call: HTTPConnection) -> Origin:
+    def origin_of(self, call: HTTPConnection) -> CallOrigin:
         """Where a call comes from."""
         settings = self._settings
         return origin_of(call, settings.trusted_proxies, settings.user_header)
@@ -87,7 +87,7 @@ class Access:
         role = None if user is None else self.users.role_of(user)
         return None if user is None or role is None else Who(user, role, session=True)
 
-    def _local_person(self, call: HTTPConnection, origin: Origin) -> Who | None:
+    def _local_person(self, call: HTTPConnection, origin: CallOrigin) -> Who | None:
         """Whoever sits at this machine, as long as nobody has added users."""
         # A page of another host whose name leads here, or a proxy, would let others in.
         host = urlsplit(f"//{call.headers.get('host', '')}").hostname or ""
@@ -95,7 +95,7 @@ class Access:
             return None
         return Who(getuser(), "admin")
 
-    def log_in(self, name: str, password: str, origin: Origin) -> str | float:
+    def log_in(self, name: str, password: str, origin: CallOrigin) -> str | float:
         """Begin a session, if the password is right.
 
         Returns:
@@ -113,7 +113,7 @@ class Access:
         self.logins.write(name, origin.address, "in")
         return self.sessions.begin(name)
 
-    def log_out(self, secret: str, origin: Origin) -> None:
+    def log_out(self, secret: str, origin: CallOrigin) -> None:
         """End a session, if it has not ended."""
         user = self.sessions.user_of(secret)
         self.sessions.end(secret)

@@ -41,3 +41,13 @@ def may(right: Right) -> Callable[[Request], Who]:
         return found
 
     return who
+
+
+def may_see_some(request: Request) -> Who:
+    """A dependency that gives who calls, if they may look at one twin at least."""
+    found = access_of(request).who_calls(request)
+    if found is None:
+        raise NotLoggedIn
+    if not found.may("viewer", found.twin):
+        raise HTTPException(403, f"{found.name} ({found.role}) may not do this")
+    return found

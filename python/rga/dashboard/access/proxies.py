@@ -11,7 +11,7 @@ _FORWARDED = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-forwarded-p
 
 
 @dataclass(frozen=True)
-class Origin:
+class CallOrigin:
     """Where a call comes from.
 
     Attributes:
@@ -27,7 +27,9 @@ class Origin:
     forwarded: bool
 
 
-def origin_of(call: HTTPConnection, trusted: Collection[str], user_header: str | None) -> Origin:
+def origin_of(
+    call: HTTPConnection, trusted: Collection[str], user_header: str | None
+) -> CallOrigin:
     """Where a call comes from.
 
     Args:
@@ -38,13 +40,13 @@ def origin_of(call: HTTPConnection, trusted: Collection[str], user_header: str |
     address, secure = call.client.host if call.client else "", call.url.scheme == "https"
     forwarded = any(name in call.headers for name in _FORWARDED)
     if address not in trusted:
-        return Origin(address, secure, None, forwarded)
+        return CallOrigin(address, secure, None, forwarded)
     # Each proxy appends whom it was called by; what stands before the last that is trusted is
     # what anybody may have written.
     passed = ",".join(call.headers.getlist("x-forwarded-for"))
     chain = [one.strip() for one in passed.split(",")]
     others = [one for one in chain if _is_address(one) and one not in trusted]
-    return Origin(
+    return CallOrigin(
         address=others[-1] if others else address,
         secure=secure or call.headers.get("x-forwarded-proto", "").strip() == "https",
         user=call.headers.get(user_header) if user_header else None,

@@ -48,9 +48,7 @@ def alarms_page(seen: Seen) -> dict[str, Any]:
     found = []
     for place, following in zip(places, [*places[1:], len(events)], strict=True):
         one = events[place]
-        then = [
-            later for later in events[place + 1 : following] if later.kind != "novel context"
-        ]
+        then = [later for later in events[place + 1 : following] if later.kind != "novel context"]
         found.append(
             OutOfStep(
                 happened(seen.name, [one])[0],

@@ -13,7 +13,7 @@ from rga.dashboard.pages.sensors_now import sensor_rows
 from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.times import age_words, given_moment
 from rga.dashboard.pages.windows import SPANS, chosen_window
-from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart, sparkline
+from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
 from rga.dashboard.svg.structure import elevations
 from rga.model.schema import Model
@@ -81,7 +81,9 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     window = chosen.window
     series = seen.reading.series(window.begin, window.end, POINTS)
     assert series is not None  # it has begun
-    events = [one for one in seen.reading.events() if datetime.fromisoformat(str(one.time)) <= now.time]
+    events = [
+        one for one in seen.reading.events() if datetime.fromisoformat(str(one.time)) <= now.time
+    ]
     rows = sensor_rows(twin.given, now)
     return found | {
         "now": now,
@@ -93,7 +95,9 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
         "ranked": sorted(rows, key=lambda one: (-one.level.number, one.number)),
         "levels": LEVELS,
         "drawings": elevations(
-            twin.given, _marked(now, twin.given), {k: one.recent or 0.0 for k, one in now.sensors.items()}
+            twin.given,
+            _marked(now, twin.given),
+            {k: one.recent or 0.0 for k, one in now.sensors.items()},
         ),
         "marked": now.undecided is not None,
         "strip": _strip(seen.name, series, window, marks(seen.name, events, window)),

@@ -8,7 +8,6 @@ from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.surroundings import Seen
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.dashboard.svg.structure import Elevation, elevations
-from rga.errors import InputError
 from rga.findings import Findings
 from rga.findings.phrases import effect_words
 from rga.model.schema import Model
@@ -96,16 +95,17 @@ def causes_page(seen: Seen) -> dict[str, Any]:
         InputError: the repository of the twin cannot be read.
     """
     now, view, twin = seen.reading.now(), seen.reading.view(), seen.reading.twin
-    found = {"heading": heading(seen, now), "tab": "/causes", "proposals": []}
-    if view is None or twin is None:
+    found = {"heading": heading(seen, now), "tab": "/causes", "version": 0, "proposals": []}
+    if now is None or view is None or twin is None:
         return found
     start = twin.station.start
     proposals = view.proposals()
     return found | {
+        "version": now.version,
         "proposals": [
             _proposed(one, one is proposals[-1], view, twin.given, start)
             for one in reversed(proposals)
-        ]
+        ],
     }
 
 
@@ -184,9 +184,7 @@ def _causes(findings: Findings, model: Model) -> list[ProposedCause]:
 
 def _gains(findings: Findings) -> list[GainOfSensor]:
     """Sensors, those that gain most first."""
-    by_gain = sorted(
-        findings.gap.by_sensor.items(), key=lambda one: one[1].after - one[1].before
-    )
+    by_gain = sorted(findings.gap.by_sensor.items(), key=lambda one: one[1].after - one[1].before)
     return [
         GainOfSensor(
             name,

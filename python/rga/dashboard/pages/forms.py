@@ -12,19 +12,15 @@ from rga.errors import InputError
 from rga.operation.inbox.requests import Requests
 from rga.twin.commands.command import Accept, AnyCommand, Exclude, Reject, Rollback
 
-#: bytes and fields of a form at most
-MOST_BYTES, MOST_FIELDS = 100_000, 20
+#: fields of a form at most
+MOST_FIELDS = 20
 #: where errors are
 PLACE = "form"
 
 
 async def form_of(request: Request) -> dict[str, str]:
     """The fields of a form, each once."""
-    body = bytearray()
-    async for part in request.stream():
-        body += part
-        if len(body) > MOST_BYTES:
-            raise HTTPException(413, f"a form has {MOST_BYTES} bytes at most")
+    body = await request.body()
     try:
         fields = parse_qs(body.decode(), keep_blank_values=True, max_num_fields=MOST_FIELDS)
     except ValueError:
@@ -42,7 +38,7 @@ def ask(seen: Seen, form: Mapping[str, str], who: str) -> None:
     if not form.get("key"):
         raise InputError("the form has no key", PLACE, "load its page again")
     compared = command.model_dump_json(exclude={"given_at"})
-    Requests(seen.served.inbox).ask(form["key"], command.model_dump_json(), compared)
+    Requests(seen.served.inbox).ask(f"{who} {form['key']}", command.model_dump_json(), compared)
 
 
 def command_of(form: Mapping[str, str], who: str) -> AnyCommand:
@@ -51,11 +47,15 @@ def command_of(form: Mapping[str, str], who: str) -> AnyCommand:
     Raises:
         InputError: it is none.
 
-    >>> command_of({"kind": "rollback", "version": "2", "why": "calmer"}, "Ada").version
+    >>> form = {"kind": "rollback", "version": "2", "version_seen": "3", "why": "calmer"}
+    >>> command_of(form, "Ada").version
     2
     """
     given: dict[str, Any] = {"who": who, "why": form.get("why", "")}
     kind = form.get("kind", "")
+    if kind in ("accept", "reject", "rollback"):
+        # Of two who decide at once about the same version, the second is told.
+        given["version_seen"] = _number(form, "version_seen")
     if kind == "accept":
         return Accept(**given, proposal=_number(form, "proposal"))
     if kind == "reject":

@@ -6,7 +6,7 @@ from rga.dashboard.pages.state import State, damaged, state_of
 from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.errors import InputError
 from rga.operation.reading.twin_now import TwinNow
-from rga.twin.commands.command import AnyCommand
+from rga.twin.commands.command import AnyCommand, Command
 
 #: pages of a twin: the end of their address, and what they are called
 TABS = {
@@ -59,7 +59,7 @@ def command_words(command: AnyCommand) -> str:
     >>> command_words(Accept(who="Ada", proposal=2)), command_words(Note(who="Ada", why="greased"))
     ('accept, proposal 2, asked by Ada', 'note, asked by Ada: greased')
     """
-    about = command.model_dump(exclude={"kind", "who", "why", "given_at"}, exclude_none=True)
+    about = command.model_dump(exclude={"kind", *Command.model_fields}, exclude_none=True)
     said = [command.kind, *(f"{name} {value}" for name, value in about.items())]
     why = f": {command.why}" if command.why else ""
     return f"{', '.join(said)}, asked by {command.who}{why}"

@@ -1,7 +1,7 @@
 """Templates of the pages, filled."""
 
 from collections.abc import Mapping
-from datetime import UTC, datetime
+from datetime import UTC
 from typing import Any
 from uuid import uuid4
 

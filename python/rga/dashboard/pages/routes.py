@@ -9,6 +9,7 @@ from starlette.responses import RedirectResponse, Response
 
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
+from rga.dashboard.api.served import TheTwin, surroundings_of
 from rga.dashboard.pages.alarms import alarms_page
 from rga.dashboard.pages.bridge import bridge_page
 from rga.dashboard.pages.causes import causes_page, findings_of
@@ -22,96 +23,89 @@ from rga.dashboard.pages.sensor import sensor_page, sensors_page
 from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.versions import model_of, versions_page
 from rga.errors import InputError
-from rga.operation.service import Service
 
 Viewer = Annotated[Who, Depends(may("viewer"))]
 Operator = Annotated[Who, Depends(may("operator"))]
+TheService = Annotated[Surroundings, Depends(surroundings_of)]
+router = APIRouter(include_in_schema=False)
 
 
-def pages_of(service: Service) -> APIRouter:
-    """The pages of a service.
+@router.get("/")
+def fleet(surroundings: TheService, who: Viewer) -> Response:
+    return rendered("fleet", fleet_page(surroundings), who)
 
-    Args:
-        service: that runs.
-    """
-    surroundings = Surroundings(service)
-    router = APIRouter(include_in_schema=False)
 
-    def seen_of(twin: str) -> Seen:
-        if twin not in surroundings.names:
-            raise HTTPException(404, f"there is no twin {twin!r}")
-        return surroundings.twin(twin)
+@router.get("/twins/{twin}")
+def bridge(seen: TheTwin, request: Request, who: Viewer) -> Response:
+    def page() -> dict[str, Any]:
+        return bridge_page(seen, request.query_params)
 
-    TheTwin = Annotated[Seen, Depends(seen_of)]
+    return _page("bridge", page, seen, "", who, live="at" not in request.query_params)
 
-    @router.get("/")
-    def fleet(who: Viewer) -> Response:
-        return rendered("fleet", fleet_page(surroundings), who)
 
-    @router.get("/twins/{twin}")
-    def bridge(seen: TheTwin, request: Request, who: Viewer) -> Response:
-        def page() -> dict[str, Any]:
-            return bridge_page(seen, request.query_params)
+@router.get("/twins/{twin}/sensors")
+def sensors(seen: TheTwin, request: Request, who: Viewer, name: str | None = None) -> Response:
+    if name is None:
+        return _page("sensors", lambda: sensors_page(seen), seen, "/sensors", who)
 
-        return _page("bridge", page, seen, "", who, live="at" not in request.query_params)
+    def page() -> dict[str, Any]:
+        return sensor_page(seen, name, request.query_params)
 
-    @router.get("/twins/{twin}/sensors")
-    def sensors(seen: TheTwin, request: Request, who: Viewer, name: str | None = None) -> Response:
-        if name is None:
-            return _page("sensors", lambda: sensors_page(seen), seen, "/sensors", who)
+    return _page("sensor", page, seen, "/sensors", who)
 
-        def page() -> dict[str, Any]:
-            return sensor_page(seen, name, request.query_params)
 
-        return _page("sensor", page, seen, "/sensors", who)
+@router.get("/twins/{twin}/alarms")
+def alarms(seen: TheTwin, who: Viewer) -> Response:
+    return _page("alarms", lambda: alarms_page(seen), seen, "/alarms", who)
 
-    @router.get("/twins/{twin}/alarms")
-    def alarms(seen: TheTwin, who: Viewer) -> Response:
-        return _page("alarms", lambda: alarms_page(seen), seen, "/alarms", who)
 
-    @router.get("/twins/{twin}/causes")
-    def causes(seen: TheTwin, who: Viewer) -> Response:
-        return _page("causes", lambda: causes_page(seen), seen, "/causes", who)
+@router.get("/twins/{twin}/causes")
+def causes(seen: TheTwin, who: Viewer) -> Response:
+    return _page("causes", lambda: causes_page(seen), seen, "/causes", who)
 
-    @router.get("/twins/{twin}/causes/{number}/findings.json")
-    def findings(seen: TheTwin, number: int, who: Viewer) -> Response:
-        return _file(seen, lambda view: findings_of(view, number))
 
-    @router.get("/twins/{twin}/versions")
-    def versions(seen: TheTwin, who: Viewer) -> Response:
-        return _page("versions", lambda: versions_page(seen), seen, "/versions", who)
+@router.get("/twins/{twin}/causes/{number}/findings.json")
+def findings(seen: TheTwin, number: int, who: Viewer) -> Response:
+    return _file(seen, lambda view: findings_of(view, number))
 
-    @router.get("/twins/{twin}/versions/{number}/model.json")
-    def model(seen: TheTwin, number: int, who: Viewer) -> Response:
-        return _file(seen, lambda view: model_of(view, number))
 
-    @router.get("/twins/{twin}/queries")
-    def queries(seen: TheTwin, request: Request, who: Viewer) -> Response:
-        def page() -> dict[str, Any]:
-            return queries_page(seen, request.query_params)
+@router.get("/twins/{twin}/versions")
+def versions(seen: TheTwin, who: Viewer) -> Response:
+    return _page("versions", lambda: versions_page(seen), seen, "/versions", who)
 
-        return _page("queries", page, seen, "/queries", who, live=False)
 
-    @router.get("/twins/{twin}/data")
-    def data(seen: TheTwin, who: Viewer) -> Response:
-        return _page("data", lambda: data_page(seen), seen, "/data", who)
+@router.get("/twins/{twin}/versions/{number}/model.json")
+def model(seen: TheTwin, number: int, who: Viewer) -> Response:
+    return _file(seen, lambda view: model_of(view, number))
 
-    @router.post("/twins/{twin}/commands")
-    async def command(seen: TheTwin, request: Request, who: Operator) -> Response:
-        """Keep what a form asks for, and go back to its page."""
-        form = await form_of(request)
-        here = f"/twins/{seen.name}"
-        back = form.get("back", "")
-        # Nobody is led away from the pages of this twin.
-        back = back if back.startswith(f"{here}/") and back.isprintable() else here
-        try:
-            await run_in_threadpool(ask, seen, form, who.name)
-        except InputError as error:
-            shown = {"title": "This was not done", "words": str(error), "back": back}
-            return rendered("refused", shown, who, live=False, status=409)
-        return RedirectResponse(back, 303)
 
-    return router
+@router.get("/twins/{twin}/queries")
+def queries(seen: TheTwin, request: Request, who: Viewer) -> Response:
+    def page() -> dict[str, Any]:
+        return queries_page(seen, request.query_params)
+
+    return _page("queries", page, seen, "/queries", who, live=False)
+
+
+@router.get("/twins/{twin}/data")
+def data(seen: TheTwin, who: Viewer) -> Response:
+    return _page("data", lambda: data_page(seen), seen, "/data", who)
+
+
+@router.post("/twins/{twin}/commands")
+async def command(seen: TheTwin, request: Request, who: Operator) -> Response:
+    """Keep what a form asks for, and go back to its page."""
+    form = await form_of(request)
+    here = f"/twins/{seen.name}"
+    back = form.get("back", "")
+    # Nobody is led away from the pages of this twin.
+    back = back if back.startswith(f"{here}/") and back.isprintable() else here
+    try:
+        await run_in_threadpool(ask, seen, form, who.name)
+    except InputError as error:
+        shown = {"title": "This was not done", "words": str(error), "back": back}
+        return rendered("refused", shown, who, live=False, status=409)
+    return RedirectResponse(back, 303)
 
 
 def _page(

@@ -66,7 +66,12 @@ def sensor_page(seen: Seen, name: str, query: Mapping[str, str]) -> dict[str, An
         raise KeyError(name)
     row = next(one for one in sensor_rows(twin.given, now) if one.name == name)
     found = {"heading": heading(seen, now), "tab": "/sensors", "row": row, "charts": []}
-    found |= {"spans_known": tuple(SPANS), "span": "", "quality": None, "out_of_use": _out_of_use(view, name)}
+    found |= {
+        "spans_known": tuple(SPANS),
+        "span": "",
+        "quality": None,
+        "out_of_use": _out_of_use(view, name),
+    }
     if now.time is None:
         return found
     start = datetime.fromisoformat(str(twin.station.start))

@@ -55,7 +55,12 @@ def versions_page(seen: Seen) -> dict[str, Any]:
         InputError: the repository of the twin cannot be read.
     """
     now, view, twin = seen.reading.now(), seen.reading.view(), seen.reading.twin
-    found: dict[str, Any] = {"heading": heading(seen, now), "tab": "/versions", "versions": []}
+    found: dict[str, Any] = {
+        "heading": heading(seen, now),
+        "tab": "/versions",
+        "version": 0 if now is None else now.version,
+        "versions": [],
+    }
     if now is None or view is None or twin is None:
         return found
     stretches = _stretches(seen.reading, view)

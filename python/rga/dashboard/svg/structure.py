@@ -14,8 +14,8 @@ from rga.drawing.figure_style import label
 from rga.drawing.labels import Room
 from rga.drawing.projection import Projection, views
 from rga.model.schema import Model
-from rga.report.drawing.places import Named, Spot, spots
 from rga.report.drawing.labels import marker_offset, marker_row
+from rga.report.drawing.places import Named, Spot, spots
 
 #: width of a drawing, and room on either side of it
 WIDE, SIDE = 1000.0, 54.0

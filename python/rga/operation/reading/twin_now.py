@@ -13,7 +13,6 @@ from rga.twin.restore import standing_of
 from rga.twin.run_state import Stage
 from rga.twin.twin import Twin
 
-
 #: rows over which a gap is averaged
 RECENT = 24
 

@@ -60,7 +60,7 @@ class TwinReading:
 
     def __init__(self, name: str, directory: Path, repository: str | None) -> None:
         self.name = name
-        self._place: str | Path = repository or directory
+        self.place: str | Path = repository or directory
         self._file = None if repository else directory / FILE
         self._lock = RLock()
         self._repository: Repository | None = None
@@ -92,7 +92,7 @@ class TwinReading:
             if self._twin is None or view.steps != self._steps:
                 # It is told apart by its number of steps, which a step at this moment may raise.
                 steps = view.steps
-                self._twin, self._now = Twin(view, self._place), None
+                self._twin, self._now = Twin(view, self.place), None
                 self._steps = steps
             return self._twin
 
@@ -128,7 +128,7 @@ class TwinReading:
             if past.row < 0 or not past.versions():
                 return None
             noise = dict(zip(*self._noise_by_name(twin), strict=True))
-            return twin_now(Twin(past, self._place), past, noise)
+            return twin_now(Twin(past, self.place), past, noise)
 
     def events(self) -> tuple[Event, ...]:
         """What happened to the twin, in order."""
@@ -259,7 +259,7 @@ class TwinReading:
             if self._repository is None:
                 if self._file is not None and not self._file.exists():
                     return None
-                self._repository = Repository.open(self._place, read_only=True)
+                self._repository = Repository.open(self.place, read_only=True)
             source = f"{LIVE}{self.name}"
             runs = [one for one in self._repository.runs() if one.identity.source == source]
             begun = [one for one in runs if one.kept("station") is not None]

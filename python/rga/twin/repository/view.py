@@ -66,8 +66,11 @@ class RunView:
             reached = row
         else:
             raise TypeError("as_of takes either a row or a time")
-        source = replace(self._source, until=self._source.step_at(reached))
-        return RunView(source, self.identity, self.begun_at)
+        return self.at_step(self._source.step_at(reached))
+
+    def at_step(self, number: int) -> "RunView":
+        """The run as it stood after a step."""
+        return RunView(replace(self._source, until=number), self.identity, self.begun_at)
 
     @property
     def steps(self) -> int:
@@ -239,9 +242,10 @@ class RunView:
         entries = self._source.entries(tables.findings)
         return tuple(StoredFindings(entry.row, entry.findings) for entry in entries)
 
-    def events(self) -> tuple[Event, ...]:
-        """What happened to the twin."""
-        return tuple(map(_event, self._source.entries(tables.event)))
+    def events(self, after: int = 0) -> tuple[Event, ...]:
+        """What happened to the twin in steps behind one, in order."""
+        behind = self._source.entries(tables.event, where=[tables.event.c.step > after])
+        return tuple(map(_event, behind))
 
     def proposals(self) -> tuple[Proposal, ...]:
         """Changes of the model that diagnoses proposed."""
@@ -273,22 +277,22 @@ class RunView:
         )
 
     def messages(
-        self, kind: str | None = None, first: int = 0, end: int | None = None
+        self, kind: str | None = None, latest: int | None = None
     ) -> tuple[StoredMessage, ...]:
-        """The log of queries and responses, or of one kind, sent at rows from one to another."""
-        where = _between(tables.message, first, end)
-        if kind is not None:
-            where.append(tables.message.c.kind == kind)
-        return tuple(_message(one) for one in self._source.entries(tables.message, where=where))
+        """The log of queries and responses, or of one kind; all, or the latest so many."""
+        where = [] if kind is None else [tables.message.c.kind == kind]
+        if latest is None:
+            found = self._source.entries(tables.message, where=where)
+        else:
+            found = self._source.latest(tables.message, latest, *where)
+        return tuple(map(_message, found))
 
     def last_message(self, kind: str) -> StoredMessage | None:
         """The last message of a kind; None where there is none."""
         entry = self._source.last(tables.message, tables.message.c.kind == kind)
         return None if entry is None else _message(entry)
 
-    def story(
-        self, first: int = 0, end: int | None = None
-    ) -> tuple[StoredMessage | Event, ...]:
+    def story(self, first: int = 0, end: int | None = None) -> tuple[StoredMessage | Event, ...]:
         """Messages and events together in the order in which they were stored, as of `messages`."""
         sent = self._source.entries(tables.message, where=_between(tables.message, first, end))
         events = self._source.entries(tables.event, where=_between(tables.event, first, end))
