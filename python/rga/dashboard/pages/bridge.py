@@ -11,7 +11,7 @@ from rga.dashboard.pages.happened import happened, marks
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.sensors_now import sensor_rows
 from rga.dashboard.pages.surroundings import Seen, Surroundings
-from rga.dashboard.pages.times import age_words, given_moment
+from rga.dashboard.pages.times import age_words, given_moment, of_event
 from rga.dashboard.pages.windows import SPANS, chosen_window
 from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
@@ -81,10 +81,9 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     window = chosen.window
     series = seen.reading.series(window.begin, window.end, POINTS)
     assert series is not None  # it has begun
-    events = [
-        one for one in seen.reading.events() if datetime.fromisoformat(str(one.time)) <= now.time
-    ]
+    events = [one for one in seen.reading.events() if of_event(one.time) <= now.time]
     rows = sensor_rows(twin.given, now)
+    weights = {name: one.recent or 0.0 for name, one in now.sensors.items()}
     return found | {
         "now": now,
         "gap": None if now.recent is None else number(now.recent, 2),
@@ -94,11 +93,7 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
         "sensor_of": {one.number: one for one in rows},
         "ranked": sorted(rows, key=lambda one: (-one.level.number, one.number)),
         "levels": LEVELS,
-        "drawings": elevations(
-            twin.given,
-            _marked(now, twin.given),
-            {k: one.recent or 0.0 for k, one in now.sensors.items()},
-        ),
+        "drawings": elevations(twin.given, _marked(now, twin.given), weights),
         "marked": now.undecided is not None,
         "strip": _strip(seen.name, series, window, marks(seen.name, events, window)),
         "versions": _versions(seen, window, now),

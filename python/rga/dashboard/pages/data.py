@@ -118,7 +118,8 @@ def _sources(seen: Seen) -> list[SourceAccount]:
             Stream(stream, known.next, known.missing, _gaps(known.gaps))
             for stream, known in seen.served.numbers(name).items()
         ]
-        moment = time_of(latest[name]) if name in latest else None
+        last = latest.get(name)
+        moment = None if last is None else time_of(last)
         fault = seen.faults.get(name, "")
         found.append(SourceAccount(name, total, day, share, streams, moment, fault))
     return found

@@ -21,7 +21,7 @@ from rga.dashboard.pages.queries import queries_page
 from rga.dashboard.pages.rendering import rendered
 from rga.dashboard.pages.sensor import sensor_page, sensors_page
 from rga.dashboard.pages.surroundings import Seen, Surroundings
-from rga.dashboard.pages.versions import model_of, versions_page
+from rga.dashboard.pages.versions import versions_page
 from rga.errors import InputError
 
 Viewer = Annotated[Who, Depends(may("viewer"))]
@@ -72,11 +72,6 @@ def findings(seen: TheTwin, number: int, who: Viewer) -> Response:
 @router.get("/twins/{twin}/versions")
 def versions(seen: TheTwin, who: Viewer) -> Response:
     return _page("versions", lambda: versions_page(seen), seen, "/versions", who)
-
-
-@router.get("/twins/{twin}/versions/{number}/model.json")
-def model(seen: TheTwin, number: int, who: Viewer) -> Response:
-    return _file(seen, lambda view: model_of(view, number))
 
 
 @router.get("/twins/{twin}/queries")

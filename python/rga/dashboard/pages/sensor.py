@@ -65,8 +65,11 @@ def sensor_page(seen: Seen, name: str, query: Mapping[str, str]) -> dict[str, An
     if now is None or twin is None or view is None or name not in now.sensors:
         raise KeyError(name)
     row = next(one for one in sensor_rows(twin.given, now) if one.name == name)
-    found = {"heading": heading(seen, now), "tab": "/sensors", "row": row, "charts": []}
-    found |= {
+    found: dict[str, Any] = {
+        "heading": heading(seen, now),
+        "tab": "/sensors",
+        "row": row,
+        "charts": [],
         "spans_known": tuple(SPANS),
         "span": "",
         "quality": None,

@@ -88,18 +88,6 @@ def versions_page(seen: Seen) -> dict[str, Any]:
     return found | {"versions": rows[::-1]}
 
 
-def model_of(view: RunView, number: int) -> str:
-    """The model file of a version, as JSON text.
-
-    Raises:
-        KeyError: there is no such version.
-    """
-    for one in view.versions():
-        if one.number == number:
-            return one.model
-    raise KeyError(number)
-
-
 def _stretches(reading: TwinReading, view: RunView) -> list[tuple[int, float, float]]:
     """Version, and from when to when it was in force [s since the first row]."""
     begun = []

@@ -223,7 +223,7 @@ def time_ticks(window: Window) -> tuple[tuple[Tick, ...], str]:
     for place, text in zip(places, words, strict=True):
         elapsed = (num2date(place, tz=UTC) - window.start).total_seconds()  # type: ignore[no-untyped-call]
         found.append(Tick(round(window.share(elapsed), 2), text))
-    return tuple(found), str(formatter.get_offset())
+    return tuple(found), str(formatter.get_offset())  # type: ignore[no-untyped-call]
 
 
 def _range(columns: Sequence[Column], logarithmic: bool) -> tuple[float, float]:
@@ -243,7 +243,7 @@ def _range(columns: Sequence[Column], logarithmic: bool) -> tuple[float, float]:
 
 def _logarithm(values: Floats) -> FloatArray:
     shown = np.asarray(values, dtype=float)
-    return np.log10(np.maximum(shown, LEAST_GAP))
+    return np.asarray(np.log10(np.maximum(shown, LEAST_GAP)))
 
 
 def _steps(low: float, high: float, logarithmic: bool) -> list[float]:

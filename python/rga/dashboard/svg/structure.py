@@ -182,7 +182,8 @@ def _elevation(
     held = frozenset(one.node for one in model.supports.values())
     dots = tuple(dot for spot in here for dot in _dots(model, sheet, spot, sensors, held))
     box = f"0 0 {WIDE:g} {sheet.high + 2 * SIDE:.0f}"
-    return Elevation(view.title, box, bars, feet, dots, _names(bars, dots, feet, named_first))
+    names = _names(bars, dots, feet, named_first, sheet.high + 2 * SIDE)
+    return Elevation(view.title, box, bars, feet, dots, names)
 
 
 def _dots(
@@ -206,9 +207,10 @@ def _names(
     dots: tuple[Dot, ...],
     feet: tuple[Foot, ...],
     named_first: Mapping[str, float],
+    high: float,
 ) -> tuple[Name, ...]:
     """Names of the sensors that matter most, where there is room for them."""
-    room = Room(lines=_samples(bars))
+    room = Room(lines=_samples(bars), limits=(0.0, -high / INCH, WIDE / INCH, 0.0))
     room.boxes += [_box(dot.x, dot.y, 8.0) for dot in dots]
     room.boxes += [_box(foot.x, foot.y + 9.0, 11.0) for foot in feet]
     # The room is measured in inches upwards.
