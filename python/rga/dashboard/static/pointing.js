@@ -4,7 +4,7 @@ const said = document.querySelector(".pointed");
 
 function point(event) {
   const sensor = event.target.closest?.(".sensor");
-  if (said && sensor) said.textContent = sensor.getAttribute("aria-label");
+  if (said && sensor) said.textContent = sensor.querySelector("title").textContent;
 }
 
 document.addEventListener("pointerover", point);
