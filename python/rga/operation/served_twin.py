@@ -55,7 +55,8 @@ class ServedTwin:
         self._readers = {
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }
-        self.inbox, grid = Inbox(directory), settings.rows.grid
+        self.inbox = Inbox(directory)
+        grid = settings.rows.grid
         self.packets = Packets(self.inbox, grid, self._sources)
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._patience = settings.rows.patience

@@ -74,6 +74,7 @@ class Broker:
         self._ending = Event()
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
+        self._untold: dict[str, Numbers] = {}
         self._client = self._made(f"rga-{twin}-{source}", secure, credentials)
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
@@ -133,12 +134,13 @@ class Broker:
             self._try_the_way()
             if batch := self._batch():
                 self._keep_batch(batch)
+            self._acknowledge()
 
     def _batch(self) -> list[MQTTMessage]:
         """What has come meanwhile: the more there is, the more is kept at once."""
         batch: list[MQTTMessage] = []
         try:
-            batch.append(self._waiting.get(timeout=1.0))
+            batch.append(self._waiting.get(timeout=ACKNOWLEDGE / 4))
             while len(batch) < MOST_MESSAGES:
                 batch.append(self._waiting.get_nowait())
         except Empty:
@@ -158,13 +160,14 @@ class Broker:
         self.fault = None
         for one in batch:
             self._client.ack(one.mid, one.qos)
-        self._acknowledge(numbers)
+        self._untold = numbers
 
-    def _acknowledge(self, numbers: dict[str, Numbers]) -> None:
+    def _acknowledge(self) -> None:
+        """Tell senders what is kept, if that is news, and the last time is long enough ago."""
         now = time.monotonic()
-        if now - self._told < ACKNOWLEDGE:
+        if not self._untold or now - self._told < ACKNOWLEDGE:
             return
-        self._told = now
+        numbers, self._told, self._untold = self._untold, now, {}
         for stream, known in numbers.items():
             told, untold = known.gaps[:MOST_TOLD], known.gaps[MOST_TOLD:]
             # Whoever reads it takes what is below the next and not missing for kept.
