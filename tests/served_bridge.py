@@ -19,7 +19,7 @@ from rga.records import Record
 #: names of sensors that a page must not fall for
 HOSTILE = (
     "<script>alert('S')</script>",
-    "\" onmouseover=\"alert(1)",
+    '" onmouseover="alert(1)',
     "梁の歪み ёмкость حساس",
     "a very long name " * 10 + "of a sensor",
     "../S?name=1&x=%2F#y",

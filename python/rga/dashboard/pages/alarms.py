@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from rga.dashboard.pages.happened import Happened, happened, marks
+from rga.dashboard.pages.alarm_desk import SHELVES, alarms_of
+from rga.dashboard.pages.happened import Happened, Past
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.surroundings import Seen
 from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
@@ -15,8 +16,8 @@ from rga.twin.repository import RunView
 
 #: rows on either side of an alarm that are shown, and sensors
 AROUND, SENSORS = 36, 4
-#: alarms of the page
-LISTED = 12
+#: times out of step, and alarms that are closed, of the page
+LISTED, CLOSED = 12, 20
 
 
 @dataclass(frozen=True)
@@ -45,27 +46,30 @@ def alarms_page(seen: Seen) -> dict[str, Any]:
     now, view = seen.reading.now(), seen.reading.view()
     events = seen.reading.events()
     places = [place for place, one in enumerate(events) if one.kind == "alarm"]
+    past = Past(seen.name, view, events)
     found = []
     for place, following in zip(places, [*places[1:], len(events)], strict=True):
         one = events[place]
         then = [later for later in events[place + 1 : following] if later.kind != "novel context"]
         found.append(
             OutOfStep(
-                happened(seen.name, [one])[0],
+                past.listed([one])[0],
                 one.sensors,
-                None if view is None else _around(seen, view, one),
-                happened(seen.name, then)[::-1],
+                None if view is None else _around(seen, view, one, past),
+                past.listed(then)[::-1],
             )
         )
     return {
         "heading": heading(seen, now),
         "tab": "/alarms",
+        "alarms": alarms_of(seen.desk, seen.name, CLOSED),
+        "shelves": tuple(SHELVES),
         "found": found[::-1][:LISTED],
         "omitted": max(0, len(found) - LISTED),
     }
 
 
-def _around(seen: Seen, view: RunView, alarm: Event) -> Chart | None:
+def _around(seen: Seen, view: RunView, alarm: Event, past: Past) -> Chart | None:
     """The gaps of the sensors that show it, in the rows around an alarm."""
     first, last = max(0, alarm.row - AROUND), min(view.rows, alarm.row + AROUND + 1)
     time = view.measured(first, last).time
@@ -80,13 +84,12 @@ def _around(seen: Seen, view: RunView, alarm: Event) -> Chart | None:
     for name in alarm.sensors[:SENSORS]:
         values = np.asarray(series.gap.mean[:, series.sensors.index(name)], dtype=float)
         columns.append(Column(name, "gap", values, values, values))
-    shown = marks(seen.name, [alarm], window)
     return chart(
         "Gap of the sensors that show it first",
         "",
         series.gap.time,
         columns,
         window,
-        marks=shown,
+        marks=past.marks([alarm], window),
         logarithmic=True,
     )

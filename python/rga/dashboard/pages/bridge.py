@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rga.dashboard.pages.happened import happened, marks
+from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.sensors_now import sensor_rows
 from rga.dashboard.pages.surroundings import Seen, Surroundings
@@ -65,7 +65,6 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     newest = seen.reading.elapsed(latest.time)
     at = asked_time(query, start)
     now = latest if at is None else seen.reading.as_of(at)
-    past = at is not None
     found |= {
         "slider": {
             "most": round(newest, 3),
@@ -73,7 +72,7 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
             "start": start,
             "moment": None if at is None else Window(start, 0, 1).moment(min(at, newest)),
         },
-        "past": past,
+        "past": at is not None,
     }
     if now is None or now.time is None:
         return found | {"now": None}
@@ -82,6 +81,7 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     series = seen.reading.series(window.begin, window.end, POINTS)
     assert series is not None  # it has begun
     events = [one for one in seen.reading.events() if of_event(one.time) <= now.time]
+    past = Past(seen.name, seen.reading.view(), events)
     rows = sensor_rows(twin.given, now)
     weights = {name: one.recent or 0.0 for name, one in now.sensors.items()}
     return found | {
@@ -95,12 +95,12 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
         "levels": LEVELS,
         "drawings": elevations(twin.given, _marked(now, twin.given), weights),
         "marked": now.undecided is not None,
-        "strip": _strip(seen.name, series, window, marks(seen.name, events, window)),
+        "strip": _strip(seen.name, series, window, past.marks(events, window)),
         "versions": _versions(seen, window, now),
         "contexts": _contexts(twin.given, now, series, window),
         "span": chosen.span,
         "spans_known": tuple(SPANS),
-        "events": happened(seen.name, events)[:LISTED],
+        "events": past.listed(events[-LISTED:]),
     }
 
 

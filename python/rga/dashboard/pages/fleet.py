@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rga.dashboard.pages.alarm_desk import SHELVES, alarms_of
 from rga.dashboard.pages.heading import Heading, heading, heading_of_damaged
 from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.times import DAY, age_words
@@ -30,7 +31,7 @@ class Card:
         gap, level: of the last rows, in words.
         line: path of the gap over 30 days.
         version: of the model that is in force; 0: none.
-        alarms: in these 30 days.
+        alarms: that are open.
         newest: time of the newest row.
         age: of it, in words.
     """
@@ -51,7 +52,12 @@ def fleet_page(surroundings: Surroundings) -> dict[str, Any]:
     cards = [_card(surroundings.twin(name)) for name in surroundings.names]
     cards.sort(key=lambda one: (one.heading.state.need, one.heading.structure.casefold()))
     need = sum(one.heading.state.need < 4 for one in cards)
-    return {"cards": cards, "need": need}
+    return {
+        "cards": cards,
+        "need": need,
+        "alarms": alarms_of(surroundings.desk, None),
+        "shelves": tuple(SHELVES),
+    }
 
 
 def _card(seen: Seen) -> Card:
@@ -65,7 +71,7 @@ def _readable(seen: Seen) -> Card:
     now, twin = seen.reading.now(), seen.reading.twin
     if now is None or twin is None:
         return _empty(seen, heading(seen, now))
-    line, alarms = "", 0
+    line = ""
     if now.time is not None:
         last = seen.reading.elapsed(now.time)
         begin = max(0.0, last - SHOWN)
@@ -74,10 +80,6 @@ def _readable(seen: Seen) -> Card:
         gap = mean(np.asarray(series.gap.mean, dtype=float), axis=1)
         start = datetime.fromisoformat(str(twin.station.start))
         line = sparkline(series.gap.time, gap, Window(start, begin, last + 1.0))
-        since = f"{Window(start, begin, last).moment(begin).isoformat()}"
-        alarms = sum(
-            one.kind == "alarm" and str(one.time) >= since for one in seen.reading.events()
-        )
     return Card(
         heading=heading(seen, now),
         drawing=outline(seen.served.model),
@@ -85,11 +87,12 @@ def _readable(seen: Seen) -> Card:
         level=gap_level(now.recent),
         line=line,
         version=now.version,
-        alarms=alarms,
+        alarms=len(alarms_of(seen.desk, seen.name)),
         newest=now.time,
         age="" if now.time is None else age_words(now.time, Surroundings.now()),
     )
 
 
 def _empty(seen: Seen, top: Heading) -> Card:
-    return Card(top, outline(seen.served.model), "", gap_level(None), "", 0, 0, None, "")
+    open_alarms = len(alarms_of(seen.desk, seen.name))
+    return Card(top, outline(seen.served.model), "", gap_level(None), "", 0, open_alarms, None, "")

@@ -1,6 +1,7 @@
 """Addresses of the pages."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, HTTPException, Request
@@ -10,6 +11,7 @@ from starlette.responses import RedirectResponse, Response
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.served import TheTwin, surroundings_of
+from rga.dashboard.pages.alarm_desk import act
 from rga.dashboard.pages.alarms import alarms_page
 from rga.dashboard.pages.bridge import bridge_page
 from rga.dashboard.pages.causes import causes_page, findings_of
@@ -89,14 +91,36 @@ def data(seen: TheTwin, who: Viewer) -> Response:
 
 @router.post("/twins/{twin}/commands")
 async def command(seen: TheTwin, request: Request, who: Operator) -> Response:
-    """Keep what a form asks for, and go back to its page."""
+    """Keep what a form asks a twin for, and go back to its page."""
     form = await form_of(request)
     here = f"/twins/{seen.name}"
     back = form.get("back", "")
     # Nobody is led away from the pages of this twin.
     back = back if back.startswith(f"{here}/") and back.isprintable() else here
+    return await _done(partial(ask, seen, form, who.name), back, who)
+
+
+@router.post("/twins/{twin}/alarms/{number}")
+async def alarm(seen: TheTwin, number: int, request: Request, who: Operator) -> Response:
+    """Do what a form asks about an alarm of a twin."""
+    form, now = await form_of(request), Surroundings.now()
+    does = partial(act, seen.desk, seen.name, number, form, who.name, now)
+    return await _done(does, f"/twins/{seen.name}/alarms", who)
+
+
+@router.post("/alarms/{number}")
+async def alarm_of_service(
+    surroundings: TheService, number: int, request: Request, who: Operator
+) -> Response:
+    """Do what a form asks about an alarm of the service itself."""
+    form, now = await form_of(request), Surroundings.now()
+    return await _done(partial(act, surroundings.desk, None, number, form, who.name, now), "/", who)
+
+
+async def _done(does: Callable[[], None], back: str, who: Who) -> Response:
+    """Do what a form asks and go back, or say why it was not done."""
     try:
-        await run_in_threadpool(ask, seen, form, who.name)
+        await run_in_threadpool(does)
     except InputError as error:
         shown = {"title": "This was not done", "words": str(error), "back": back}
         return rendered("refused", shown, who, live=False, status=409)

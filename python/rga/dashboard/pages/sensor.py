@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.dashboard.pages.happened import marks
+from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.sensors_now import SensorRow, sensor_rows
 from rga.dashboard.pages.surroundings import Seen
@@ -81,7 +81,8 @@ def sensor_page(seen: Seen, name: str, query: Mapping[str, str]) -> dict[str, An
     chosen = chosen_window(query, start, now.time)
     series = seen.reading.series(chosen.window.begin, chosen.window.end, POINTS)
     assert series is not None  # it has begun
-    happened = marks(seen.name, seen.reading.events(), chosen.window)
+    events = seen.reading.events()
+    happened = Past(seen.name, view, events).marks(events, chosen.window)
     unit = twin.given.sensors[name].unit
     return found | {
         "charts": _charts(series, row, unit, now, chosen, happened),

@@ -7,7 +7,19 @@ const drawn = new Map();
 const SOON = 500, LATE = 30_000;
 let waiting = null;
 
-for (const part of document.querySelectorAll("[data-live]")) drawn.set(part.id, part.outerHTML);
+for (const part of document.querySelectorAll("[data-live]")) drawn.set(part.id, said(part));
+
+// What a part shows: forms have a new key each time.
+function said(part) {
+  return part.outerHTML.replace(/name="key" value="[^"]*"/g, "");
+}
+
+// What somebody is about to choose, or has begun to fill in, stays.
+function inUse(part) {
+  const active = document.activeElement;
+  const fields = [...part.querySelectorAll("input:not([type=hidden]), textarea")];
+  return (part !== active && part.contains(active)) || fields.some((one) => one.value !== one.defaultValue);
+}
 
 async function redraw() {
   waiting = null;
@@ -25,10 +37,12 @@ async function redraw() {
   const next = new DOMParser().parseFromString(await answer.text(), "text/html");
   for (const part of next.querySelectorAll("[data-live]")) {
     const old = document.getElementById(part.id);
-    if (!old || drawn.get(part.id) === part.outerHTML) continue;
-    // What somebody reads aloud, or is about to choose, stays until it is left.
-    if (old !== document.activeElement && old.contains(document.activeElement)) continue;
-    drawn.set(part.id, part.outerHTML);
+    if (!old || old === part || drawn.get(part.id) === said(part) || inUse(old)) continue;
+    drawn.set(part.id, said(part));
+    const folded = part.querySelectorAll("details");
+    old.querySelectorAll("details").forEach((one, place) => {
+      if (one.open && folded[place]) folded[place].open = true;
+    });
     old.replaceWith(document.adoptNode(part));
   }
   document.dispatchEvent(new Event("redrawn"));
