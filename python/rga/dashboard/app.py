@@ -31,7 +31,7 @@ from rga.dashboard.api.reports import Reports
 from rga.dashboard.api.served import PREFIX
 from rga.dashboard.bounded_body import BoundedBody
 from rga.dashboard.pages.routes import router as pages
-from rga.dashboard.pages.surroundings import Surroundings
+from rga.dashboard.surroundings import Surroundings
 from rga.errors import InputError
 from rga.operation.service import Service
 from rga.twin.repository.faults import RepositoryFault

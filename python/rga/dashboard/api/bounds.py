@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from threading import Lock
 
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.surroundings import Seen
 
 #: calls a second of one caller in the long run, and at once
 RATE, BURST = 500.0, 5_000.0

@@ -15,7 +15,7 @@ from starlette.responses import Response
 from rga.dashboard.access.may import may_see_some
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.served import answering, surroundings_of
-from rga.dashboard.pages.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.twin.hardware.inbox import INBOX

@@ -11,7 +11,7 @@ from starlette.responses import Response
 from rga.dashboard.access.may import may
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.surroundings import Seen
 from rga.findings.phrases import effect_words
 from rga.operation.inbox.account import Account
 from rga.operation.reading.twin_now import moment

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, HTTPException
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin, begun
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.surroundings import Seen
 from rga.operation.reading.twin_now import moment
 from rga.simulation.whatif import HALF_WIDTH
 from rga.twin.twin import Twin

@@ -7,7 +7,7 @@ from fastapi import Depends, HTTPException, Path, Request
 from pydantic import AwareDatetime
 from starlette.requests import HTTPConnection
 
-from rga.dashboard.pages.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.operation.configuration import NAME_PATTERN
 from rga.operation.reading.twin_now import TwinNow
 

@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from rga.dashboard.access.may import may
 from rga.dashboard.api.past import EventAnswer
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.surroundings import Seen
 from rga.operation.reading.twin_now import TwinNow
 
 #: how often is looked whether something is new [s]

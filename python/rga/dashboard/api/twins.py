@@ -16,7 +16,7 @@ from rga.dashboard.api.served import (
     begun,
     surroundings_of,
 )
-from rga.dashboard.pages.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.operation.reading.twin_now import TwinNow
 
 router = APIRouter(tags=["twins"])

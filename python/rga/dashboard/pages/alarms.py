@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from rga.dashboard.pages.alarm_desk import SHELVES, alarms_of
+from rga.dashboard.alarm_desk import SHELVES, alarms_of
 from rga.dashboard.pages.happened import Happened, Past
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.surroundings import Seen
 from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
 from rga.twin.history import Event
 from rga.twin.repository import RunView
@@ -48,7 +49,7 @@ def alarms_page(seen: Seen) -> dict[str, Any]:
     places = [place for place, one in enumerate(events) if one.kind == "alarm"]
     past = Past(seen.name, view, events)
     found = []
-    for place, following in zip(places, [*places[1:], len(events)], strict=True):
+    for place, following in pairwise([*places, len(events)]):
         one = events[place]
         then = [later for later in events[place + 1 : following] if later.kind != "novel context"]
         found.append(

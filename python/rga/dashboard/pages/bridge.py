@@ -9,10 +9,11 @@ import numpy as np
 
 from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
+from rga.dashboard.pages.in_force import in_force
 from rga.dashboard.pages.sensors_now import sensor_rows
-from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.times import age_words, given_moment, of_event
 from rga.dashboard.pages.windows import SPANS, chosen_window
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
 from rga.dashboard.svg.structure import elevations
@@ -146,16 +147,11 @@ def _versions(seen: Seen, window: Window, now: TwinNow) -> list[VersionStretch]:
     view = seen.reading.view()
     assert view is not None  # it has begun
     assert now.time is not None
-    end = min(seen.reading.elapsed(now.time), window.end)
-    begun = []
-    for row, version in view.in_force():
-        time = view.measured(row, row + 1).time
-        begun.append((float(time[0]) if len(time) and row else 0.0, version))
     found = []
-    for (first, version), (last, _) in zip(begun, [*begun[1:], (end, 0)], strict=True):
-        left, right = (min(100.0, max(0.0, window.share(one))) for one in (first, min(last, end)))
+    for one in in_force(view, min(seen.reading.elapsed(now.time), window.end)):
+        left, right = (min(100.0, max(0.0, window.share(end))) for end in (one.begin, one.end))
         if right > left:
-            found.append(VersionStretch(version, round(left, 2), round(right - left, 2)))
+            found.append(VersionStretch(one.version, round(left, 2), round(right - left, 2)))
     return found
 
 

@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import Any
 
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.surroundings import Seen
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.dashboard.svg.structure import Elevation, elevations
 from rga.findings import Findings

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from rga.dashboard.pages.heading import heading, heading_of_damaged
-from rga.dashboard.pages.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.refused import refused_packets

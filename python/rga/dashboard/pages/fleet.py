@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from rga.dashboard.pages.alarm_desk import SHELVES, alarms_of
+from rga.dashboard.alarm_desk import SHELVES, alarms_of
 from rga.dashboard.pages.heading import Heading, heading, heading_of_damaged
-from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.times import DAY, age_words
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.dashboard.svg.chart import Window, sparkline
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.dashboard.svg.structure import Elevation, outline

@@ -6,8 +6,8 @@ from urllib.parse import parse_qs
 
 from fastapi import HTTPException, Request
 
-from rga.dashboard.pages.surroundings import Seen
 from rga.dashboard.pages.times import given_moment
+from rga.dashboard.surroundings import Seen
 from rga.errors import InputError
 from rga.operation.inbox.requests import Requests
 from rga.twin.commands.command import Accept, AnyCommand, Exclude, Reject, Rollback

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rga.dashboard.pages.state import State, damaged, state_of
-from rga.dashboard.pages.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.errors import InputError
 from rga.operation.reading.twin_now import TwinNow
 from rga.twin.commands.command import AnyCommand, Command

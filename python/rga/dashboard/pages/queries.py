@@ -7,8 +7,8 @@ from datetime import datetime
 from typing import Any
 
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.surroundings import Seen
 from rga.dashboard.pages.times import given_moment
+from rga.dashboard.surroundings import Seen
 from rga.operation.reading.twin_now import moment
 from rga.twin.history import Event
 from rga.twin.messages.log_text import exchanges, kinds_of, row_of, words_of

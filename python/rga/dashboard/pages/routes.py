@@ -10,8 +10,8 @@ from starlette.responses import RedirectResponse, Response
 
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
+from rga.dashboard.alarm_desk import act
 from rga.dashboard.api.served import TheTwin, surroundings_of
-from rga.dashboard.pages.alarm_desk import act
 from rga.dashboard.pages.alarms import alarms_page
 from rga.dashboard.pages.bridge import bridge_page
 from rga.dashboard.pages.causes import causes_page, findings_of
@@ -22,8 +22,8 @@ from rga.dashboard.pages.heading import heading_of_damaged
 from rga.dashboard.pages.queries import queries_page
 from rga.dashboard.pages.rendering import rendered
 from rga.dashboard.pages.sensor import sensor_page, sensors_page
-from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.versions import versions_page
+from rga.dashboard.surroundings import Seen, Surroundings
 from rga.errors import InputError
 
 Viewer = Annotated[Who, Depends(may("viewer"))]

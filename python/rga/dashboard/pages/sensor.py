@@ -11,9 +11,9 @@ from rga.arrays import FloatArray
 from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.sensors_now import SensorRow, sensor_rows
-from rga.dashboard.pages.surroundings import Seen
 from rga.dashboard.pages.times import utc_words
 from rga.dashboard.pages.windows import SPANS, ChosenWindow, chosen_window
+from rga.dashboard.surroundings import Seen
 from rga.dashboard.svg.chart import POINTS, Chart, Column, Mark, chart, column
 from rga.operation.reading.twin_now import RECENT, TwinNow
 from rga.operation.reading.twin_reading import Series

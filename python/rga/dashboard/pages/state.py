@@ -9,6 +9,7 @@ from rga.findings.phrases import kind_words
 from rga.operation.reading.twin_now import TwinNow
 from rga.quantities import number
 from rga.report.drawing.places import place_names
+from rga.twin.repository import Proposal
 from rga.twin.status import NEXT
 
 #: rows that are not played yet, from which on a twin is said to be behind
@@ -61,13 +62,12 @@ def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> St
     """
     if now is None or now.time is None:
         return State("no rows yet", "wait", "○", 5, "It waits for its first rows.")
+    proposed = "" if now.undecided is None else _decision_words(now.undecided)
     if now.out_of_sync:
         words = "Readings have left what the model lets expect; the reason is being looked for."
-        return State("alarm", "bad", "▲", 1, words)
-    if now.undecided is not None:
-        causes = ", ".join(map(cause_words, now.undecided.effects.values()))
-        words = f"A cause was found and waits for a decision: {causes or now.undecided.words}."
-        return State("to decide", "warn", "◆", 2, words)
+        return State("alarm", "bad", "▲", 1, f"{words} {proposed}".strip())
+    if proposed:
+        return State("to decide", "warn", "◆", 2, proposed)
     silence = (at - now.time).total_seconds()
     if silence > 2 * patience and lag == 0:
         words = f"The newest row is {span_words(silence)} old: its sources are silent."
@@ -79,3 +79,8 @@ def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> St
         return State("behind", "warn", "◁", 4, f"{lag} rows wait to be played.")
     extra = f" It has {', '.join(now.causes)} beyond the model as given." if now.causes else ""
     return State("in step", "good", "●", 6, f"Readings are as the model lets expect.{extra}")
+
+
+def _decision_words(proposal: Proposal) -> str:
+    causes = ", ".join(map(cause_words, proposal.effects.values()))
+    return f"A cause was found and waits for a decision: {causes or proposal.words}."

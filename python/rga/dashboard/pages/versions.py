@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.surroundings import Seen
+from rga.dashboard.pages.in_force import BEHIND, InForce, in_force
+from rga.dashboard.surroundings import Seen
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.findings.phrases import effect_words
 from rga.operation.reading.twin_now import moment
 from rga.operation.reading.twin_reading import TwinReading
 from rga.quantities import DASH, number
 from rga.report.figures.of_run.run_gap import mean
-from rga.twin.repository import ModelVersion, RunView
+from rga.twin.repository import ModelVersion
 
 #: entries of which the gap under a version is a mean
 ENTRIES = 64
@@ -63,17 +64,18 @@ def versions_page(seen: Seen) -> dict[str, Any]:
     }
     if now is None or view is None or twin is None:
         return found
-    stretches = _stretches(seen.reading, view)
+    last = 0.0 if now.time is None else seen.reading.elapsed(now.time) + BEHIND
+    stretches = in_force(view, last)
     rows: list[VersionRow] = []
     before: tuple[str, ...] = ()
     for one in view.versions():
         effects = tuple(effect_words(effect) for effect in json.loads(one.causes).values())
-        own = [stretch for stretch in stretches if stretch[0] == one.number]
-        gap = _gap(seen.reading, *own[-1][1:]) if own else None
+        own = [stretch for stretch in stretches if stretch.version == one.number]
+        gap = _gap(seen.reading, own[-1]) if own else None
         rows.append(
             VersionRow(
                 one.number,
-                moment(twin.station.start, own[0][1]) if own else None,
+                moment(twin.station.start, own[0].begin) if own else None,
                 effects,
                 tuple(words for words in effects if words not in before),
                 tuple(words for words in before if words not in effects),
@@ -88,21 +90,9 @@ def versions_page(seen: Seen) -> dict[str, Any]:
     return found | {"versions": rows[::-1]}
 
 
-def _stretches(reading: TwinReading, view: RunView) -> list[tuple[int, float, float]]:
-    """Version, and from when to when it was in force [s since the first row]."""
-    begun = []
-    for row, version in view.in_force():
-        time = view.measured(row, row + 1).time
-        begun.append((float(time[0]) if len(time) and row else 0.0, version))
-    now = reading.now()
-    last = 0.0 if now is None or now.time is None else reading.elapsed(now.time) + 1e-3
-    ends = [*(first for first, _ in begun[1:]), last]
-    return [(version, first, end) for (first, version), end in zip(begun, ends, strict=True)]
-
-
-def _gap(reading: TwinReading, begin: float, end: float) -> float | None:
-    """Mean of the gap over the sensors and a time."""
-    series = reading.series(begin, end, ENTRIES)
+def _gap(reading: TwinReading, stretch: InForce) -> float | None:
+    """Mean of the gap over the sensors and a stretch of time."""
+    series = reading.series(stretch.begin, stretch.end, ENTRIES)
     if series is None:
         return None
     found = float(mean(np.asarray(series.gap.mean, dtype=float)))

@@ -1,10 +1,10 @@
-"""What the pages see of a service."""
+"""What the API and the pages see of a service."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from rga.dashboard.pages.alarm_desk import AlarmDesk, NoAlarms
+from rga.dashboard.alarm_desk import AlarmDesk, NoAlarms
 from rga.operation.reading.twin_now import TwinNow
 from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.served_twin import ServedTwin
