@@ -9,7 +9,7 @@ SOURCES := pyproject.toml Cargo.toml Cargo.lock README.md LICENSE \
     -type f -not -name '_core*.so' -print)
 
 .DEFAULT_GOAL := help
-.PHONY: help run dev quick docs test thorough crates lint tests clean wheel environment installed
+.PHONY: help run live dev quick docs test thorough crates lint tests clean wheel environment installed
 
 # What is compiled on import is kept, whatever the environment says: tests begin hundreds of processes.
 export PYTHONDONTWRITEBYTECODE =
@@ -24,6 +24,11 @@ run: fresh = .venv
 run: wheel  ## build and install rga in a fresh environment, and run the twin of the case study
 	$(fresh)/bin/python $(INSTALL) "$$(echo dist/rga-*.whl)[twin]"
 	$(fresh)/bin/python examples/case_study.py
+
+live: fresh = .venv
+live: wheel  ## build and install rga, and watch a served twin of a bridge in which something happens
+	$(fresh)/bin/python $(INSTALL) "$$(echo dist/rga-*.whl)[serve]"
+	$(fresh)/bin/python examples/live_bridge.py
 
 dev:  ## once, and after a change of Rust: an environment that uses the sources as they are
 	$(PYTHON) -m venv .venv-dev

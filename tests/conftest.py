@@ -4,6 +4,7 @@ import gc
 import json
 from collections.abc import Callable
 from copy import deepcopy
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,6 +20,7 @@ from rga.findings import Findings
 from rga.model import Model, load_model, read_effect, read_model
 from rga.records import Record, load_record
 from rga.simulation import Simulator
+from rga.twin.settings import Settings
 from rga_bench.synthetic import Case
 
 
@@ -36,6 +38,8 @@ def pytest_collection_finish() -> None:
     """What was gathered stays to the end: a search for garbage need not go through it again."""
     gc.collect()
     gc.freeze()
+    # A search now and then: what is no longer needed is mostly freed without one.
+    gc.set_threshold(50_000, 20, 20)
     gc.enable()
 
 
@@ -59,6 +63,13 @@ def rga(capsys: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
         return Outcome(int(left.value.code or 0), out, err)
 
     return run
+
+
+@pytest.fixture
+def without_reports(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Findings are written without reports: drawing one takes longer than many a diagnosis."""
+    monkeypatch.setattr("rga.report.write_report", lambda findings, path: path)
+    monkeypatch.setattr("rga.report.write_run_report", lambda history, findings, path: path)
 
 
 @pytest.fixture(scope="session")
@@ -297,7 +308,7 @@ def measured_record() -> Callable[..., Record]:
 
 @pytest.fixture
 def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """The methods of the levels of integration, for a while."""
+    """The methods of the levels of integration, for a while, and thresholds of short streams."""
     from context_tasks import nearest
     from rga_bench.contexts.rows import METHODS, Row
 
@@ -308,4 +319,5 @@ def few_methods(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     }
     for module in ("experiment", "task_run", "tables.targets"):
         monkeypatch.setattr(f"rga_bench.contexts.{module}.METHODS", methods)
+    monkeypatch.setattr("rga_bench.contexts.twin_run.Settings", partial(Settings, arl0=2000.0))
     return methods

@@ -6,6 +6,7 @@ import platform
 import subprocess
 import sys
 from ctypes.util import find_library
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -48,6 +49,7 @@ def loaded() -> str:
     return ", ".join(sorted(described))
 
 
+@cache
 def _blas() -> str:
     """Those of NumPy, SciPy and CHOLMOD, whatever else this process has loaded by now.
 

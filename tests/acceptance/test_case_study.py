@@ -10,6 +10,7 @@ from rga.inference import TrainingSettings
 from rga.twin import Outcome, Settings
 from rga_bench.synthetic import draw_stream
 
+pytestmark = pytest.mark.usefixtures("without_reports")
 ROWS = 180
 SETTINGS = Settings(
     arl0=2000.0,

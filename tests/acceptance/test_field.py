@@ -298,7 +298,13 @@ def test_what_is_true_though_not_hidden_is_no_mistake() -> None:
     assert not PermittedCauses().has({"kind": "sensor_bias", "sensor": "S1"})
 
 
-@pytest.mark.parametrize("name", ["field-2031-outside-8", "field-2033-single-31-null"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("field-2031-outside-8", marks=pytest.mark.thorough),
+        "field-2033-single-31-null",
+    ],
+)
 def test_a_channel_of_its_own_response_names_nothing(name: str) -> None:
     """Cross-talk, or a gauge at a welded gusset: else a steel is softer, or a gauge broken."""
     outcome = judge(draw_of(name))

@@ -17,7 +17,7 @@ from rga_bench.faults.trial import FaultTrial
 
 ROWS = 80
 #: how many records are drawn: a few in every run, thousands where they are asked for
-EXAMPLES = int(os.environ.get("RGA_TEST_EXAMPLES", "4"))
+EXAMPLES = int(os.environ.get("RGA_TEST_EXAMPLES", "2"))
 
 
 def bases() -> st.SearchStrategy[Base]:

@@ -5,6 +5,7 @@ challenge; `rga benchmark diagnosis` runs as much of it as one likes.
 """
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -13,21 +14,29 @@ from rga_bench.diagnosis.judge import DrawOutcome, judge
 from rga_bench.experiment import Execution
 from rga_bench.ledger import outcomes_of
 
-NAMES = ("1-single-4", "1-single-26", "1-single-40", "1-pair-0")
+FEW, MORE = ("1-single-40", "1-pair-0"), ("1-single-4", "1-single-26")
+names = pytest.mark.parametrize(
+    "name", [*FEW, *(pytest.param(name, marks=pytest.mark.thorough) for name in MORE)]
+)
 
 
-@pytest.fixture(scope="module")
-def outcomes() -> dict[str, DrawOutcome]:
+@cache
+def outcomes(named: tuple[str, ...]) -> dict[str, DrawOutcome]:
     """A draw and its null twin for every name."""
-    hidden = [Draw.parse(name) for name in NAMES]
+    hidden = [Draw.parse(name) for name in named]
     tasks = [*hidden, *(replace(one, null=True) for one in hidden)]
     done = outcomes_of(judge, tasks, DrawOutcome, Execution(workers=2))
     return {one.id: one for one in done}
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_what_is_hidden_is_found(outcomes: dict[str, DrawOutcome], name: str) -> None:
-    one = outcomes[name]
+def outcome(name: str) -> DrawOutcome:
+    """That of a draw, which is judged with others at once."""
+    return outcomes(FEW if name.removesuffix("-null") in FEW else MORE)[name]
+
+
+@names
+def test_what_is_hidden_is_found(name: str) -> None:
+    one = outcome(name)
     assert len(one.hidden) == len(one.draw.kinds)
     for hidden in one.hidden:
         assert hidden["d_prime"] > 10
@@ -38,14 +47,14 @@ def test_what_is_hidden_is_found(outcomes: dict[str, DrawOutcome], name: str) ->
     assert set(one.draw.kinds) <= named
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_its_null_twin_names_nothing(outcomes: dict[str, DrawOutcome], name: str) -> None:
-    one = outcomes[f"{name}-null"]
+@names
+def test_its_null_twin_names_nothing(name: str) -> None:
+    one = outcome(f"{name}-null")
     assert not one.hidden
     assert not one.named
-    assert one.model_sha256 == outcomes[name].model_sha256
+    assert one.model_sha256 == outcome(name).model_sha256
 
 
-def test_no_outcome_depends_on_the_workers(outcomes: dict[str, DrawOutcome]) -> None:
-    alone, pooled = judge(Draw.parse("1-single-40")), outcomes["1-single-40"]
+def test_no_outcome_depends_on_the_workers() -> None:
+    alone, pooled = judge(Draw.parse("1-single-40")), outcome("1-single-40")
     assert replace(alone, seconds=0.0) == replace(pooled, seconds=0.0)

@@ -31,7 +31,9 @@ def test_nothing_hidden_nothing_named(case: str) -> None:
     assert [c.effect["kind"] for c in findings.causes if c.effect["kind"] not in stiff] == []
 
 
-@pytest.mark.parametrize("case", ["03", "04", "05", "06"])
+@pytest.mark.parametrize(
+    "case", ["03", *(pytest.param(case, marks=pytest.mark.thorough) for case in ("04", "05")), "06"]
+)
 def test_the_hidden_effect_is_named(case: str) -> None:
     truth, findings = diagnosed(case)
     (cause,) = findings.causes

@@ -75,6 +75,7 @@ def test_the_floor_and_not_a_bearing(findings: rga.Findings) -> None:
     assert all(c.separated_by for c in structural)
 
 
+@pytest.mark.thorough
 def test_half_a_crossing_says_the_same() -> None:
     """What hangs on the train's place must not be taken for something that begins on the way."""
     model = rga.load_model(EXAMPLE / "model.json")

@@ -16,7 +16,7 @@ from site_truss import ROWS, Logged, Site, content, logged, model
 #: standard deviation of what measures the loads [kN]: a deflection errs by more than by its noise
 COARSE = 4.0
 BEGUN = np.arange(ROWS) >= 72
-seeds = pytest.mark.parametrize("seed", [1, 2])
+seeds = pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.thorough)])
 
 
 def coarse_model() -> Model:

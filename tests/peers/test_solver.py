@@ -3,7 +3,7 @@
 import json
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -194,7 +194,11 @@ def test_a_page_reports_ratios_and_whether_they_reach_their_targets() -> None:
         assert line in text.splitlines()
 
 
-def test_the_command(rga: Any, tmp_path: Path) -> None:
+def test_the_command(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "rga_bench.solver.experiment.shorter",
+        lambda seed: replace(LITTLE, rows=256, seed=seed, judged=False),
+    )
     folder, file = tmp_path / "out", tmp_path / "figures.json"
     ran = rga("benchmark", "solver", "--quick", "-o", folder, "--json", file)
     assert ran.code == 0, ran.err

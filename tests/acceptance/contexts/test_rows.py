@@ -56,7 +56,14 @@ def few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("few_steps")
-@pytest.mark.parametrize("name", HERE)
+@pytest.mark.parametrize(
+    "name",
+    [
+        # What twenty load tests are to a method sixty are as well.
+        pytest.param(name, marks=[pytest.mark.thorough] if METHODS[name].load_tests > 20 else [])
+        for name in HERE
+    ],
+)
 def test_a_row_learns_and_looks_at_no_label_but_its_own(name: str, easy: CalibrationData) -> None:
     row, tests = METHODS[name], easy.lesson.load_tests
     assert tests is not None

@@ -26,7 +26,7 @@ def test_every_kind_is_drawn() -> None:
 
 
 @pytest.mark.parametrize("kind", STREAM_KINDS)
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.thorough)])
 def test_hidden_effect_is_clearly_visible_and_comes_late(kind: str, seed: int) -> None:
     hidden = draw_stream(seed, hidden=kind)
     null = draw_stream(seed, hidden=None)

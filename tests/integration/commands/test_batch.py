@@ -79,6 +79,7 @@ def test_two_processes_give_the_same_bytes(
     assert contents(tmp_path / "out") == contents(alone)
 
 
+@pytest.mark.thorough
 def test_a_dask_cluster_gives_the_same_bytes(
     bridges: Path, alone: Path, tmp_path: Path, rga: Rga, cluster: str
 ) -> None:

@@ -59,6 +59,7 @@ def test_files_in_findings_out(case: Path, rga: Callable[..., Any]) -> None:
     assert again.causes == []
 
 
+@pytest.mark.usefixtures("without_reports")
 def test_results_of_another_run_are_not_replaced_without_a_word(
     case: Path, rga: Callable[..., Any]
 ) -> None:
@@ -74,6 +75,7 @@ def test_results_of_another_run_are_not_replaced_without_a_word(
     assert "holds the results" not in done.err
 
 
+@pytest.mark.usefixtures("without_reports")
 def test_a_run_that_goes_on_tells_what_happened_before(case: Path, rga: Callable[..., Any]) -> None:
     out = case / "out"
     out.mkdir()

@@ -53,7 +53,14 @@ def words(name: str, folder: Path, out: Path) -> list[str]:
     return [one.replace("{}", str(folder)).replace("OUT", str(out)) for one in COMMANDS[name]]
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        # A diagnosis alone stands for one of many.
+        pytest.param(name, marks=[pytest.mark.thorough] if name == "diagnose-many" else [])
+        for name in COMMANDS
+    ],
+)
 def test_a_full_disk_is_told_in_a_line(name: str, files: Path, tmp_path: Path) -> None:
     said = refused(LIMITED, *words(name, files, tmp_path / "out"))
     assert "too large" in said or "full" in said or "fails" in said
@@ -76,7 +83,9 @@ def test_a_place_that_cannot_be_written(
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is full")
-@pytest.mark.parametrize("more", [(), ("--json",)], ids=["text", "JSON"])
+@pytest.mark.parametrize(
+    "more", [(), pytest.param(("--json",), marks=pytest.mark.thorough)], ids=["text", "JSON"]
+)
 def test_an_output_that_takes_nothing(more: tuple[str, ...], model_file: Path) -> None:
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(

@@ -31,6 +31,11 @@ Zeroed = Callable[[Case, Span | None], Findings]
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 
 
+def thorough(value: Any) -> Any:
+    """A value of a parameter that the thorough run looks at as well."""
+    return pytest.param(value, marks=pytest.mark.thorough)
+
+
 def drawn(seed: int, kind: str = "null") -> Case:
     return draw_case(
         seed,
@@ -108,14 +113,14 @@ def healthy() -> Case:
     return drawn(1)
 
 
-@pytest.mark.parametrize("span", [None, LEAD_IN, SHORT, MIDDLE])
+@pytest.mark.parametrize("span", [None, LEAD_IN, thorough(SHORT), MIDDLE])
 def test_nothing_late_names_nothing(healthy: Case, span: Span | None, zeroed: Zeroed) -> None:
     findings = zeroed(healthy, span)
     assert findings.causes == []
     assert findings.verdict == "nothing_wrong"
 
 
-@pytest.mark.parametrize("span", [SHORT, MIDDLE])
+@pytest.mark.parametrize("span", [thorough(SHORT), MIDDLE])
 def test_a_late_offset_of_a_gauge(healthy: Case, span: Span, zeroed: Zeroed) -> None:
     (cause,) = zeroed(added(healthy, "g_deck2", 15.0), span).causes
     assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_bias", "g_deck2")
@@ -123,11 +128,13 @@ def test_a_late_offset_of_a_gauge(healthy: Case, span: Span, zeroed: Zeroed) -> 
     assert cause.onset == healthy.time[LATE]
 
 
-def test_a_jump_of_a_gauge_is_no_loss_of_a_member(healthy: Case, zeroed: Zeroed) -> None:
-    for span in (None, LEAD_IN):
-        (cause,) = zeroed(added(healthy, "g_deck4", 150.0), span).causes
-        assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_bias", "g_deck4")
-        assert cause.effect["offset"]["value"] == pytest.approx(150.0, abs=3.0)
+@pytest.mark.parametrize("span", [thorough(None), LEAD_IN])
+def test_a_jump_of_a_gauge_is_no_loss_of_a_member(
+    healthy: Case, span: Span | None, zeroed: Zeroed
+) -> None:
+    (cause,) = zeroed(added(healthy, "g_deck4", 150.0), span).causes
+    assert (cause.effect["kind"], cause.effect["sensor"]) == ("sensor_bias", "g_deck4")
+    assert cause.effect["offset"]["value"] == pytest.approx(150.0, abs=3.0)
 
 
 def test_zeros_that_the_model_states(healthy: Case, zeroed: Zeroed) -> None:
@@ -160,7 +167,7 @@ def test_a_late_settlement(zeroed: Zeroed) -> None:
     assert cause.onset == case.truth["onset"]
 
 
-@pytest.mark.parametrize("span", [LEAD_IN, MIDDLE])
+@pytest.mark.parametrize("span", [LEAD_IN, thorough(MIDDLE)])
 def test_a_late_dead_load(healthy: Case, span: Span, zeroed: Zeroed) -> None:
     (cause,) = zeroed(loaded(healthy), span).causes
     # More people all the time are the same.
@@ -170,7 +177,7 @@ def test_a_late_dead_load(healthy: Case, span: Span, zeroed: Zeroed) -> None:
     assert cause.onset == healthy.time[LATE]
 
 
-@pytest.mark.parametrize("span", [LEAD_IN, SHORT])
+@pytest.mark.parametrize("span", [thorough(LEAD_IN), SHORT])
 def test_a_late_bias_of_a_context(healthy: Case, span: Span, zeroed: Zeroed) -> None:
     (cause,) = zeroed(added(healthy, "air", 6.0), span).causes
     assert (cause.effect["kind"], cause.effect["context"]) == ("context_bias", "air")
@@ -180,7 +187,7 @@ def test_a_late_bias_of_a_context(healthy: Case, span: Span, zeroed: Zeroed) -> 
 # --- The noise of the zero ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("seed", [2, 3, 5])
+@pytest.mark.parametrize("seed", [2, thorough(3), thorough(5)])
 def test_a_zero_of_two_rows_is_no_cause(seed: int, zeroed: Zeroed) -> None:
     findings = zeroed(drawn(seed), (0, 2))
     assert findings.causes == []

@@ -278,7 +278,15 @@ def test_an_earlier_result_is_taken_in_one_way(model: Model) -> None:
         infer_jointly(unknowns, *given, start=first, prior=first)
 
 
-@pytest.mark.parametrize("fault", ["three times as much", "other sign", "off later on", "noise"])
+@pytest.mark.parametrize(
+    "fault",
+    [
+        pytest.param("three times as much", marks=pytest.mark.thorough),
+        "other sign",
+        pytest.param("off later on", marks=pytest.mark.thorough),
+        "noise",
+    ],
+)
 def test_a_broken_sensor_spoils_nothing(model: Model, other: Model, fault: str) -> None:
     contexts, noise, source = drawn(model, 60, 96), noise_of(model), drawn(model, 300, 97)
     rows = measured(other, contexts, 98)

@@ -72,7 +72,9 @@ def assert_order_is_all(
     assert_same(ends[1][1], ends[0][1])
 
 
-@pytest.mark.parametrize("seed", range(1, 4))
+@pytest.mark.parametrize(
+    "seed", [1, *(pytest.param(seed, marks=pytest.mark.thorough) for seed in (2, 3))]
+)
 def test_reopening_between_commands_changes_nothing(
     seed: int, sinks: Given, taken_in: Callable[..., Path]
 ) -> None:
@@ -104,9 +106,15 @@ def propose(place: Path) -> None:
 @pytest.mark.parametrize(
     "asked",
     [
-        [Accept(**BY), Rollback(version=1, **BY), Recalibrate(**BY)],
+        pytest.param(
+            [Accept(**BY), Rollback(version=1, **BY), Recalibrate(**BY)],
+            marks=pytest.mark.thorough,
+        ),
         [Rollback(version=1, **BY), Recalibrate(**BY), Accept(**BY), Exclude(sensor="D1", **BY)],
-        [Accept(**BY), Rollback(version=1, **BY), Rollback(version=2, **BY), Note(**BY)],
+        pytest.param(
+            [Accept(**BY), Rollback(version=1, **BY), Rollback(version=2, **BY), Note(**BY)],
+            marks=pytest.mark.thorough,
+        ),
     ],
 )
 def test_a_version_is_learned_before_the_next_command(

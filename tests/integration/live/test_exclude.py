@@ -53,7 +53,9 @@ def test_an_excluded_sensor_raises_no_alarm(sound: Given, tmp_path: Path) -> Non
     assert kinds(left.events) == ["calibration", "command"]
 
 
-@pytest.mark.parametrize("off", [FAR, -3 * FAR, float("nan")])
+@pytest.mark.parametrize(
+    "off", [FAR, pytest.param(-3 * FAR, marks=pytest.mark.thorough), float("nan")]
+)
 def test_what_an_excluded_sensor_reads_changes_nothing(
     off: float, sound: Given, tmp_path: Path
 ) -> None:

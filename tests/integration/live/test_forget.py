@@ -49,13 +49,26 @@ def played(given: Given, place: Path, keep: int | None) -> History:
         return history(twin)
 
 
+@pytest.fixture(scope="module")
+def both(
+    stream: Given, tmp_path_factory: pytest.TempPathFactory
+) -> dict[int | None, tuple[Path, History]]:
+    """What a stream leaves behind, and where, in which old readings are forgotten or none are."""
+    place = tmp_path_factory.mktemp("both")
+    return {
+        keep: (place / str(keep), played(stream, place / str(keep), keep)) for keep in (KEPT, None)
+    }
+
+
 def but_commands(events: tuple[Event, ...]) -> list[Event]:
     return [one for one in events if one.kind != "command"]
 
 
-def test_old_readings_are_gone_and_the_rest_is_as_it_was(stream: Given, tmp_path: Path) -> None:
-    found, whole = (played(stream, tmp_path / str(keep), keep) for keep in (KEPT, None))
-    with rga.Twin.open(tmp_path / str(KEPT)) as twin:
+def test_old_readings_are_gone_and_the_rest_is_as_it_was(
+    both: dict[int | None, tuple[Path, History]],
+) -> None:
+    (place, found), (_, whole) = both[KEPT], both[None]
+    with rga.Twin.open(place) as twin:
         stretches = twin.forgotten
         assert "are forgotten" in twin.status().words()
     gone = np.zeros(ROWS, dtype=bool)
@@ -82,10 +95,10 @@ def test_old_readings_are_gone_and_the_rest_is_as_it_was(stream: Given, tmp_path
     assert but_commands(found.events) == but_commands(whole.events)
 
 
-def test_the_past_can_be_asked_all_the_same(stream: Given, tmp_path: Path) -> None:
-    played(stream, tmp_path / "kept", None)
-    played(stream, tmp_path / "forgotten", KEPT)
-    kept, forgotten = (rga.Twin.open(tmp_path / name) for name in ("kept", "forgotten"))
+def test_the_past_can_be_asked_all_the_same(
+    both: dict[int | None, tuple[Path, History]],
+) -> None:
+    kept, forgotten = (rga.Twin.open(both[keep][0]) for keep in (None, KEPT))
     for row in (50, 120, ROWS - 1):
         one, other = kept.as_of(row=row), forgotten.as_of(row=row)
         assert one.version == other.version
@@ -94,15 +107,16 @@ def test_the_past_can_be_asked_all_the_same(stream: Given, tmp_path: Path) -> No
         assert [e.kind for e in one.history().events] == [e.kind for e in other.history().events]
 
 
-def test_step_by_step_it_comes_to_the_same(stream: Given, tmp_path: Path) -> None:
-    at_once = played(stream, tmp_path / "at once", KEPT)
+def test_step_by_step_it_comes_to_the_same(
+    stream: Given, both: dict[int | None, tuple[Path, History]], tmp_path: Path
+) -> None:
     place = tmp_path / "step by step"
     with begun(stream, place) as twin:
         twin.ask(Forget(who="Ada", why="the disk is small", keep=KEPT, given_at="now"))
         twin.feed(stream[1])
     play_step_by_step(place)
     with rga.Twin.open(place) as found:
-        assert_same(found.history(), at_once)
+        assert_same(found.history(), both[KEPT][1])
 
 
 def test_the_diagnosis_says_what_it_did_not_see(stream: Given, tmp_path: Path) -> None:

@@ -284,9 +284,13 @@ def assert_short(refused: str) -> None:
         assert f"{len(mistakes)} mistakes" in first or "... and " in mistakes[-1]
 
 
-def test_junk_anywhere_in_the_model() -> None:
+@pytest.mark.parametrize(
+    "first", [0, *(pytest.param(first, marks=pytest.mark.thorough) for first in (1, 2))]
+)
+def test_junk_anywhere_in_the_model(first: int) -> None:
+    """In every third place, from one of the first three on."""
     model = small_model()
-    check_each_junk(model, list(places(model)))
+    check_each_junk(model, list(places(model))[first::3])
 
 
 @pytest.mark.parametrize("other", OTHER_EFFECTS, ids=lambda effect: str(effect["kind"]))

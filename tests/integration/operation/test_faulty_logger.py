@@ -1,5 +1,6 @@
 """A logger with faults that were drawn: what becomes of its packets is as they were scripted."""
 
+import random
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -29,20 +30,24 @@ FAULTS = Faults(
 
 
 class Straight:
-    """Sends to a twin without anything between."""
+    """Sends to a twin without anything between, some payloads at a time."""
 
-    def __init__(self, twin: ServedTwin) -> None:
-        self.twin, self.count = twin, 0
+    def __init__(self, twin: ServedTwin, seed: int) -> None:
+        self._twin, self._draw = twin, random.Random(seed)
+        self._waiting: list[tuple[str, bytes]] = []
 
     def send(self, payload: bytes, number: Number | None) -> None:
-        self.twin.receive("http", [("test", payload)])
-        self.count += 1
-        # However often rows are made meanwhile.
-        if self.count % 97 == 0:
-            self.twin.seal()
+        self._waiting.append(("test", payload))
+        if self._draw.random() < 0.02:
+            self._twin.receive("http", self._waiting)
+            self._waiting = []
+            # However often rows are made meanwhile.
+            if self._draw.random() < 0.5:
+                self._twin.seal()
 
     def finish(self) -> None:
-        self.twin.seal()
+        self._twin.receive("http", self._waiting)
+        self._twin.seal()
 
 
 def predicted(faults: Faults) -> tuple[Counter[str], list[int]]:
@@ -86,7 +91,7 @@ def test_counts_are_as_scripted(
     values = np.random.default_rng(seed).normal(size=(SECONDS, 2))
     times = MIDNIGHT + MICROSECONDS * np.arange(SECONDS)
     record = SentRecord(("D1", "temperature"), times, values, "s")
-    play(record, Straight(twin), 1, np.inf, faults)
+    play(record, Straight(twin, seed), 1, np.inf, faults)
 
     told, used = predicted(faults)
     account = sum(twin.packets.account().values(), Account())

@@ -212,10 +212,11 @@ def test_of_many_bridges_no_findings_are_lost(files: Path, monkeypatch: pytest.M
             "what would separate the causes from their rivals",
             InputError("the structure can move", "node L1, uz", "hold it"),
         ),
-        (
+        pytest.param(
             "rga.diagnosis.residuals.patterns.in_words",
             "what the structure that is left goes with",
             FloatingPointError("overflow"),
+            marks=pytest.mark.thorough,
         ),
     ],
 )

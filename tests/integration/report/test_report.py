@@ -233,7 +233,9 @@ def test_hostile_names_stay_text(tmp_path: Path) -> None:
     assert HOSTILE in reader.text
 
 
-@pytest.mark.parametrize("rows", [1, 2, 5, 1500])
+@pytest.mark.parametrize(
+    "rows", [1, *(pytest.param(rows, marks=pytest.mark.thorough) for rows in (2, 5)), 1500]
+)
 @pytest.mark.parametrize("smooth", [True, False])
 def test_any_number_of_rows(tmp_path: Path, rows: int, smooth: bool) -> None:
     reader, _ = read(found(truss(), rows=rows, smooth=smooth), tmp_path)

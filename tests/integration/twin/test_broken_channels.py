@@ -13,6 +13,7 @@ from rga.records import Record
 from rga.twin import Outcome, Settings
 
 SAMPLE = ROOT / "examples" / "footbridge"
+pytestmark = pytest.mark.usefixtures("without_reports")
 #: rows of the sample before its abutment settles
 BEFORE = 80
 #: thresholds of false alarms that come more often are found from shorter streams

@@ -97,7 +97,7 @@ def learned(drawn: Drawn) -> JointEstimator:
 
 
 @pytest.mark.parametrize("inference", ["joint", "networks", "amortised"])
-@pytest.mark.parametrize("missing", [0.0, 0.1])
+@pytest.mark.parametrize("missing", [pytest.param(0.0, marks=pytest.mark.thorough), 0.1])
 def test_packets_of_any_size_give_the_same_bits(
     drawn: Drawn, inference: Any, missing: float
 ) -> None:
@@ -353,7 +353,7 @@ def test_a_model_that_cannot_be_calibrated_says_so_each_time(
             rga.run(model, record, tmp_path)
 
 
-@pytest.mark.parametrize("law", ["smooth", "constant"])
+@pytest.mark.parametrize("law", ["smooth", pytest.param("constant", marks=pytest.mark.thorough)])
 def test_few_rows_before_a_packet_tell_of_contexts_that_change_slowly(
     law: str, small_stream: Stream, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -130,67 +130,73 @@ def changed(small_stream: Stream) -> Path:
     return small_stream()
 
 
-def test_the_clock_recalibrates_where_nothing_happens(null: Path, tmp_path: Path) -> None:
-    by_policy = {
-        name: play(null, tmp_path / name, policy=name, **more)
-        for name, more in {
-            "event": {},
-            "time": {"interval": 30},
-            "hybrid": {"interval": 30},
-            "adaptive": {"interval": 30},
-        }.items()
+@pytest.fixture(scope="module")
+def quiet(null: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, History]:
+    """What twins of each policy lived through where nothing happens."""
+    place = tmp_path_factory.mktemp("quiet")
+    return {
+        name: play(null, place / name, policy=name, interval=None if name == "event" else 30)
+        for name in POLICIES
     }
-    found = {name: rows(history, "recalibration") for name, history in by_policy.items()}
+
+
+def test_the_clock_recalibrates_where_nothing_happens(quiet: dict[str, History]) -> None:
+    found = {name: rows(history, "recalibration") for name, history in quiet.items()}
     assert found["event"] == []
     assert found["time"] == found["hybrid"] == [69, 99, 129]
     # Next to nothing is gained, and the next one is later.
     assert found["adaptive"][0] == 69
     assert found["adaptive"][1] > 99
-    for history in by_policy.values():
+    for history in quiet.values():
         assert not rows(history, "alarm")
         assert len(history.versions) == 1
 
 
-@pytest.fixture(scope="module")
-def histories(changed: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, History]:
-    """What twins of each policy lived through where the structure changed."""
-    place = tmp_path_factory.mktemp("histories")
-    return {
-        name: play(changed, place / name, policy=name, interval=None if name == "event" else 30)
-        for name in POLICIES
-    }
-
-
-def test_an_alarm_recalibrates_where_it_is_listened_to(histories: dict[str, History]) -> None:
-    (alarm,) = rows(histories["event"], "alarm")
+@pytest.mark.parametrize(
+    "name",
+    [
+        "event",
+        pytest.param("time", marks=pytest.mark.thorough),
+        "hybrid",
+        pytest.param("adaptive", marks=pytest.mark.thorough),
+    ],
+)
+def test_an_alarm_recalibrates_where_it_is_listened_to(
+    name: str, changed: Path, tmp_path: Path
+) -> None:
+    """And whatever the policy, a diagnosis finds that the model is wrong."""
+    history = play(changed, tmp_path, policy=name, interval=None if name == "event" else 30)
+    (alarm,) = rows(history, "alarm")
     assert 105 <= alarm < 115
-    # The alarm comes in the packet up to row 109, and has 12 rows with the packet up to row 119.
-    assert rows(histories["event"], "recalibration") == [119]
-    # Here it is told, and the clock goes on as before.
-    assert rows(histories["time"], "alarm") == [alarm]
-    assert rows(histories["time"], "recalibration") == [69, 99, 129]
-    # Both: the clock begins anew with the recalibration of the alarm.
-    assert rows(histories["hybrid"], "alarm") == [alarm]
-    assert rows(histories["hybrid"], "recalibration") == [69, 99, 119, 149]
-    # An alarm is not kept waiting by an interval that has adapted.
-    assert rows(histories["adaptive"], "alarm") == [alarm]
-    assert 119 in rows(histories["adaptive"], "recalibration")
+    found = rows(history, "recalibration")
+    if name == "event":
+        # The alarm comes in the packet up to row 109, and has 12 rows with that up to row 119.
+        assert found == [119]
+    elif name == "time":
+        # Here it is told, and the clock goes on as before.
+        assert found == [69, 99, 129]
+    elif name == "hybrid":
+        # Both: the clock begins anew with the recalibration of the alarm.
+        assert found == [69, 99, 119, 149]
+    else:
+        # An alarm is not kept waiting by an interval that has adapted.
+        assert 119 in found
+    assert len(history.versions) == 2
+    assert "support settlement" in history.versions[1].causes[0]
 
 
-def test_every_policy_finds_that_the_model_is_wrong(histories: dict[str, History]) -> None:
-    for history in histories.values():
-        assert len(history.versions) == 2
-        assert "support settlement" in history.versions[1].causes[0]
-
-
+@pytest.mark.parametrize("happens", [False, pytest.param(True, marks=pytest.mark.thorough)])
 def test_interrupted_after_every_step_it_ends_the_same(
-    changed: Path, histories: dict[str, History], tmp_path: Path
+    happens: bool, null: Path, changed: Path, tmp_path: Path
 ) -> None:
     """An interval that adapts is all that any policy has to remember, and an alarm besides."""
-    again = play(changed, tmp_path, steps=1, policy="adaptive", interval=30)
-    assert again.events == histories["adaptive"].events
-    np.testing.assert_array_equal(again.gaps, histories["adaptive"].gaps)
-    np.testing.assert_array_equal(again.inferred, histories["adaptive"].inferred)
+    given = {"policy": "adaptive", "interval": 30}
+    stream = changed if happens else null
+    whole = play(stream, tmp_path / "whole", **given)
+    again = play(stream, tmp_path / "again", steps=1, **given)
+    assert again.events == whole.events
+    np.testing.assert_array_equal(again.gaps, whole.gaps)
+    np.testing.assert_array_equal(again.inferred, whole.inferred)
 
 
 #: as little as can be played

@@ -5,10 +5,7 @@ makes grows with the response, so the gap under a heavy load must not be held ag
 rows.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from rga.arrays import FloatArray
@@ -17,6 +14,8 @@ from rga.arrays import FloatArray
 LARGEST = 0.05
 #: stretches that are drawn of calibrated rows
 DRAWS = 1000
+#: numbers of stretches that are looked at together
+AT_ONCE = 1_000_000
 
 
 def scatter_share(gaps: FloatArray, simulated: FloatArray, noise: FloatArray) -> float:
@@ -103,8 +102,7 @@ def usual_bound(by_row: FloatArray, rows: int, share: float, seed: int) -> float
     known = by_row[np.isfinite(by_row)]
     if not len(known) or not rows:
         return float("inf")
-    drawn = [np.median(known[chosen]) for chosen in _stretches(len(known), rows, seed)]
-    return float(np.quantile(drawn, share))
+    return float(np.quantile(_medians_of_stretches(known, rows, seed), share))
 
 
 def channel_medians(scaled: FloatArray) -> FloatArray:
@@ -134,17 +132,24 @@ def channel_bound(scaled: FloatArray, rows: int, share: float, seed: int) -> flo
         return float("inf")
     # A reading that is missing is taken as an ordinary one.
     times = np.nan_to_num(known / medians[medians > 0], nan=1.0)
-    drawn = [np.median(times[one], axis=0).max() for one in _stretches(len(times), rows, seed)]
-    return float(np.quantile(drawn, share))
+    drawn = _medians_of_stretches(times, rows, seed)
+    return float(np.quantile(drawn.max(axis=1), share))
 
 
-def _stretches(known: int, rows: int, seed: int) -> Iterator[NDArray[np.int64]]:
-    """Numbers of so many of the known rows, again and again, in blocks.
+def _medians_of_stretches(values: FloatArray, rows: int, seed: int) -> FloatArray:
+    """Medians over stretches of so many rows, float[DRAWS, ...], of float[n, ...].
 
-    A moving-block bootstrap (Kuensch, Annals of Statistics 17, 1989): neighbours are alike.
+    Stretches are made of blocks of neighbours, which are alike: a moving-block bootstrap (Kuensch,
+    Annals of Statistics 17, 1989).
     """
+    known = len(values)
     length = max(1, min(round(np.sqrt(known)), rows))
     draw, ahead = np.random.default_rng(seed), np.arange(length)
-    for _ in range(DRAWS):
-        starts = draw.integers(0, known - length + 1, size=-(-rows // length))
-        yield (starts[:, None] + ahead).ravel()[:rows]
+    at_once = max(1, AT_ONCE * known // (rows * values.size))
+    medians = []
+    for first in range(0, DRAWS, at_once):
+        size = min(at_once, DRAWS - first), -(-rows // length)
+        starts = draw.integers(0, known - length + 1, size=size)
+        chosen = (starts[:, :, None] + ahead).reshape(len(starts), -1)[:, :rows]
+        medians.append(np.median(values[chosen], axis=1))
+    return np.concatenate(medians)
