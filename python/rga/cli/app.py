@@ -17,6 +17,7 @@ from rga.cli.diagnosis.plan import plan
 from rga.cli.doctor import doctor
 from rga.cli.operation.decide import accept, reject, rollback
 from rga.cli.operation.export import export
+from rga.cli.operation.feed import feed
 from rga.cli.operation.replay import replay
 from rga.cli.operation.run import run
 from rga.cli.operation.serve import serve
@@ -45,8 +46,8 @@ app = typer.Typer(
 )
 for command in (
     example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, status,
-    replay, accept, reject, rollback, export, serve, user, simulate, results, whatif, dataset,
-    verify, schema, doctor,
+    replay, accept, reject, rollback, export, serve, user, feed, simulate, results, whatif,
+    dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

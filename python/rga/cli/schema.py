@@ -1,6 +1,7 @@
 """`rga schema`: the JSON Schema of the files."""
 
 from enum import StrEnum
+from importlib import import_module
 from typing import Annotated
 
 import typer
@@ -17,39 +18,40 @@ class Format(StrEnum):
     criteria = "criteria"
     import_toml = "import"
     settings = "settings"
+    serve = "serve"
+    faults = "faults"
+    packet = "packet"
+
+
+#: where the schema of each is made, or the class that has it
+HOMES = {
+    Format.model: ("rga.model", "model_schema"),
+    Format.record: ("rga.records", "record_schema"),
+    Format.findings: ("rga.findings", "Findings"),
+    Format.criteria: ("rga.findings.criteria", "Criteria"),
+    Format.import_toml: ("rga.records.mapping", "mapping_schema"),
+    Format.settings: ("rga.twin.settings", "Settings"),
+    Format.serve: ("rga.operation.configuration", "Configuration"),
+    Format.faults: ("rga.operation.feeding.faults", "Faults"),
+    Format.packet: ("rga.operation.packets.native", "packet_schema"),
+}
 
 
 def schema(
-    of: Annotated[Format, typer.Argument(metavar="model|record|findings|criteria|import|settings")],
+    of: Annotated[Format, typer.Argument(metavar="|".join(Format), help="What is described.")],
     json: JsonTarget = "-",
 ) -> None:
-    """Print the JSON Schema of a file; `import` is import.toml, `settings` are those of a run."""
+    """Print the JSON Schema of a file, of a service, or of what loggers send.
+
+    `import` is import.toml, `settings` are those of a run, `serve` is what `rga serve` reads,
+    `faults` what `rga feed` does, and `packet` what loggers send.
+    """
     from rga.cli.output import write_json
 
-    if of is Format.model:
-        from rga.model import model_schema
-
-        content = model_schema()
-    elif of is Format.record:
-        from rga.records import record_schema
-
-        content = record_schema()
-    elif of is Format.findings:
-        from rga.findings import Findings
-
-        content = Findings.model_json_schema()
-    elif of is Format.import_toml:
-        from rga.records.mapping import mapping_schema
-
-        content = mapping_schema()
-    elif of is Format.settings:
-        from rga.twin.settings import Settings
-
-        content = Settings.model_json_schema()
-    else:
-        from rga.findings.criteria import Criteria
-
-        content = Criteria.model_json_schema()
+    module, name = HOMES[of]
+    described = getattr(import_module(module), name)
+    content = getattr(described, "model_json_schema", described)()
+    if of is Format.criteria:
         # A file may name the schema by which an editor completes it.
         content["properties"]["$schema"] = {"type": "string"}
     write_json(content, json or "-")

@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from rga.operation.packets.packet import MICROSECONDS
-from rga.operation.rows.sealing import Grid
+from rga.operation.rows.grid import Grid
 from rga.operation.sources.clock import ClockRule
 from rga.settings_files import read_table, validated
 

@@ -49,8 +49,9 @@ class ServedTwin:
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }
         self.inbox = Inbox(directory)
-        self.packets = Packets(self.inbox)
-        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, settings.rows.grid)
+        grid = settings.rows.grid
+        self.packets = Packets(self.inbox, grid, self._sources)
+        self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         self._patience = settings.rows.patience
         self._heard = dict.fromkeys(self._sources, time.monotonic())
         # Sources that were silent when rows were last made of all that had come.

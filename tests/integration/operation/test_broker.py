@@ -3,30 +3,21 @@
 import json
 import queue
 import time
-from collections.abc import Callable
 from typing import Any
 
 import pytest
 from paho.mqtt.client import Client, MQTTv5
 from paho.mqtt.enums import CallbackAPIVersion
 
-from mosquitto import Mosquitto, mosquitto
 from rga.errors import InputError
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.sources.mqtt import Broker
+from served.broker import Mosquitto, mosquitto
+from served.made_service import waited_for
 
 __all__ = ["mosquitto"]
 
 TOPIC = "rga/v1/east/data/logger"
-
-
-def waited_for(what: Callable[[], Any], longest: float = 20.0) -> Any:
-    """What there is as soon as it is there."""
-    until = time.monotonic() + longest
-    while not (found := what()):
-        assert time.monotonic() < until, "it does not come"
-        time.sleep(0.02)
-    return found
 
 
 class Sender:
@@ -85,7 +76,6 @@ def test_what_is_kept_is_acknowledged_end_to_end(mosquitto: Mosquitto, kept: Kep
     waited_for(lambda: kept.numbers.next == 4)
     # Two topics that overlap bring a message twice at most.
     assert set(kept.payloads) == {b"0", b"1", b"3"}
-    time.sleep(1.1)
     sender.send(b"4")
     waited_for(lambda: kept.numbers.next == 5)
     told: dict[str, Any] = {"next": 0}

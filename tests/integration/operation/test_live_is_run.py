@@ -3,7 +3,6 @@
 import json
 import random
 from collections.abc import Callable
-from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -18,33 +17,17 @@ from rga.model import read_model
 from rga.operation.configuration import read_configuration
 from rga.operation.inbox.account import Account
 from rga.operation.packets.native import write_packet
-from rga.operation.packets.packet import EPOCH, Number, SensorPacket
+from rga.operation.packets.packet import Number, SensorPacket
 from rga.operation.service import Service
 from rga.records import Record
 from rga.twin.runner import taken_up
-
-START = datetime.fromisoformat("2026-11-23T00:00:00+00:00")
-
-CONFIGURATION = """
-[service]
-data = "data"
-[[twin]]
-name = "east"
-model = "model.json"
-settings = "settings.json"
-rows = { every = "10 min", lateness = "30 min" }
-[[twin.source]]
-kind = "http"
-clock = { check = false }
-"""
+from served.made_service import MIDNIGHT, write_service
 
 
 @pytest.fixture
 def folder(measured_bridge: dict[str, Any], tmp_path: Path) -> Path:
     """Of a service: its configuration, and the files that it names."""
-    (tmp_path / "serve.toml").write_text(CONFIGURATION, "utf-8")
-    (tmp_path / "model.json").write_text(json.dumps(measured_bridge), "utf-8")
-    (tmp_path / "settings.json").write_text(SETTINGS.model_dump_json(), "utf-8")
+    write_service(tmp_path, measured_bridge)
     return tmp_path
 
 
@@ -65,10 +48,9 @@ def packets_of(record: Record, draw: random.Random) -> list[bytes]:
     """The rows of a record, some at a time, as a logger sends them."""
     names = (*record.sensors, *record.contexts)
     values = np.column_stack([record.readings, *record.contexts.values()])
-    first = (START - EPOCH) // timedelta(microseconds=1)
     payloads, row, number = [], 0, 0
     while row < len(record):
-        times = first + np.array([round(record.time[row] * 1e6)])
+        times = MIDNIGHT + np.array([round(record.time[row] * 1e6)])
         number = len(payloads)
         packet = SensorPacket(Number("s", number), names, times, values[row : row + 1])
         payloads.append(write_packet(packet, binary=draw.random() < 0.5))

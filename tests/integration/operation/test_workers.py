@@ -15,6 +15,7 @@ from rga.jobs.worker import MOST_FAILURES
 from rga.model import read_model
 from rga.operation.workers import Workers
 from rga.records import Record
+from served.made_service import waited_for
 
 ROWS = 100
 
@@ -49,15 +50,6 @@ def playing() -> Iterator[Callable[[list[Path]], Workers]]:
     yield play
     for one in begun:
         one.stop()
-
-
-def waited_for(what: Callable[[], Any], longest: float = 120.0) -> Any:
-    """What there is as soon as it is there."""
-    until = time.monotonic() + longest
-    while not (found := what()):
-        assert time.monotonic() < until, "it does not come"
-        time.sleep(0.01)
-    return found
 
 
 def is_played(place: Path) -> bool:

@@ -40,7 +40,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_what_is_sent_is_what_the_file_holds(file: Path) -> None:
-    record, box = sent_record(file, RecordMapping(), None), Box()
+    record, box = sent_record(file, RecordMapping()), Box()
     assert play(record, box, 7, np.inf, Faults()) == Counter(packet=29)
     packets = [read_packet(payload, "a test") for payload, _ in box.payloads]
     assert [one.number for one in packets] == [number for _, number in box.payloads]
@@ -53,15 +53,15 @@ def test_what_is_sent_is_what_the_file_holds(file: Path) -> None:
 
 
 def test_a_packet_is_no_longer_than_a_minute(file: Path) -> None:
-    record = sent_record(file, RecordMapping(), None)
-    assert [len(one.times) for one in record.packets(1000)] == [60, 60, 60, 20]
+    record = sent_record(file, RecordMapping())
+    assert record.edges(1000) == [0, 60, 120, 180, 200]
 
 
 def test_a_file_without_a_zone_takes_a_start(tmp_path: Path) -> None:
     path = tmp_path / "record.csv"
     path.write_text("time,D1\n0,1\n1,2\n", "utf-8")
     with pytest.raises(InputError, match="no zone"):
-        sent_record(path, RecordMapping(), None)
+        sent_record(path, RecordMapping())
     start = datetime.fromisoformat("2026-11-23T00:00:00+00:00")
     record = sent_record(path, RecordMapping(), start)
     assert record.times.tolist() == [1_795_392_000_000_000, 1_795_392_001_000_000]

@@ -2,6 +2,7 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,14 +12,18 @@ from hypothesis import strategies as st
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.packets import HOUR, NEVER, REMEMBERED, Arrival, Packets
 from rga.operation.packets.packet import Number
+from rga.operation.rows.grid import Grid
 from rga.twin.hardware.inbox import Inbox
 
 NOON = 1_795_392_000_000_000 + 12 * HOUR
+#: rows that wait for ever
+PATIENT = Grid(every=HOUR, lateness=10**6 * HOUR)
+SOURCES = ("east", "west", "folder")
 
 
 @pytest.fixture
 def packets(tmp_path: Path) -> Packets:
-    return Packets(Inbox(tmp_path))
+    return Packets(Inbox(tmp_path), PATIENT, SOURCES)
 
 
 def numbered(sequence: int, moment: int = NOON, **more: object) -> Arrival:
@@ -73,12 +78,31 @@ def test_numbers_that_leave_too_many_gaps_are_refused(packets: Packets) -> None:
     assert packets.receive("east", [numbered(4)]) == ["waiting"]
 
 
+def test_what_is_late_hangs_on_what_came_before_it_alone(tmp_path: Path) -> None:
+    packets = Packets(Inbox(tmp_path), Grid(every=HOUR, lateness=HOUR // 2), ("east", "west"))
+
+    def send(source: str, hours: float) -> str:
+        one = plain(f"{source} {hours}")
+        moment = NOON + round(hours * HOUR)
+        return packets.receive(source, [replace(one, first=moment, last=moment)])[0]
+
+    assert send("east", 0.1) == "waiting"
+    assert send("east", 3.4) == "waiting"
+    # Rows wait for a source that has sent nothing yet.
+    assert send("east", 0.2) == "waiting"
+    assert send("west", 3.4) == "waiting"
+    # Both are half an hour past 2:00, and no row was made yet.
+    assert send("east", 1.9) == "late"
+    assert send("east", 2.0) == "waiting"
+    assert total(packets) == Account(received=6, late=1, waiting=5)
+
+
 def test_a_source_reads_on_where_it_was(packets: Packets) -> None:
     assert packets.cursor("folder") is None
     packets.receive("folder", [plain("x")], cursor={"offset": 3})
     packets.receive("folder", [plain("y")])
     assert packets.cursor("folder") == {"offset": 3}
-    assert packets.latest() == {"folder": NOON}
+    assert packets.latest() == {"east": None, "west": None, "folder": NOON}
 
 
 def test_payload_is_bounded_by_cutting_the_time(packets: Packets) -> None:
@@ -108,7 +132,7 @@ def test_the_account_balances(
     sent: list[tuple[str, int, int, bool, bool]],
     seed: int,
 ) -> None:
-    packets = Packets(Inbox(tmp_path_factory.mktemp("inbox")))
+    packets = Packets(Inbox(tmp_path_factory.mktemp("inbox")), PATIENT, SOURCES)
     draw, until = random.Random(seed), NEVER
     expected: Counter[str] = Counter()
     known: set[object] = set()

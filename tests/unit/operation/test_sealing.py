@@ -14,8 +14,9 @@ from rga.operation.inbox.account import Account
 from rga.operation.inbox.packets import Packets
 from rga.operation.packets.native import write_packet
 from rga.operation.packets.packet import MICROSECONDS, Number, SensorPacket
+from rga.operation.rows.grid import Grid
 from rga.operation.rows.samples import Reader
-from rga.operation.rows.sealing import Grid, Sealing
+from rga.operation.rows.sealing import Sealing
 from rga.operation.sources.arrivals import arrival_of
 from rga.operation.sources.clock import ClockRule
 from rga.records.mapping import Channel, RecordMapping
@@ -44,8 +45,8 @@ class Twin:
 
     def start(self) -> None:
         self.inbox = Inbox(self._folder)
-        self.packets = Packets(self.inbox)
         grid = Grid(every=MINUTE, lateness=2 * MINUTE)
+        self.packets = Packets(self.inbox, grid, self.readers)
         self.sealing = Sealing(self.inbox, self.packets, self._model, self.readers, grid)
 
     def send(self, source: str, payload: bytes, arrived: int = MIDNIGHT) -> str:

@@ -5,6 +5,8 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from rga.operation.feeding.faults import Faults, garbage, script
 from rga.operation.feeding.senders import Sender
 from rga.operation.feeding.sent_record import SentRecord
@@ -34,10 +36,9 @@ def play(
         How many payloads of each kind were sent.
     """
     offset = round(faults.clock_offset * MICROSECONDS)
-    packets = [replace(one, times=one.times + offset) for one in record.packets(rows)]
-    begin = record.times[0]
-    ends = [float(one.times[-1] - offset - begin) / MICROSECONDS for one in packets]
-    sendings = script(ends, faults)
+    edges = record.edges(rows)
+    ends = (record.times[np.array(edges[1:]) - 1] - record.times[0]) / MICROSECONDS
+    sendings = script(ends.tolist(), faults)
     sent: Counter[str] = Counter()
     since = time.monotonic()
     for k, one in enumerate(sendings):
@@ -47,7 +48,8 @@ def play(
         if one.kind == "garbage":
             sender.send(garbage(one.packet, faults.seed), None)
         else:
-            packet = packets[one.packet]
+            packet = record.packet(one.packet, *edges[one.packet : one.packet + 2])
+            packet = replace(packet, times=packet.times + offset)
             sender.send(write_packet(packet), packet.number)
         sent[one.kind] += 1
         told((k + 1) / len(sendings))

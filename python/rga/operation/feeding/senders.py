@@ -1,6 +1,7 @@
 """Ways in which a logger sends: to the service itself, through a broker, or into a folder."""
 
 import json
+import ssl
 import time
 from collections import OrderedDict
 from pathlib import Path
@@ -20,6 +21,8 @@ from rga.operation.packets.packet import Number
 ANSWER, AGAIN = 30.0, 1.0
 #: how long it waits for a packet to be acknowledged end to end before it sends it again [s]
 UNACKNOWLEDGED = 5.0
+#: packets that are on their way at most
+MOST_OPEN = 2_000
 
 
 class Sender(Protocol):
@@ -37,12 +40,16 @@ class HttpSender:
 
     Args:
         url: of the service and the twin, http://host:port/twin.
+        token: that lets it send; None: the service asks for none.
     """
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, token: str | None = None) -> None:
         parts = urlsplit(url)
         twin = parts.path.strip("/")
         self._url = f"{parts.scheme}://{parts.netloc}/api/v1/twins/{twin}/packets"
+        self._headers = {"Content-Type": "application/octet-stream"}
+        if token is not None:
+            self._headers["Authorization"] = f"Bearer {token}"
 
     def send(self, payload: bytes, number: Number | None) -> None:
         """Send a payload until the service says what became of it.
@@ -52,7 +59,8 @@ class HttpSender:
         """
         while True:
             try:
-                with urlopen(Request(self._url, payload, method="POST"), timeout=ANSWER):
+                asked = Request(self._url, payload, self._headers, method="POST")
+                with urlopen(asked, timeout=ANSWER):
                     return
             except HTTPError as error:
                 if error.code not in (429, 503, 507):
@@ -72,20 +80,36 @@ class BrokerSender:
     """Sends through a broker, and again what the service does not acknowledge.
 
     Args:
-        url: of the broker and the topic, mqtt://host:port/topic.
-        twin, source: of which the service says what it has.
+        url: of the broker and the topic, mqtt://host:port/rga/v1/twin/data/logger.
+        source: of the twin, of which the service says what it has.
+        credentials: user and password; None: the broker asks for none.
+
+    Raises:
+        InputError: the topic names no twin.
     """
 
-    def __init__(self, url: str, twin: str, source: str) -> None:
+    def __init__(
+        self, url: str, source: str = "mqtt", credentials: tuple[str, str] | None = None
+    ) -> None:
         parts = urlsplit(url)
         self._topic = parts.path.strip("/")
+        root, twin = self._topic.split("/")[:2], self._topic.split("/")[2:3]
+        if root != ["rga", "v1"] or not twin:
+            raise InputError(
+                "the topic names no twin", url, "write mqtt://host:1883/rga/v1/TWIN/data/LOGGER"
+            )
         self._open: OrderedDict[Number, tuple[bytes, float]] = OrderedDict()
         self._lock = Lock()
         self._client = Client(CallbackAPIVersion.VERSION2, protocol=MQTTv5)
-        acknowledged = f"rga/v1/{twin}/ack/{source}"
+        if credentials is not None:
+            self._client.username_pw_set(*credentials)
+        if parts.scheme == "mqtts":
+            self._client.tls_set_context(ssl.create_default_context())
+        acknowledged = f"rga/v1/{twin[0]}/ack/{source}"
         self._client.on_connect = lambda client, *_: client.subscribe(acknowledged, 1)
         self._client.on_message = self._told
-        self._client.connect_async(parts.hostname or "", parts.port or 1883)
+        port = parts.port or (8883 if parts.scheme == "mqtts" else 1883)
+        self._client.connect_async(parts.hostname or "", port)
         self._client.loop_start()
 
     def send(self, payload: bytes, number: Number | None) -> None:
@@ -95,6 +119,9 @@ class BrokerSender:
                 self._open[number] = payload, time.monotonic()
         self._client.publish(self._topic, payload, qos=1)
         self._send_again()
+        while len(self._open) >= MOST_OPEN:
+            time.sleep(AGAIN / 10)
+            self._send_again()
 
     def finish(self) -> None:
         """Wait until everything is acknowledged."""

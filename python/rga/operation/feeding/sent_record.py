@@ -1,7 +1,6 @@
 """A record as the packets of a logger."""
 
 import secrets
-from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -10,7 +9,14 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
-from rga.operation.packets.packet import EPOCH, MICROSECONDS, Moments, Number, SensorPacket
+from rga.operation.packets.packet import (
+    EPOCH,
+    LONGEST,
+    MICROSECONDS,
+    Moments,
+    Number,
+    SensorPacket,
+)
 from rga.records.mapping import FileMapping
 from rga.records.read import read_table
 from rga.records.times import read_clock
@@ -32,29 +38,36 @@ class SentRecord:
     values: FloatArray
     stream: str
 
-    def packets(self, rows: int) -> Iterator[SensorPacket]:
-        """The record in packets of so many rows, or fewer where they would be too long."""
-        begin = 0
-        number = 0
-        while begin < len(self.times):
-            within = self.times[begin : begin + rows] < self.times[begin] + 60 * MICROSECONDS
-            end = begin + int(within.sum())
-            yield SensorPacket(
-                Number(self.stream, number),
-                self.channels,
-                self.times[begin:end],
-                self.values[begin:end],
-            )
-            begin, number = end, number + 1
+    def edges(self, rows: int) -> list[int]:
+        """Rows at which packets begin, and the end of the last.
+
+        Args:
+            rows: of a packet, or fewer where they would be too long.
+        """
+        edges = [0]
+        while (begin := edges[-1]) < len(self.times):
+            end = int(np.searchsorted(self.times, self.times[begin] + LONGEST * MICROSECONDS))
+            edges.append(min(begin + rows, end))
+        return edges
+
+    def packet(self, number: int, begin: int, end: int) -> SensorPacket:
+        """The rows from one to before another as a packet."""
+        within = slice(begin, end)
+        return SensorPacket(
+            Number(self.stream, number), self.channels, self.times[within], self.values[within]
+        )
 
 
-def sent_record(path: Path, mapping: FileMapping, start: datetime | None) -> SentRecord:
+def sent_record(
+    path: Path, mapping: FileMapping, start: datetime | None = None, stream: str | None = None
+) -> SentRecord:
     """Read a logger's file to send what it holds.
 
     Args:
         path: the file.
         mapping: how its time and its numbers are read.
         start: of its first row; None: as it says, which takes time stamps with a zone.
+        stream: of its packets; None: one is drawn.
 
     Raises:
         InputError: it cannot be read, or its times have no zone.
@@ -71,4 +84,4 @@ def sent_record(path: Path, mapping: FileMapping, start: datetime | None) -> Sen
     channels = [one for one in table.frame.columns if one not in clock.columns]
     values = np.column_stack([table.numbers(one, tuple(mapping.missing)) for one in channels])
     times = (start - EPOCH) // timedelta(microseconds=1) + after
-    return SentRecord(tuple(channels), times, values, secrets.token_hex(8))
+    return SentRecord(tuple(channels), times, values, stream or secrets.token_hex(8))

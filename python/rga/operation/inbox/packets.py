@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any, Literal
@@ -17,6 +17,7 @@ from rga.operation.inbox.account import Account
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.packets.packet import EPOCH, MICROSECONDS, Number
 from rga.operation.rows.cells import Cell
+from rga.operation.rows.grid import Grid
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.hardware.interface import Station
 from rga.twin.repository.checksum import with_checksum
@@ -77,15 +78,19 @@ class KeptPacket:
 class Packets:
     """The packets of one twin, in the file of its inbox.
 
+    What becomes of a packet hangs on what came before it, not on how soon rows are made of it.
+
     Args:
         inbox: of the twin.
+        grid: of its rows.
+        sources: names of all that send to it.
 
     Raises:
         InputError: the file cannot be written.
     """
 
-    def __init__(self, inbox: Inbox) -> None:
-        self._inbox = inbox
+    def __init__(self, inbox: Inbox, grid: Grid, sources: Collection[str]) -> None:
+        self._inbox, self._grid, self._sources = inbox, grid, tuple(sources)
         with inbox.writing() as connection:
             tables.metadata.create_all(connection)
 
@@ -104,15 +109,19 @@ class Packets:
             InputError: nothing of them is kept, for the disk is full or the file is damaged.
         """
         with self._inbox.writing() as connection:
-            until = _until(connection)
+            sealed, latest = _until(connection), self._latest(connection)
             known = _Known(connection, source)
             entries: list[dict[str, Any]] = []
             aside: list[dict[str, Any]] = []
             number, refused = _last(connection, tables.packet), _last(connection, tables.refused)
             fates: list[Fate] = []
             for one in arrivals:
+                final = self._grid.final_until(latest)
+                until = sealed if final is None else max(sealed, final)
                 fate, reason = known.fate_of(one, until)
                 fates.append(fate)
+                if fate == "waiting":
+                    latest[source] = max(one.last, latest[source] or NEVER)
                 if fate == "refused":
                     aside.append(_refused(refused := refused + 1, source, one, reason))
                 elif fate != "duplicate":
@@ -137,11 +146,14 @@ class Packets:
         with self._inbox.reading() as connection:
             return _until(connection)
 
-    def latest(self) -> dict[str, int]:
-        """The latest moment that each source has sent, of those that have sent one."""
+    def latest(self) -> dict[str, int | None]:
+        """The latest moment that each source has sent [µs since 1970]; None: nothing yet."""
         with self._inbox.reading() as connection:
-            found = connection.execute(select(tables.source)).all()
-        return {one.name: one.latest for one in found if one.latest is not None}
+            return self._latest(connection)
+
+    def _latest(self, connection: Connection) -> dict[str, int | None]:
+        known = {one.name: one.latest for one in connection.execute(select(tables.source))}
+        return {name: known.get(name) for name in self._sources}
 
     def cursor(self, source: str) -> Any:
         """Where a source reads on; None: from the beginning."""

@@ -1,7 +1,6 @@
 """When a row is final, and making it of the samples that came for it."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import timedelta
 
 import numpy as np
@@ -11,48 +10,13 @@ from rga.operation.inbox.packets import KeptPacket, Packets
 from rga.operation.packets.native import read_packet
 from rga.operation.packets.packet import EPOCH
 from rga.operation.rows.cells import SensorSamples, cell_of, cells_of
+from rga.operation.rows.grid import Grid
 from rga.operation.rows.samples import Reader
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.hardware.interface import Station
 
 #: bytes of payload that are read at a time
 MOST_BYTES = 64 * 2**20
-
-
-@dataclass(frozen=True)
-class Grid:
-    """The cells in time of which each makes a row.
-
-    Attributes:
-        every: length of a cell [µs].
-        lateness: by which a source may send samples after others of later times [µs].
-    """
-
-    every: int
-    lateness: int
-
-    def final_until(self, latest: Mapping[str, int], silent: Collection[str]) -> int | None:
-        """Moment before which no more samples are waited for; None: all may still come.
-
-        A row waits until every source is past its end by the lateness. One that is silent is
-        waited for no longer; where all are, the row that they were in is final too.
-
-        Args:
-            latest: moment that each source has sent [µs since 1970].
-            silent: sources that nothing has been heard of for too long.
-
-        >>> grid = Grid(every=60, lateness=10)
-        >>> grid.final_until({"a": 130, "b": 300}, silent=()), grid.final_until({"a": 129}, ())
-        (120, 60)
-        >>> grid.final_until({"a": 30, "b": 300}, silent=["a"]), grid.final_until({"a": 30}, ["a"])
-        (240, 60)
-        """
-        if not latest:
-            return None
-        speaking = [moment for source, moment in latest.items() if source not in silent]
-        if not speaking:
-            return cell_of(max(latest.values()), self.every) + self.every
-        return cell_of(min(speaking) - self.lateness, self.every)
 
 
 class Sealing:
@@ -89,11 +53,8 @@ class Sealing:
         Raises:
             InputError: nothing can be written, or the twin has ended.
         """
-        latest = self._packets.latest()
-        # A source that has sent nothing yet is waited for like any other.
-        waited = {name for name in self._readers if name not in latest and name not in silent}
-        until = self._grid.final_until(latest, silent)
-        if until is None or waited:
+        until = self._grid.final_until(self._packets.latest(), silent)
+        if until is None:
             return 0
         rows = 0
         while (begin := self._packets.sealed) < until:

@@ -17,6 +17,7 @@ from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from rga.errors import InputError
+from rga.operation.credentials import read_credentials
 from rga.operation.inbox.numbers import Numbers
 
 #: messages that are kept together
@@ -63,7 +64,8 @@ class Broker:
         keep: Keep,
     ) -> None:
         parts = urlsplit(url)
-        self._host, self._port = parts.hostname or "", parts.port or 1883
+        secure = parts.scheme == "mqtts"
+        self._host, self._port = parts.hostname or "", parts.port or (8883 if secure else 1883)
         self._topics, self._keep = tuple(topics), keep
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
@@ -72,7 +74,8 @@ class Broker:
         self._ending = Event()
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
-        self._client = self._made(f"rga-{twin}-{source}", parts.scheme == "mqtts", credentials)
+        self._untold: dict[str, Numbers] = {}
+        self._client = self._made(f"rga-{twin}-{source}", secure, credentials)
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
 
@@ -96,12 +99,7 @@ class Broker:
     def _made(self, name: str, secure: bool, credentials: Path | None) -> Client:
         client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
         if credentials is not None:
-            lines = credentials.read_text("utf-8").splitlines()
-            if len(lines) < 2:
-                raise InputError(
-                    "a file of credentials has two lines", str(credentials), "user, then password"
-                )
-            client.username_pw_set(lines[0], lines[1])
+            client.username_pw_set(*read_credentials(credentials))
         if secure:
             client.tls_set_context(ssl.create_default_context())
         client.will_set(self._status, "offline", qos=1, retain=True)
@@ -136,12 +134,13 @@ class Broker:
             self._try_the_way()
             if batch := self._batch():
                 self._keep_batch(batch)
+            self._acknowledge()
 
     def _batch(self) -> list[MQTTMessage]:
         """What has come meanwhile: the more there is, the more is kept at once."""
         batch: list[MQTTMessage] = []
         try:
-            batch.append(self._waiting.get(timeout=1.0))
+            batch.append(self._waiting.get(timeout=ACKNOWLEDGE / 4))
             while len(batch) < MOST_MESSAGES:
                 batch.append(self._waiting.get_nowait())
         except Empty:
@@ -161,13 +160,14 @@ class Broker:
         self.fault = None
         for one in batch:
             self._client.ack(one.mid, one.qos)
-        self._acknowledge(numbers)
+        self._untold = numbers
 
-    def _acknowledge(self, numbers: dict[str, Numbers]) -> None:
+    def _acknowledge(self) -> None:
+        """Tell senders what is kept, if that is news, and the last time is long enough ago."""
         now = time.monotonic()
-        if now - self._told < ACKNOWLEDGE:
+        if not self._untold or now - self._told < ACKNOWLEDGE:
             return
-        self._told = now
+        numbers, self._told, self._untold = self._untold, now, {}
         for stream, known in numbers.items():
             told, untold = known.gaps[:MOST_TOLD], known.gaps[MOST_TOLD:]
             # Whoever reads it takes what is below the next and not missing for kept.

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+#: of the broker; None: it is not installed
 PROGRAM = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin")
 
 

@@ -1,0 +1,124 @@
+"""`rga feed`: a logger to try a service with."""
+
+import os
+from datetime import datetime
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rga.cli.options import JsonTarget, MappingFile, decimal, whole
+
+if TYPE_CHECKING:
+    from rga.operation.feeding.senders import Sender
+
+RecordFile = Annotated[Path, typer.Argument(metavar="RECORD", help="A logger's file.")]
+Target = Annotated[
+    str,
+    typer.Option(
+        "--to",
+        metavar="URL",
+        help="http://host:port/TWIN, mqtt://host:port/rga/v1/TWIN/data/LOGGER, or a folder.",
+    ),
+]
+Start = Annotated[
+    str | None,
+    typer.Option("--start", metavar="TIME", help="Of the first row, with a zone, in place of its."),
+]
+Rows = Annotated[
+    int, typer.Option("--rows", metavar="N", parser=whole(1), help="Rows of a packet.")
+]
+Speed = Annotated[
+    float | None,
+    typer.Option(
+        "--speed",
+        metavar="X",
+        parser=decimal(1e-6),
+        help="Times as fast as it was measured; left out, as fast as it goes.",
+    ),
+]
+FaultsFile = Annotated[
+    Path | None,
+    typer.Option("--faults", metavar="FILE", help="What goes wrong; `rga schema faults`."),
+]
+Stream = Annotated[
+    str | None,
+    typer.Option(
+        "--stream", metavar="NAME", help="Of the packets: the same goes on where it was stopped."
+    ),
+]
+Source = Annotated[
+    str, typer.Option("--source", metavar="NAME", help="Of the twin, where a broker is between.")
+]
+Credentials = Annotated[
+    Path | None,
+    typer.Option("--credentials", metavar="FILE", help="User and password of the broker, by line."),
+]
+
+
+def feed(
+    record: RecordFile,
+    to: Target,
+    mapping: MappingFile = None,
+    start: Start = None,
+    rows: Rows = 1,
+    speed: Speed = None,
+    faults: FaultsFile = None,
+    stream: Stream = None,
+    source: Source = "mqtt",
+    credentials: Credentials = None,
+    json: JsonTarget = None,
+) -> None:
+    """Play a record as a logger would send it, with faults that are drawn from a seed.
+
+    Packets are numbered, and sent again until the service has said that they are on its disk. A
+    token for the service is read from the environment: RGA_TOKEN.
+    """
+    from rga.cli.output import write_json
+    from rga.cli.progress import shown_progress
+    from rga.operation.feeding.faults import Faults, read_faults
+    from rga.operation.feeding.player import play
+    from rga.operation.feeding.sent_record import sent_record
+    from rga.quantities import counted
+    from rga.records.mapping import RecordMapping, read_mapping
+
+    chosen = RecordMapping() if mapping is None else read_mapping(mapping)
+    drawn = Faults() if faults is None else read_faults(faults)
+    sent = sent_record(record, chosen, None if start is None else _moment(start), stream)
+    sender = _sender(to, source, credentials)
+    with shown_progress() as progress:
+        counts = play(
+            sent, sender, rows, speed or inf, drawn, lambda share: progress("sending", share)
+        )
+    if json is not None:
+        write_json({"stream": sent.stream, **counts}, json)
+    if json != "-":
+        told = ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items()))
+        typer.echo(f"{counted(len(sent.times), 'row')} sent as stream {sent.stream}: {told}.")
+
+
+def _sender(to: str, source: str, credentials: Path | None) -> "Sender":
+    from rga.errors import InputError
+    from rga.operation.credentials import read_credentials
+    from rga.operation.feeding.senders import BrokerSender, FolderSender, HttpSender
+
+    if to.startswith(("http://", "https://")):
+        return HttpSender(to, os.environ.get("RGA_TOKEN"))
+    if to.startswith(("mqtt://", "mqtts://")):
+        known = None if credentials is None else read_credentials(credentials)
+        return BrokerSender(to, source, known)
+    folder = Path(to)
+    if not folder.is_dir():
+        raise InputError("there is no such folder", to, "make it, or give http:// or mqtt://")
+    return FolderSender(folder)
+
+
+def _moment(text: str) -> datetime:
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError:
+        raise typer.BadParameter(f"{text!r} is no time: write 2026-11-23T00:00:00Z") from None
+    if moment.tzinfo is None:
+        raise typer.BadParameter(f"{text!r} has no zone: write 2026-11-23T00:00:00Z")
+    return moment
