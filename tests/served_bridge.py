@@ -3,6 +3,7 @@
 import json
 from collections.abc import Sequence
 from datetime import datetime, timedelta
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,14 @@ from rga.operation.packets.packet import EPOCH, Number, SensorPacket
 from rga.operation.served_twin import ServedTwin
 from rga.records import Record
 
+#: names of sensors that a page must not fall for
+HOSTILE = (
+    "<script>alert('S')</script>",
+    '" onmouseover="alert(1)',
+    "梁の歪み ёмкость حساس",
+    "a very long name " * 10 + "of a sensor",
+    "../S?name=1&x=%2F#y",
+)
 _HEAD = '[service]\ndata = "data"\n'
 _TWIN = """
 [[twin]]
@@ -79,3 +88,60 @@ def played(twin: ServedTwin) -> None:
     twin.seal()
     with rga.LiveTwin(twin.directory) as live:
         live.play()
+
+
+def long_bridge(panels: int, name: str = "long bridge") -> dict[str, Any]:
+    """A model file: a truss with a gauge on every member and a deflection at every lower node.
+
+    Names of its first sensors are those that a page must not fall for.
+    """
+    lower = [f"L{k}" for k in range(panels + 1)]
+    upper = [f"U{k}" for k in range(1, panels)]
+    nodes = {node: [4.0 * k, 0, 0] for k, node in enumerate(lower)}
+    nodes |= {node: [4.0 * k, 0, 5.0] for k, node in enumerate(upper, 1)}
+    bars = [*pairwise(lower), *pairwise(upper), *zip(lower[1:-1], upper, strict=True)]
+    half = panels // 2
+    bars += [(lower[k - 1], upper[k - 1]) for k in range(1, half + 1)]
+    bars += [(lower[k + 1], upper[k - 1]) for k in range(half, panels)]
+    members = {
+        f"{a}-{b}": {"nodes": [a, b], "section": "bar", "material": "steel", "groups": ["bars"]}
+        for a, b in bars
+    }
+    strain = {"kind": "strain", "unit": "microstrain", "noise": 1.0}
+    deflection = {"kind": "displacement", "direction": [0, 0, 1], "unit": "mm", "noise": 0.05}
+    places = [strain | {"member": bar} for bar in members]
+    places += [deflection | {"node": node} for node in lower[1:-1]]
+    names = [*HOSTILE, *(f"S{k}" for k in range(len(HOSTILE), len(places)))]
+    return {
+        "rga_model": 1,
+        "name": name,
+        "plane": "xz",
+        "materials": {"steel": {"E": 2e11, "alpha": 1.2e-5}},
+        "sections": {"bar": {"A": 0.01}},
+        "nodes": nodes,
+        "members": members,
+        "supports": {
+            "west": {"node": lower[0], "fixed": ["ux", "uz"]},
+            "east": {"node": lower[-1], "fixed": ["uz"]},
+        },
+        "context": {
+            "temperature": {"unit": "degC", "range": [-20, 40], "noise": 0.3},
+            "west load": {"unit": "kN", "range": [0, 100], "noise": 0.1},
+            "east load": {"unit": "kN", "range": [0, 100], "noise": 0.1},
+        },
+        "effects": {
+            "warmth": {
+                "kind": "temperature",
+                "groups": {"bars": 1.0},
+                "delta": {"context": "temperature", "minus": 10.0},
+            },
+            "west": _load(lower[half // 2 + 1], "west load"),
+            "east": _load(lower[-half // 2 - 1], "east load"),
+        },
+        "sensors": dict(zip(names, places, strict=True)),
+    }
+
+
+def _load(node: str, context: str) -> dict[str, Any]:
+    forces = {node: [0, 0, -1000]}
+    return {"kind": "nodal_load", "forces": forces, "factor": {"context": context}}

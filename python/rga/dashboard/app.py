@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.responses import JSONResponse, Response
+from starlette.staticfiles import StaticFiles
 
 from rga.dashboard.access.access import Access
 from rga.dashboard.access.guard import Guard
@@ -29,6 +30,7 @@ from rga.dashboard.api.bounds import IntakeRoom, RateLimit
 from rga.dashboard.api.reports import Reports
 from rga.dashboard.api.served import PREFIX
 from rga.dashboard.bounded_body import BoundedBody
+from rga.dashboard.pages.routes import router as pages
 from rga.dashboard.pages.surroundings import Surroundings
 from rga.errors import InputError
 from rga.operation.service import Service
@@ -77,8 +79,9 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
     # What of the API is about alarms comes here too.
     for one in (twins, readings, series, past, whatif, commands, packets, stream, report):
         api.include_router(one.router)
-    for router in (api, health.router, metrics.router, login):
+    for router in (api, health.router, metrics.router, login, pages):
         app.include_router(router)
+    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
     return app
 
 

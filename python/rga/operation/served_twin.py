@@ -29,13 +29,19 @@ class ServedTwin:
         directory: of the twin, which is made.
         repository: URL of a PostgreSQL database, or None.
 
+    Attributes:
+        model: as it was given.
+        sources: their names.
+        inbox: rows and commands that wait for it.
+        packets: that have come.
+
     Raises:
         InputError: its model, its settings or a mapping cannot be used.
     """
 
     def __init__(self, settings: TwinSettings, directory: Path, repository: str | None) -> None:
         self.name, self.directory = settings.name, directory
-        model = load_model(settings.model)
+        self.model = model = load_model(settings.model)
         live(
             model,
             directory,
@@ -45,6 +51,7 @@ class ServedTwin:
             repository=repository,
         ).close()
         self._sources = {source_name(one): one for one in settings.source}
+        self.sources = tuple(self._sources)
         self._readers = {
             name: _reader(name, one.mapping, model) for name, one in self._sources.items()
         }

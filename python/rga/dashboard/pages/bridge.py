@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from rga.dashboard.pages.happened import happened, marks
+from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.sensors_now import sensor_rows
 from rga.dashboard.pages.surroundings import Seen, Surroundings
-from rga.dashboard.pages.times import age_words, given_moment
+from rga.dashboard.pages.times import age_words, given_moment, of_event
 from rga.dashboard.pages.windows import SPANS, chosen_window
-from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart, sparkline
+from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
 from rga.dashboard.svg.structure import elevations
 from rga.model.schema import Model
@@ -26,7 +26,7 @@ from rga.report.figures.of_run.run_gap import mean
 #: half of a 90 % interval [standard deviations]
 HALF_WIDTH = 1.645
 #: events that the page lists
-LISTED = 12
+LISTED = 8
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,6 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     newest = seen.reading.elapsed(latest.time)
     at = asked_time(query, start)
     now = latest if at is None else seen.reading.as_of(at)
-    past = at is not None
     found |= {
         "slider": {
             "most": round(newest, 3),
@@ -73,7 +72,7 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
             "start": start,
             "moment": None if at is None else Window(start, 0, 1).moment(min(at, newest)),
         },
-        "past": past,
+        "past": at is not None,
     }
     if now is None or now.time is None:
         return found | {"now": None}
@@ -81,27 +80,27 @@ def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
     window = chosen.window
     series = seen.reading.series(window.begin, window.end, POINTS)
     assert series is not None  # it has begun
-    events = [one for one in seen.reading.events() if datetime.fromisoformat(str(one.time)) <= now.time]
+    events = [one for one in seen.reading.events() if of_event(one.time) <= now.time]
+    past = Past(seen.name, seen.reading.view(), events)
     rows = sensor_rows(twin.given, now)
+    weights = {name: one.recent or 0.0 for name, one in now.sensors.items()}
     return found | {
         "now": now,
         "gap": None if now.recent is None else number(now.recent, 2),
-        "level": gap_level(now.recent),
+        "level_now": gap_level(now.recent),
         "age": age_words(now.time, Surroundings.now()),
         "rows": rows,
         "sensor_of": {one.number: one for one in rows},
         "ranked": sorted(rows, key=lambda one: (-one.level.number, one.number)),
         "levels": LEVELS,
-        "drawings": elevations(
-            twin.given, _marked(now, twin.given), {k: one.recent or 0.0 for k, one in now.sensors.items()}
-        ),
-        "marked": now.undecided.words if now.undecided else "",
-        "strip": _strip(seen.name, series, window, marks(seen.name, events, window)),
+        "drawings": elevations(twin.given, _marked(now, twin.given), weights),
+        "marked": now.undecided is not None,
+        "strip": _strip(seen.name, series, window, past.marks(events, window)),
         "versions": _versions(seen, window, now),
         "contexts": _contexts(twin.given, now, series, window),
         "span": chosen.span,
-        "spans": tuple(SPANS),
-        "events": happened(seen.name, events)[:LISTED],
+        "spans_known": tuple(SPANS),
+        "events": past.listed(events[-LISTED:]),
     }
 
 

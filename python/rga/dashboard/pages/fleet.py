@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rga.dashboard.pages.alarm_desk import SHELVES, alarms_of
 from rga.dashboard.pages.heading import Heading, heading, heading_of_damaged
 from rga.dashboard.pages.surroundings import Seen, Surroundings
 from rga.dashboard.pages.times import DAY, age_words
@@ -26,17 +27,17 @@ class Card:
 
     Attributes:
         heading: its name and how it is.
-        drawing: of the structure; None where it cannot be read.
+        drawing: of the structure.
         gap, level: of the last rows, in words.
         line: path of the gap over 30 days.
         version: of the model that is in force; 0: none.
-        alarms: in these 30 days.
+        alarms: that are open.
         newest: time of the newest row.
         age: of it, in words.
     """
 
     heading: Heading
-    drawing: Elevation | None
+    drawing: Elevation
     gap: str
     level: GapLevel
     line: str
@@ -51,21 +52,26 @@ def fleet_page(surroundings: Surroundings) -> dict[str, Any]:
     cards = [_card(surroundings.twin(name)) for name in surroundings.names]
     cards.sort(key=lambda one: (one.heading.state.need, one.heading.structure.casefold()))
     need = sum(one.heading.state.need < 4 for one in cards)
-    return {"cards": cards, "need": need}
+    return {
+        "cards": cards,
+        "need": need,
+        "alarms": alarms_of(surroundings.desk, None),
+        "shelves": tuple(SHELVES),
+    }
 
 
 def _card(seen: Seen) -> Card:
     try:
         return _readable(seen)
     except InputError as error:
-        return _empty(heading_of_damaged(seen.name, error))
+        return _empty(seen, heading_of_damaged(seen, error))
 
 
 def _readable(seen: Seen) -> Card:
     now, twin = seen.reading.now(), seen.reading.twin
     if now is None or twin is None:
-        return _empty(heading(seen, now))
-    line, alarms = "", 0
+        return _empty(seen, heading(seen, now))
+    line = ""
     if now.time is not None:
         last = seen.reading.elapsed(now.time)
         begin = max(0.0, last - SHOWN)
@@ -74,22 +80,19 @@ def _readable(seen: Seen) -> Card:
         gap = mean(np.asarray(series.gap.mean, dtype=float), axis=1)
         start = datetime.fromisoformat(str(twin.station.start))
         line = sparkline(series.gap.time, gap, Window(start, begin, last + 1.0))
-        since = f"{Window(start, begin, last).moment(begin).isoformat()}"
-        alarms = sum(
-            one.kind == "alarm" and str(one.time) >= since for one in seen.reading.events()
-        )
     return Card(
         heading=heading(seen, now),
-        drawing=outline(twin.given),
+        drawing=outline(seen.served.model),
         gap="" if now.recent is None else number(now.recent, 2),
         level=gap_level(now.recent),
         line=line,
         version=now.version,
-        alarms=alarms,
+        alarms=len(alarms_of(seen.desk, seen.name)),
         newest=now.time,
         age="" if now.time is None else age_words(now.time, Surroundings.now()),
     )
 
 
-def _empty(top: Heading) -> Card:
-    return Card(top, None, "", gap_level(None), "", 0, 0, None, "")
+def _empty(seen: Seen, top: Heading) -> Card:
+    open_alarms = len(alarms_of(seen.desk, seen.name))
+    return Card(top, outline(seen.served.model), "", gap_level(None), "", 0, open_alarms, None, "")

@@ -39,19 +39,17 @@ class Heading:
 
 def heading(seen: Seen, now: TwinNow | None) -> Heading:
     """The heading of a twin that can be read."""
-    twin = seen.reading.twin
-    lag = seen.lag(now)
     return Heading(
         seen.name,
-        seen.name if twin is None else twin.given.name,
-        state_of(now, Surroundings.now(), seen.patience, lag),
+        seen.served.model.name,
+        state_of(now, Surroundings.now(), seen.patience, seen.lag(now)),
         tuple(map(command_words, seen.waiting())),
     )
 
 
-def heading_of_damaged(name: str, error: InputError) -> Heading:
+def heading_of_damaged(seen: Seen, error: InputError) -> Heading:
     """The heading of a twin that cannot be read."""
-    return Heading(name, name, damaged(str(error)), ())
+    return Heading(seen.name, seen.served.model.name, damaged(str(error)), ())
 
 
 def command_words(command: AnyCommand) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.model.schema import Model
 from rga.operation.reading.twin_now import SensorNow, TwinNow
-from rga.quantities import DASH, number, scale
+from rga.quantities import DASH, number, scale, short
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def _row(place: int, name: str, model: Model, one: SensorNow) -> SensorRow:
     if one.measured is not None and one.simulated is not None:
         apart = one.measured - one.simulated
     measured, simulated, difference, noise = (
-        DASH if value is None else number(value * factor)
+        DASH if value is None else short(value * factor)
         for value in (one.measured, one.simulated, apart, one.noise)
     )
     level = gap_level(one.recent)

@@ -2,10 +2,13 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
 from rga.dashboard.pages.times import span_words
+from rga.findings.phrases import kind_words
 from rga.operation.reading.twin_now import TwinNow
 from rga.quantities import number
+from rga.report.drawing.places import place_names
 from rga.twin.status import NEXT
 
 #: rows that are not played yet, from which on a twin is said to be behind
@@ -32,6 +35,16 @@ class State:
     words: str
 
 
+def cause_words(effect: dict[str, Any]) -> str:
+    """An effect in words, without its size.
+
+    >>> cause_words({"kind": "support_settlement", "support": "east", "displacement": -0.002})
+    'support settlement of east'
+    """
+    names = [name for _, name in place_names(effect)]
+    return f"{kind_words(str(effect['kind']))} of {', '.join(names)}".removesuffix(" of ")
+
+
 def damaged(words: str) -> State:
     """Of a twin whose repository cannot be read."""
     return State("damaged", "bad", "✕", 0, f"Its repository cannot be read: {words}")
@@ -52,7 +65,8 @@ def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> St
         words = "Readings have left what the model lets expect; the reason is being looked for."
         return State("alarm", "bad", "▲", 1, words)
     if now.undecided is not None:
-        words = f"A cause was found and waits for a decision: {now.undecided.words}."
+        causes = ", ".join(map(cause_words, now.undecided.effects.values()))
+        words = f"A cause was found and waits for a decision: {causes or now.undecided.words}."
         return State("to decide", "warn", "◆", 2, words)
     silence = (at - now.time).total_seconds()
     if silence > 2 * patience and lag == 0:

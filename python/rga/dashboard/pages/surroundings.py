@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
+from rga.dashboard.pages.alarm_desk import AlarmDesk, NoAlarms
 from rga.operation.reading.twin_now import TwinNow
 from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.served_twin import ServedTwin
@@ -22,6 +23,7 @@ class Seen:
         reading: what it says of itself.
         patience: after which a silent source is waited for no longer [s].
         faults: what keeps its sources or its rows from going on, in words, by what it concerns.
+        desk: alarms of the service, of this twin among others.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Seen:
     reading: TwinReading
     patience: float
     faults: Mapping[str, str]
+    desk: AlarmDesk
 
     def waiting(self) -> list[AnyCommand]:
         """What people have asked for, and nothing has carried out yet."""
@@ -46,10 +49,14 @@ class Surroundings:
 
     Args:
         service: that runs.
+        desk: its alarms.
+
+    Attributes:
+        desk: its alarms.
     """
 
-    def __init__(self, service: Service) -> None:
-        self._service = service
+    def __init__(self, service: Service, desk: AlarmDesk | None = None) -> None:
+        self._service, self.desk = service, desk or NoAlarms()
         settings = service.configuration
         self._readings = {
             one.name: TwinReading(
@@ -77,6 +84,7 @@ class Surroundings:
             self._readings[name],
             self._patience[name],
             faults,
+            self.desk,
         )
 
     @staticmethod

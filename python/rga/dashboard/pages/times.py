@@ -1,8 +1,10 @@
 """Times as pages say and take them: in UTC; the browser adds those of its own zone."""
 
+import re
 from datetime import UTC, datetime
 
 DAY = 86_400.0
+_WRITTEN = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:\.\d+)?(?:\+00:00|Z)")
 _UNITS = ((2 * DAY, DAY, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
 
 
@@ -36,6 +38,15 @@ def utc_words(moment: datetime) -> str:
     """
     there = moment.astimezone(UTC)
     return f"{there:%Y-%m-%d %H:%M:%S}" if there.second else f"{there:%Y-%m-%d %H:%M}"
+
+
+def plain_times(text: str) -> str:
+    """A text with its times in UTC as people write them.
+
+    >>> plain_times("from 2026-11-27T01:50:00+00:00 on, or 2026-11-27 01:50:30Z")
+    'from 2026-11-27 01:50 UTC on, or 2026-11-27 01:50:30 UTC'
+    """
+    return _WRITTEN.sub(lambda found: f"{utc_words(datetime.fromisoformat(found[0]))} UTC", text)
 
 
 def given_moment(text: str) -> datetime | None:

@@ -55,4 +55,3 @@ def chosen_window(query: Mapping[str, str], start: datetime, until: datetime) ->
     return ChosenWindow(
         Window(start, begin, last + (last - begin) / 200), span if span in SPANS else USUAL
     )
-

@@ -22,6 +22,8 @@ from rga.quantities import number, short
 WIDE, HIGH = 1000.0, 200.0
 #: share of the height that stays free above and below the lines
 MARGIN = 0.06
+#: gaps below this are drawn as if they were this large: they say nothing
+LEAST_GAP = 0.1
 #: entries of a line, more than the eye tells apart
 POINTS = 500
 Look = Literal["measured", "simulated", "gap", "context", "residual"]
@@ -95,6 +97,7 @@ class Chart:
         title, unit: of the values.
         lines: in the order in which they are drawn.
         across, up: ticks of time and of values.
+        date: what the ticks of time leave out.
         marks: what happened meanwhile.
         words: what the chart shows, for readers who do not see it.
     """
@@ -103,6 +106,7 @@ class Chart:
     unit: str
     lines: tuple[Line, ...]
     across: tuple[Tick, ...]
+    date: str
     up: tuple[Tick, ...]
     marks: tuple[Mark, ...]
     words: str
@@ -154,7 +158,7 @@ def chart(
         columns: to be drawn; NaN leaves a hole.
         window: of time.
         marks: what happened meanwhile.
-        logarithmic: a step upwards is a factor, as for gaps; what is not positive is left out.
+        logarithmic: a step upwards is a factor, as for gaps.
     """
     low, high = _range(columns, logarithmic)
 
@@ -179,7 +183,7 @@ def chart(
         title,
         unit,
         lines,
-        time_ticks(window),
+        *time_ticks(window),
         tuple(
             Tick(round(100 * float(height(np.array([value]))[0]) / HIGH, 2), short(value))
             for value in _steps(low, high, logarithmic)
@@ -195,12 +199,13 @@ def sparkline(time: FloatArray, gap: Floats, window: Window) -> str:
     return chart("gap", "", time, [one], window, logarithmic=True).lines[0].path
 
 
-def time_ticks(window: Window) -> tuple[Tick, ...]:
-    """Round times, in UTC.
+def time_ticks(window: Window) -> tuple[tuple[Tick, ...], str]:
+    """Round times in UTC, and what they leave out.
 
     >>> one = Window(datetime(2026, 11, 23, tzinfo=UTC), 0.0, 86_400.0)
-    >>> [tick.words for tick in time_ticks(one)]
-    ['11-23', '06:00', '12:00', '18:00', '11-24']
+    >>> ticks, date = time_ticks(one)
+    >>> [tick.words for tick in ticks], date
+    (['11-23', '06:00', '12:00', '18:00', '11-24'], '2026-11-24')
     """
     ends = [window.moment(one) for one in (window.begin, max(window.end, window.begin + 1.0))]
     locator = AutoDateLocator(tz=UTC, minticks=3, maxticks=6)  # type: ignore[no-untyped-call]
@@ -218,7 +223,7 @@ def time_ticks(window: Window) -> tuple[Tick, ...]:
     for place, text in zip(places, words, strict=True):
         elapsed = (num2date(place, tz=UTC) - window.start).total_seconds()  # type: ignore[no-untyped-call]
         found.append(Tick(round(window.share(elapsed), 2), text))
-    return tuple(found)
+    return tuple(found), str(formatter.get_offset())  # type: ignore[no-untyped-call]
 
 
 def _range(columns: Sequence[Column], logarithmic: bool) -> tuple[float, float]:
@@ -232,13 +237,13 @@ def _range(columns: Sequence[Column], logarithmic: bool) -> tuple[float, float]:
     low, high = float(found.min()), float(found.max())
     if logarithmic:
         # A gap is seen beside that of noise alone.
-        low, high = min(low, -0.3), max(high, 1.0)
+        low, high = min(low, np.log10(0.5)), max(high, 1.0)
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
 def _logarithm(values: Floats) -> FloatArray:
     shown = np.asarray(values, dtype=float)
-    return np.log10(np.where(shown > 0, shown, np.nan))
+    return np.asarray(np.log10(np.maximum(shown, LEAST_GAP)))
 
 
 def _steps(low: float, high: float, logarithmic: bool) -> list[float]:

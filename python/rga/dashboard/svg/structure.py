@@ -14,13 +14,15 @@ from rga.drawing.figure_style import label
 from rga.drawing.labels import Room
 from rga.drawing.projection import Projection, views
 from rga.model.schema import Model
-from rga.report.drawing.places import Named, Spot, spots
 from rga.report.drawing.labels import marker_offset, marker_row
+from rga.report.drawing.places import Named, Spot, spots
 
 #: width of a drawing, and room on either side of it
-WIDE, SIDE = 1000.0, 46.0
+WIDE, SIDE = 1000.0, 54.0
 #: units of the drawing in an inch of a printed one, by which sensors are moved off their members
 INCH = 100.0
+#: by which sensors stand below a support [inches of a printed drawing]
+FOOT = 0.14
 #: height of a drawing at most, over its width
 HIGHEST = 0.55
 #: letters of a name that are shown, and their width
@@ -177,15 +179,21 @@ def _elevation(
         if one.node in view.nodes
     )
     here = spots(model, view, dict(sensors))
-    dots = tuple(dot for spot in here for dot in _dots(model, sheet, spot, sensors))
+    held = frozenset(one.node for one in model.supports.values())
+    dots = tuple(dot for spot in here for dot in _dots(model, sheet, spot, sensors, held))
     box = f"0 0 {WIDE:g} {sheet.high + 2 * SIDE:.0f}"
-    return Elevation(view.title, box, bars, feet, dots, _names(bars, dots, feet, named_first))
+    names = _names(bars, dots, feet, named_first, sheet.high + 2 * SIDE)
+    return Elevation(view.title, box, bars, feet, dots, names)
 
 
-def _dots(model: Model, sheet: _Sheet, spot: Spot, sensors: Mapping[int, str]) -> list[Dot]:
-    """The sensors of a place in a row."""
+def _dots(
+    model: Model, sheet: _Sheet, spot: Spot, sensors: Mapping[int, str], held: frozenset[str]
+) -> list[Dot]:
+    """The sensors of a place in a row; below the support, where the place is held."""
+    on_foot = model.sensors[sensors[spot.sensors[0]]].node in held
     found = []
-    y = spot.y + marker_offset(spot) * sheet.inch
+    below = 0.0 if spot.tier == 1 or not on_foot else FOOT
+    y = spot.y + (marker_offset(spot) - below) * sheet.inch
     for place, number in enumerate(spot.sensors):
         x = spot.x + (0.16 * place - 1.45 * marker_row(spot)) * sheet.inch
         name = sensors[number]
@@ -199,9 +207,10 @@ def _names(
     dots: tuple[Dot, ...],
     feet: tuple[Foot, ...],
     named_first: Mapping[str, float],
+    high: float,
 ) -> tuple[Name, ...]:
     """Names of the sensors that matter most, where there is room for them."""
-    room = Room(lines=_samples(bars))
+    room = Room(lines=_samples(bars), limits=(0.0, -high / INCH, WIDE / INCH, 0.0))
     room.boxes += [_box(dot.x, dot.y, 8.0) for dot in dots]
     room.boxes += [_box(foot.x, foot.y + 9.0, 11.0) for foot in feet]
     # The room is measured in inches upwards.

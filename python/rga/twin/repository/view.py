@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from sqlalchemy import ColumnElement, Row, func
+from sqlalchemy import ColumnElement, Row, Table, func
 
 from rga.arrays import FloatArray
 from rga.twin.history import Event
@@ -245,18 +245,7 @@ class RunView:
     def events(self, after: int = 0) -> tuple[Event, ...]:
         """What happened to the twin in steps behind one, in order."""
         behind = self._source.entries(tables.event, where=[tables.event.c.step > after])
-        return tuple(
-            Event(
-                entry.kind,
-                entry.row,
-                json.loads(entry.time),
-                entry.words,
-                tuple(json.loads(entry.sensors)),
-                entry.gap_before,
-                entry.gap_after,
-            )
-            for entry in behind
-        )
+        return tuple(map(_event, behind))
 
     def proposals(self) -> tuple[Proposal, ...]:
         """Changes of the model that diagnoses proposed."""
@@ -303,11 +292,14 @@ class RunView:
         entry = self._source.last(tables.message, tables.message.c.kind == kind)
         return None if entry is None else _message(entry)
 
-    def story(self) -> tuple[StoredMessage | Event, ...]:
-        """Messages and events together, in the order in which they were stored."""
-        messages = zip(self._source.entries(tables.message), self.messages(), strict=True)
-        happened = zip(self._source.entries(tables.event), self.events(), strict=True)
-        both: list[tuple[Row[Any], StoredMessage | Event]] = [*messages, *happened]
+    def story(self, first: int = 0, end: int | None = None) -> tuple[StoredMessage | Event, ...]:
+        """Messages and events together in the order in which they were stored, as of `messages`."""
+        sent = self._source.entries(tables.message, where=_between(tables.message, first, end))
+        events = self._source.entries(tables.event, where=_between(tables.event, first, end))
+        both: list[tuple[Row[Any], StoredMessage | Event]] = [
+            *((one, _message(one)) for one in sent),
+            *((one, _event(one)) for one in events),
+        ]
         return tuple(what for entry, what in sorted(both, key=lambda one: _place(one[0])))
 
     def kept(self, name: str) -> bytes | None:
@@ -318,6 +310,24 @@ class RunView:
 
 def _place(entry: Row[Any]) -> tuple[int, int]:
     return entry.step, entry.ordinal
+
+
+def _between(table: Table, first: int, end: int | None) -> list[ColumnElement[bool]]:
+    """What belongs to rows of the record from one to before another."""
+    where = [] if first <= 0 else [table.c.row >= first]
+    return where if end is None else [*where, table.c.row < end]
+
+
+def _event(entry: Row[Any]) -> Event:
+    return Event(
+        entry.kind,
+        entry.row,
+        json.loads(entry.time),
+        entry.words,
+        tuple(json.loads(entry.sensors)),
+        entry.gap_before,
+        entry.gap_after,
+    )
 
 
 def _message(entry: Row[Any]) -> StoredMessage:
