@@ -46,8 +46,8 @@ app = typer.Typer(
 )
 for command in (
     example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, status,
-    replay, accept, reject, rollback, export, serve, feed, user, simulate, results, whatif, dataset,
-    verify, schema, doctor,
+    replay, accept, reject, rollback, export, serve, user, feed, simulate, results, whatif,
+    dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

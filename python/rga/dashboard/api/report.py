@@ -35,8 +35,13 @@ class ReportBegun:
 
 @router.get(
     "/twins/{twin}/report",
-    response_class=HTMLResponse,
-    responses=OF_A_TWIN | answering(429) | {202: {"model": ReportBegun}},
+    response_class=Response,
+    responses=OF_A_TWIN
+    | answering(429)
+    | {
+        200: {"content": {"text/html": {}}, "description": "The report."},
+        202: {"model": ReportBegun},
+    },
     dependencies=[Depends(may("viewer"))],
 )
 def report(

@@ -28,6 +28,13 @@ def answering(*others: int) -> dict[int | str, dict[str, Any]]:
     return {status: {"model": ErrorAnswer} for status in every}
 
 
+def told_as_json(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The same of a path whose good answers are no JSON."""
+    schema = {"schema": {"$ref": f"#/components/schemas/{ErrorAnswer.__name__}"}}
+    told = {"description": "Why not.", "content": {"application/json": schema}}
+    return dict.fromkeys(statuses, told)
+
+
 #: of a path that names a twin
 OF_A_TWIN = answering(404)
 

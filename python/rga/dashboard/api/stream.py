@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.past import EventAnswer
-from rga.dashboard.api.served import OF_A_TWIN, TheTwin
+from rga.dashboard.api.served import TheTwin, told_as_json
 from rga.dashboard.surroundings import Seen
 from rga.operation.reading.twin_now import TwinNow
 
@@ -39,7 +39,7 @@ class RowMessage:
 @router.get(
     "/twins/{twin}/stream",
     response_class=EventSourceResponse,
-    responses=OF_A_TWIN,
+    responses=told_as_json(400, 401, 403, 404, 422, 503),
     dependencies=[Depends(may("viewer"))],
 )
 async def stream(

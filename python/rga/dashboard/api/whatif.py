@@ -11,8 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from rga.dashboard.access.may import may
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin, answering
-from rga.model import read_effect
-from rga.simulation.whatif import WhatIf
+from rga.simulation.whatif import WhatIf, effect_of
 
 #: answers that are worked out at once; who asks beyond that asks again
 MOST = 2
@@ -63,7 +62,7 @@ class WhatIfAnswer:
 def whatif(seen: TheTwin, question: WhatIfQuestion) -> WhatIfAnswer:
     """What contexts, or effects, do to every sensor."""
     twin = begun_twin(seen)
-    add = {name: read_effect(content, name) for name, content in question.add.items()}
+    add = {name: effect_of(content, name, "add") for name, content in question.add.items()}
     if not _ROOM.acquire(blocking=False):
         raise HTTPException(429, "others are being answered: ask again", {"Retry-After": "2"})
     try:
