@@ -98,7 +98,7 @@ def long_bridge(panels: int, name: str = "long bridge") -> dict[str, Any]:
     lower = [f"L{k}" for k in range(panels + 1)]
     upper = [f"U{k}" for k in range(1, panels)]
     nodes = {node: [4.0 * k, 0, 0] for k, node in enumerate(lower)}
-    nodes |= {node: [4.0 * k, 0, 5.0] for k, node in enumerate(upper, 1)}
+    nodes |= {node: [4.0 * k, 0, 10.0] for k, node in enumerate(upper, 1)}
     bars = [*pairwise(lower), *pairwise(upper), *zip(lower[1:-1], upper, strict=True)]
     half = panels // 2
     bars += [(lower[k - 1], upper[k - 1]) for k in range(1, half + 1)]

@@ -23,10 +23,14 @@ WIDE, SIDE = 1000.0, 54.0
 INCH = 100.0
 #: by which sensors stand below a support [inches of a printed drawing]
 FOOT = 0.14
-#: height of a drawing at most, over its width
-HIGHEST = 0.55
+#: height of a drawing over its width, at most and, where it has any, at least
+HIGHEST, LOWEST = 0.55, 0.12
+#: share of the width below which what is drawn has no height
+FLAT = 1e-3
 #: letters of a name that are shown, and their width
 LONGEST, LETTER = 14, 7.2
+#: distance of points along a member that names had best not cover [inches of a printed drawing]
+SAMPLED = 0.12
 #: names that are written into a drawing; pointing at a sensor tells the others
 MOST_NAMED = 14
 #: what stands for a kind of sensor
@@ -88,11 +92,13 @@ class Elevation:
 
     Attributes:
         title: in words.
+        stretch: by which heights are drawn larger than lengths.
         box: of the drawing, as SVG states it.
         bars, feet, dots, names: what is drawn.
     """
 
     title: str
+    stretch: float
     box: str
     bars: tuple[Bar, ...]
     feet: tuple[Foot, ...]
@@ -137,16 +143,17 @@ class _Sheet:
         low, high = points.min(axis=0), points.max(axis=0)
         span = float(max(high[0] - low[0], (high[1] - low[1]) / HIGHEST, 1e-9))
         self.scale = (WIDE - 2 * SIDE) / span
-        #: metres in an inch of a printed drawing
-        self.inch = INCH / self.scale
+        height = float(high[1] - low[1]) / span
+        #: by how much heights are drawn larger than lengths
+        self.stretch = max(1.0, LOWEST / height) if height > FLAT else 1.0
         self._left = SIDE + (WIDE - 2 * SIDE - self.scale * float(high[0] - low[0])) / 2
         self._low, self._top = low, float(high[1])
-        self.high = self.scale * float(high[1] - low[1])
+        self.high = self.scale * self.stretch * float(high[1] - low[1])
 
     def at(self, x: float, y: float) -> tuple[float, float]:
         """A place of the view in the drawing, where y runs downwards."""
         across = self._left + self.scale * (x - float(self._low[0]))
-        return round(across, 1), round(SIDE + self.scale * (self._top - y), 1)
+        return round(across, 1), round(SIDE + self.scale * self.stretch * (self._top - y), 1)
 
 
 def _elevation(
@@ -183,7 +190,7 @@ def _elevation(
     dots = tuple(dot for spot in here for dot in _dots(model, sheet, spot, sensors, held))
     box = f"0 0 {WIDE:g} {sheet.high + 2 * SIDE:.0f}"
     names = _names(bars, dots, feet, named_first, sheet.high + 2 * SIDE)
-    return Elevation(view.title, box, bars, feet, dots, names)
+    return Elevation(view.title, sheet.stretch, box, bars, feet, dots, names)
 
 
 def _dots(
@@ -193,12 +200,13 @@ def _dots(
     on_foot = model.sensors[sensors[spot.sensors[0]]].node in held
     found = []
     below = 0.0 if spot.tier == 1 or not on_foot else FOOT
-    y = spot.y + (marker_offset(spot) - below) * sheet.inch
+    across, down = sheet.at(spot.x, spot.y)
+    down = round(down - (marker_offset(spot) - below) * INCH, 1)
     for place, number in enumerate(spot.sensors):
-        x = spot.x + (0.16 * place - 1.45 * marker_row(spot)) * sheet.inch
+        x = round(across + (0.16 * place - 1.45 * marker_row(spot)) * INCH, 1)
         name = sensors[number]
         shape = SHAPES.get(model.sensors[name].kind, "round")
-        found.append(Dot(number, name, *sheet.at(x, y), shape))
+        found.append(Dot(number, name, x, down, shape))
     return found
 
 
@@ -232,7 +240,8 @@ def _samples(bars: tuple[Bar, ...]) -> FloatArray:
     if not bars:
         return np.zeros((0, 2))
     ends = np.array([one.ends for one in bars]) / INCH
-    share = np.linspace(0.0, 1.0, 25)[:, None, None]
+    length = float(np.median(np.linalg.norm(ends[:, 2:] - ends[:, :2], axis=1)))
+    share = np.linspace(0.0, 1.0, int(np.clip(length / SAMPLED, 2, 25)))[:, None, None]
     points = ends[:, :2] + share * (ends[:, 2:] - ends[:, :2])
     return np.asarray(points.reshape(-1, 2) * (1.0, -1.0))
 
