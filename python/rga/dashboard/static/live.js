@@ -4,8 +4,10 @@
 const page = document.documentElement;
 const shown = document.getElementById("live");
 const drawn = new Map();
-const SOON = 500, LATE = 30_000;
-let waiting = null;
+// How long to wait for more of what happens at once, and to look without being told [ms]; between
+// two times the server rests so many times as long as one has taken.
+const SOON = 200, LATE = 30_000, REST = 10;
+let waiting = null, next = 0;
 
 for (const part of document.querySelectorAll("[data-live]")) drawn.set(part.id, said(part));
 
@@ -22,7 +24,13 @@ function inUse(part) {
 }
 
 async function redraw() {
+  const begun = performance.now();
+  await draw();
+  next = performance.now() + REST * (performance.now() - begun);
   waiting = null;
+}
+
+async function draw() {
   let answer;
   try {
     answer = await fetch(location.href, { headers: { accept: "text/html" } });
@@ -49,7 +57,7 @@ async function redraw() {
 }
 
 function redrawSoon() {
-  waiting ??= setTimeout(redraw, SOON);
+  waiting ??= setTimeout(redraw, Math.max(SOON, next - performance.now()));
 }
 
 function say(words) {
