@@ -14,7 +14,7 @@ from rga.twin.restore import standing_of
 
 
 @dataclass(frozen=True)
-class Seen:
+class SeenTwin:
     """A twin as its pages see it.
 
     Attributes:
@@ -71,14 +71,14 @@ class Surroundings:
         """Of the twins."""
         return tuple(self._readings)
 
-    def twin(self, name: str) -> Seen:
+    def twin(self, name: str) -> SeenTwin:
         """A twin.
 
         Raises:
             KeyError: there is none of this name.
         """
         faults = {what: words for (of, what), words in self._service.faults.items() if of == name}
-        return Seen(
+        return SeenTwin(
             name,
             self._service.twins[name],
             self._readings[name],

@@ -15,7 +15,7 @@ from rga.model import read_model
 from rga.operation.configuration import read_configuration
 from rga.operation.service import Service
 from rga.records import Record
-from served_bridge import configured, lived, packets_of
+from served.bridges import configured, lived, packets_of
 
 #: time of the first row
 START = datetime(2026, 11, 23, tzinfo=UTC)

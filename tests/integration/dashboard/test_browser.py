@@ -13,8 +13,8 @@ import uvicorn
 from rga.dashboard.app import app_of
 from rga.operation.service import Service
 from rga.records import Record
+from served.bridges import lived, packets_of, played
 from served.made_service import free_port
-from served_bridge import lived, packets_of, played
 
 from .conftest import START
 

@@ -17,7 +17,7 @@ from rga.model import read_model
 from rga.operation.configuration import read_configuration
 from rga.operation.service import Service
 from rga.records import Record
-from served_bridge import HOSTILE, configured, lived, long_bridge, packets_of, played
+from served.bridges import HOSTILE, configured, lived, long_bridge, packets_of, played
 
 from .conftest import HERE, START
 

@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from rga.dashboard.svg.chart import HIGH, WIDE, Column, Mark, Window, chart
+from rga.dashboard.svg.chart import HIGH, WIDE, ChartMark, Column, Window, chart
 
 WINDOW = Window(datetime(2026, 11, 23, tzinfo=UTC), 0.0, 100.0)
 
@@ -44,7 +44,7 @@ def test_a_band_lies_around_blocks_of_rows_alone() -> None:
 
 
 def test_marks_outside_are_left_out() -> None:
-    marks = [Mark(at, "alarm", "w", "#") for at in (-1.0, 50.0, 101.0)]
+    marks = [ChartMark(at, "alarm", "w", "#") for at in (-1.0, 50.0, 101.0)]
     none = np.zeros(0)
     drawn = chart("t", "", none, [Column("a", "gap", none, none, none)], WINDOW, marks=marks)
     assert [one.at for one in drawn.marks] == [50.0]

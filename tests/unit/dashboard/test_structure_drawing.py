@@ -7,7 +7,7 @@ import pytest
 from rga.dashboard.svg.structure import WIDE, elevations, outline
 from rga.model import read_model
 from rga.report.drawing.places import Named
-from served_bridge import long_bridge
+from served.bridges import long_bridge
 
 NOTHING = Named(frozenset(), frozenset())
 

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from threading import Lock
 
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 
 #: calls a second of one caller in the long run, and at once
 RATE, BURST = 500.0, 5_000.0
@@ -64,7 +64,7 @@ class IntakeRoom:
         self._clock = clock
         self._found: dict[str, tuple[float, str | None]] = {}
 
-    def lacking(self, seen: Seen) -> str | None:
+    def lacking(self, seen: SeenTwin) -> str | None:
         """Why nothing more is taken in for now; None: it is."""
         now = self._clock()
         found = self._found.get(seen.name)
@@ -73,7 +73,7 @@ class IntakeRoom:
         return found[1]
 
 
-def _lacking(seen: Seen) -> str | None:
+def _lacking(seen: SeenTwin) -> str | None:
     free = shutil.disk_usage(seen.served.directory).free
     if free < RESERVE:
         return f"the disk has {free // 2**20} MiB left"

@@ -15,7 +15,7 @@ from starlette.responses import Response
 from rga.dashboard.access.may import may_see_some
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.served import answering, surroundings_of
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.twin.hardware.inbox import INBOX
@@ -43,7 +43,7 @@ def metrics(
 class _Numbers:
     """Numbers of twins, taken as they are asked for."""
 
-    def __init__(self, seen: list[Seen]) -> None:
+    def __init__(self, seen: list[SeenTwin]) -> None:
         self._seen = seen
 
     def collect(self) -> Iterator[Metric]:
@@ -105,7 +105,7 @@ def _bytes_of(path: Path) -> int:
     return sum(one.stat().st_size for one in files if one.exists())
 
 
-def _accounts(seen: Seen) -> dict[str, Account]:
+def _accounts(seen: SeenTwin) -> dict[str, Account]:
     found: dict[str, Account] = {}
     for (source, _), one in seen.served.packets.account().items():
         found[source] = found.get(source, Account()) + one

@@ -11,7 +11,7 @@ from starlette.responses import Response
 from rga.dashboard.access.may import may
 from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.findings.phrases import effect_words
 from rga.operation.inbox.account import Account
 from rga.operation.reading.twin_now import moment
@@ -212,13 +212,13 @@ def account(seen: TheTwin) -> dict[str, AccountAnswer]:
     }
 
 
-def _view(seen: Seen) -> RunView:
+def _view(seen: SeenTwin) -> RunView:
     begun_twin(seen)
     view = seen.reading.view()
     assert view is not None
     return view
 
 
-def _time_of(seen: Seen, view: RunView, row: int) -> datetime | None:
+def _time_of(seen: SeenTwin, view: RunView, row: int) -> datetime | None:
     found = view.measured_at([row]).time
     return moment(begun_twin(seen).station.start, float(found[0])) if len(found) else None

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, HTTPException
 
 from rga.dashboard.access.may import may
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin, begun
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import moment
 from rga.simulation.whatif import HALF_WIDTH
 from rga.twin.twin import Twin
@@ -111,7 +111,7 @@ def latest(seen: TheTwin) -> dict[str, LatestReading | None]:
     return found
 
 
-def begun_twin(seen: Seen) -> Twin:
+def begun_twin(seen: SeenTwin) -> Twin:
     """A twin as it stands.
 
     Raises:

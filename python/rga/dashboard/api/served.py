@@ -7,7 +7,7 @@ from fastapi import Depends, HTTPException, Path, Request
 from pydantic import AwareDatetime
 from starlette.requests import HTTPConnection
 
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.configuration import NAME_PATTERN
 from rga.operation.reading.twin_now import TwinNow
 
@@ -48,7 +48,7 @@ def surroundings_of(call: HTTPConnection) -> Surroundings:
 TwinName = Annotated[str, Path(pattern=NAME_PATTERN, description="Name of the twin.")]
 
 
-def seen_twin(twin: TwinName, request: Request) -> Seen:
+def seen_twin(twin: TwinName, request: Request) -> SeenTwin:
     """The twin that a path names."""
     known = surroundings_of(request)
     if twin not in known.names:
@@ -57,12 +57,12 @@ def seen_twin(twin: TwinName, request: Request) -> Seen:
 
 
 #: of a path that names a twin: that twin
-TheTwin = Annotated[Seen, Depends(seen_twin)]
+TheTwin = Annotated[SeenTwin, Depends(seen_twin)]
 #: a time with its zone
 Moment = AwareDatetime
 
 
-def begun(seen: Seen) -> TwinNow:
+def begun(seen: SeenTwin) -> TwinNow:
     """Where a twin stands.
 
     Raises:

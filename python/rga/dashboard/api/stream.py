@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from rga.dashboard.access.may import may
 from rga.dashboard.api.past import EventAnswer
 from rga.dashboard.api.served import TheTwin, told_as_json
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import TwinNow
 
 #: how often is looked whether something is new [s]
@@ -68,7 +68,7 @@ def _number(last_event_id: str | None) -> int | None:
     return int(last_event_id) if plain else -1
 
 
-def _messages(seen: Seen, told: int | None) -> tuple[list[ServerSentEvent], int | None]:
+def _messages(seen: SeenTwin, told: int | None) -> tuple[list[ServerSentEvent], int | None]:
     """What has happened since a step, and the step up to which it is told of.
 
     Args:

@@ -16,7 +16,7 @@ from rga.dashboard.api.served import (
     begun,
     surroundings_of,
 )
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.reading.twin_now import TwinNow
 
 router = APIRouter(tags=["twins"])
@@ -41,7 +41,7 @@ class ServedState:
     faults: dict[str, str]
 
 
-def state_of_twin(seen: Seen) -> ServedState:
+def state_of_twin(seen: SeenTwin) -> ServedState:
     """Where a twin stands."""
     now = seen.reading.now()
     time = None if now is None else now.time

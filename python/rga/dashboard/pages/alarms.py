@@ -10,8 +10,8 @@ import numpy as np
 from rga.dashboard.alarm_desk import SHELVES, alarms_of
 from rga.dashboard.pages.happened import Happened, Past
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.surroundings import Seen
-from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
+from rga.dashboard.surroundings import SeenTwin
+from rga.dashboard.svg.chart import POINTS, Column, TimeChart, Window, chart
 from rga.twin.history import Event
 from rga.twin.repository import RunView
 
@@ -34,11 +34,11 @@ class OutOfStep:
 
     event: Happened
     sensors: tuple[str, ...]
-    chart: Chart | None
+    chart: TimeChart | None
     then: list[Happened]
 
 
-def alarms_page(seen: Seen) -> dict[str, Any]:
+def alarms_page(seen: SeenTwin) -> dict[str, Any]:
     """What the page of alarms shows.
 
     Raises:
@@ -70,7 +70,7 @@ def alarms_page(seen: Seen) -> dict[str, Any]:
     }
 
 
-def _around(seen: Seen, view: RunView, alarm: Event, past: Past) -> Chart | None:
+def _around(seen: SeenTwin, view: RunView, alarm: Event, past: Past) -> TimeChart | None:
     """The gaps of the sensors that show it, in the rows around an alarm."""
     first, last = max(0, alarm.row - AROUND), min(view.rows, alarm.row + AROUND + 1)
     time = view.measured(first, last).time

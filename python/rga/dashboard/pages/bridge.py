@@ -13,8 +13,8 @@ from rga.dashboard.pages.in_force import in_force
 from rga.dashboard.pages.sensors_now import sensor_rows
 from rga.dashboard.pages.times import age_words, given_moment, of_event
 from rga.dashboard.pages.windows import SPANS, chosen_window
-from rga.dashboard.surroundings import Seen, Surroundings
-from rga.dashboard.svg.chart import POINTS, Chart, Column, Window, chart
+from rga.dashboard.surroundings import SeenTwin, Surroundings
+from rga.dashboard.svg.chart import POINTS, Column, TimeChart, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
 from rga.dashboard.svg.structure import elevations
 from rga.model.schema import Model
@@ -48,7 +48,7 @@ class VersionStretch:
     width: float
 
 
-def bridge_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
+def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
     """What the page of a bridge shows.
 
     Args:
@@ -124,7 +124,7 @@ def _marked(now: TwinNow, model: Model) -> Named:
     return named_parts(effects, model)
 
 
-def _strip(twin: str, series: Series, window: Window, happened: Any) -> Chart:
+def _strip(twin: str, series: Series, window: Window, happened: Any) -> TimeChart:
     """The gap over time, mean over the sensors."""
     parts = [
         mean(np.asarray(one, dtype=float), axis=1)
@@ -142,7 +142,7 @@ def _strip(twin: str, series: Series, window: Window, happened: Any) -> Chart:
     )
 
 
-def _versions(seen: Seen, window: Window, now: TwinNow) -> list[VersionStretch]:
+def _versions(seen: SeenTwin, window: Window, now: TwinNow) -> list[VersionStretch]:
     """The versions that were in force meanwhile, beside each other."""
     view = seen.reading.view()
     assert view is not None  # it has begun

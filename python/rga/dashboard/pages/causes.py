@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import Any
 
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.dashboard.svg.structure import Elevation, elevations
 from rga.findings import Findings
@@ -88,7 +88,7 @@ class Proposed:
     warnings: list[str]
 
 
-def causes_page(seen: Seen) -> dict[str, Any]:
+def causes_page(seen: SeenTwin) -> dict[str, Any]:
     """What the page of causes shows.
 
     Raises:

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from rga.dashboard.pages.heading import heading, heading_of_damaged
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.errors import InputError
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.refused import refused_packets
@@ -21,7 +21,7 @@ GIGABYTE = 1e9
 
 
 @dataclass(frozen=True)
-class Stream:
+class StreamAccount:
     """Numbers of a stream: the next that is expected, how many are missing, and which."""
 
     name: str
@@ -47,7 +47,7 @@ class SourceAccount:
     total: Account
     day: Account
     late: str
-    streams: list[Stream]
+    streams: list[StreamAccount]
     latest: datetime | None
     fault: str
 
@@ -62,7 +62,7 @@ class RefusedLine:
     sample: str
 
 
-def data_page(seen: Seen) -> dict[str, Any]:
+def data_page(seen: SeenTwin) -> dict[str, Any]:
     """What the page of data shows; it can be drawn whatever became of the repository."""
     now = None
     try:
@@ -104,7 +104,7 @@ def safe_sample(payload: bytes) -> str:
     return shown + ("…" if len(payload) > SAMPLE else "")
 
 
-def _sources(seen: Seen) -> list[SourceAccount]:
+def _sources(seen: SeenTwin) -> list[SourceAccount]:
     packets = seen.served.packets
     accounts, latest = packets.account(), packets.latest()
     since = (Surroundings.now() - EPOCH - timedelta(days=1)) // timedelta(microseconds=1)
@@ -115,7 +115,7 @@ def _sources(seen: Seen) -> list[SourceAccount]:
         day = sum((one for hour, one in own if hour >= since), Account())
         share = percent(100 * total.late / total.received, sign=False) if total.received else "–"
         streams = [
-            Stream(stream, known.next, known.missing, _gaps(known.gaps))
+            StreamAccount(stream, known.next, known.missing, _gaps(known.gaps))
             for stream, known in seen.served.numbers(name).items()
         ]
         last = latest.get(name)
@@ -131,6 +131,6 @@ def _gaps(gaps: list[tuple[int, int]]) -> str:
     return ", ".join(said) + (f" and {more} more" if more > 0 else "")
 
 
-def _size(seen: Seen) -> int:
+def _size(seen: SeenTwin) -> int:
     """Bytes of the folder of the twin."""
     return sum(one.stat().st_size for one in seen.served.directory.glob("**/*") if one.is_file())

@@ -9,7 +9,7 @@ import numpy as np
 from rga.dashboard.alarm_desk import SHELVES, alarms_of
 from rga.dashboard.pages.heading import Heading, heading, heading_of_damaged
 from rga.dashboard.pages.times import DAY, age_words
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.dashboard.svg.chart import Window, sparkline
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.dashboard.svg.structure import Elevation, outline
@@ -22,7 +22,7 @@ SHOWN, ENTRIES = 30 * DAY, 120
 
 
 @dataclass(frozen=True)
-class Card:
+class BridgeCard:
     """A bridge of the fleet.
 
     Attributes:
@@ -60,14 +60,14 @@ def fleet_page(surroundings: Surroundings) -> dict[str, Any]:
     }
 
 
-def _card(seen: Seen) -> Card:
+def _card(seen: SeenTwin) -> BridgeCard:
     try:
         return _readable(seen)
     except InputError as error:
         return _empty(seen, heading_of_damaged(seen, error))
 
 
-def _readable(seen: Seen) -> Card:
+def _readable(seen: SeenTwin) -> BridgeCard:
     now, twin = seen.reading.now(), seen.reading.twin
     if now is None or twin is None:
         return _empty(seen, heading(seen, now))
@@ -80,7 +80,7 @@ def _readable(seen: Seen) -> Card:
         gap = mean(np.asarray(series.gap.mean, dtype=float), axis=1)
         start = datetime.fromisoformat(str(twin.station.start))
         line = sparkline(series.gap.time, gap, Window(start, begin, last + 1.0))
-    return Card(
+    return BridgeCard(
         heading=heading(seen, now),
         drawing=outline(seen.served.model),
         gap="" if now.recent is None else number(now.recent, 2),
@@ -93,6 +93,8 @@ def _readable(seen: Seen) -> Card:
     )
 
 
-def _empty(seen: Seen, top: Heading) -> Card:
+def _empty(seen: SeenTwin, top: Heading) -> BridgeCard:
     open_alarms = len(alarms_of(seen.desk, seen.name))
-    return Card(top, outline(seen.served.model), "", gap_level(None), "", 0, open_alarms, None, "")
+    return BridgeCard(
+        top, outline(seen.served.model), "", gap_level(None), "", 0, open_alarms, None, ""
+    )

@@ -7,7 +7,7 @@ from urllib.parse import parse_qs
 from fastapi import HTTPException, Request
 
 from rga.dashboard.pages.times import given_moment
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.errors import InputError
 from rga.operation.inbox.requests import Requests
 from rga.twin.commands.command import Accept, AnyCommand, Exclude, Reject, Rollback
@@ -28,7 +28,7 @@ async def form_of(request: Request) -> dict[str, str]:
     return {name: values[0] for name, values in fields.items()}
 
 
-def ask(seen: Seen, form: Mapping[str, str], who: str) -> None:
+def ask(seen: SeenTwin, form: Mapping[str, str], who: str) -> None:
     """Keep what a form asks a twin for; whoever plays it carries it out.
 
     Raises:

@@ -7,7 +7,7 @@ from datetime import datetime
 from urllib.parse import quote
 
 from rga.dashboard.pages.times import of_event
-from rga.dashboard.svg.chart import Mark, Window
+from rga.dashboard.svg.chart import ChartMark, Window
 from rga.twin.history import Event
 from rga.twin.repository import RunView
 from rga.twin.repository.chunks import LONGEST
@@ -78,7 +78,7 @@ class Past:
         ]
         return found[::-1]
 
-    def marks(self, events: Iterable[Event], window: Window) -> list[Mark]:
+    def marks(self, events: Iterable[Event], window: Window) -> list[ChartMark]:
         """Those of some events that are marked over time; at one place the weightiest."""
         places: dict[int, list[Event]] = {}
         for one in events:
@@ -89,7 +89,7 @@ class Past:
             first = min(here, key=lambda one: MARKED.index(one.kind))
             words = "; ".join(f"{one.kind}: {one.words}" for one in here)
             at = round(_share(first, window), 2)
-            found.append(Mark(at, first.kind, words, self._as_of(first)))
+            found.append(ChartMark(at, first.kind, words, self._as_of(first)))
         return found
 
     def _as_of(self, event: Event) -> str:

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from rga.dashboard.pages.state import State, damaged, state_of
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.pages.state import TwinHealth, damaged, state_of
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.errors import InputError
 from rga.operation.reading.twin_now import TwinNow
 from rga.twin.commands.command import AnyCommand, Command
@@ -33,11 +33,11 @@ class Heading:
 
     twin: str
     structure: str
-    state: State
+    state: TwinHealth
     waiting: tuple[str, ...]
 
 
-def heading(seen: Seen, now: TwinNow | None) -> Heading:
+def heading(seen: SeenTwin, now: TwinNow | None) -> Heading:
     """The heading of a twin that can be read."""
     return Heading(
         seen.name,
@@ -47,7 +47,7 @@ def heading(seen: Seen, now: TwinNow | None) -> Heading:
     )
 
 
-def heading_of_damaged(seen: Seen, error: InputError) -> Heading:
+def heading_of_damaged(seen: SeenTwin, error: InputError) -> Heading:
     """The heading of a twin that cannot be read."""
     return Heading(seen.name, seen.served.model.name, damaged(str(error)), ())
 

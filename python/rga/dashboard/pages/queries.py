@@ -8,7 +8,7 @@ from typing import Any
 
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.times import given_moment
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.operation.reading.twin_now import moment
 from rga.twin.history import Event
 from rga.twin.messages.log_text import exchanges, kinds_of, row_of, words_of
@@ -48,7 +48,7 @@ class LogLine:
     content: str
 
 
-def queries_page(seen: Seen, query: Mapping[str, str]) -> dict[str, Any]:
+def queries_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
     """What the page of queries shows: the latest lines up to a time.
 
     Args:

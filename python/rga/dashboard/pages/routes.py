@@ -23,7 +23,7 @@ from rga.dashboard.pages.queries import queries_page
 from rga.dashboard.pages.rendering import rendered
 from rga.dashboard.pages.sensor import sensor_page, sensors_page
 from rga.dashboard.pages.versions import versions_page
-from rga.dashboard.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.errors import InputError
 
 Viewer = Annotated[Who, Depends(may("viewer"))]
@@ -130,7 +130,7 @@ async def _done(does: Callable[[], None], back: str, who: Who) -> Response:
 def _page(
     template: str,
     page: Callable[[], dict[str, Any]],
-    seen: Seen,
+    seen: SeenTwin,
     tab: str,
     who: Who,
     *,
@@ -150,7 +150,7 @@ def _page(
         return rendered("fault", shown, who, live=False, status=503)
 
 
-def _file(seen: Seen, content: Callable[[Any], str]) -> Response:
+def _file(seen: SeenTwin, content: Callable[[Any], str]) -> Response:
     """A JSON file out of the repository of a twin."""
     try:
         view = seen.reading.view()

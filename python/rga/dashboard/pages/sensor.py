@@ -13,8 +13,8 @@ from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.sensors_now import SensorRow, sensor_rows
 from rga.dashboard.pages.times import utc_words
 from rga.dashboard.pages.windows import SPANS, ChosenWindow, chosen_window
-from rga.dashboard.surroundings import Seen
-from rga.dashboard.svg.chart import POINTS, Chart, Column, Mark, chart, column
+from rga.dashboard.surroundings import SeenTwin
+from rga.dashboard.svg.chart import POINTS, ChartMark, Column, TimeChart, chart, column
 from rga.operation.reading.twin_now import RECENT, TwinNow
 from rga.operation.reading.twin_reading import Series
 from rga.quantities import scale
@@ -34,7 +34,7 @@ class Quality:
     share: str
 
 
-def sensors_page(seen: Seen) -> dict[str, Any]:
+def sensors_page(seen: SeenTwin) -> dict[str, Any]:
     """What the table of all sensors shows.
 
     Raises:
@@ -49,7 +49,7 @@ def sensors_page(seen: Seen) -> dict[str, Any]:
     }
 
 
-def sensor_page(seen: Seen, name: str, query: Mapping[str, str]) -> dict[str, Any]:
+def sensor_page(seen: SeenTwin, name: str, query: Mapping[str, str]) -> dict[str, Any]:
     """What the page of a sensor shows.
 
     Args:
@@ -101,8 +101,8 @@ def _charts(
     unit: str,
     now: TwinNow,
     chosen: ChosenWindow,
-    happened: list[Mark],
-) -> list[Chart]:
+    happened: list[ChartMark],
+) -> list[TimeChart]:
     place = series.sensors.index(row.name)
     known = np.asarray(series.measured.mean[:, place], dtype=float)
     factor, shown = scale(unit, float(np.nanmax(np.abs(known), initial=0.0)))

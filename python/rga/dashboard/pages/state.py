@@ -18,7 +18,7 @@ LEARNS = ("initialise", "gather", "calibrate")
 
 
 @dataclass(frozen=True)
-class State:
+class TwinHealth:
     """How a twin is.
 
     Attributes:
@@ -46,12 +46,12 @@ def cause_words(effect: dict[str, Any]) -> str:
     return f"{kind_words(str(effect['kind']))} of {', '.join(names)}".removesuffix(" of ")
 
 
-def damaged(words: str) -> State:
+def damaged(words: str) -> TwinHealth:
     """Of a twin whose repository cannot be read."""
-    return State("damaged", "bad", "✕", 0, f"Its repository cannot be read: {words}")
+    return TwinHealth("damaged", "bad", "✕", 0, f"Its repository cannot be read: {words}")
 
 
-def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> State:
+def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> TwinHealth:
     """How a twin is.
 
     Args:
@@ -61,24 +61,24 @@ def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> St
         lag: rows that it has not played yet.
     """
     if now is None or now.time is None:
-        return State("no rows yet", "wait", "○", 5, "It waits for its first rows.")
+        return TwinHealth("no rows yet", "wait", "○", 5, "It waits for its first rows.")
     proposed = "" if now.undecided is None else _decision_words(now.undecided)
     if now.out_of_sync:
         words = "Readings have left what the model lets expect; the reason is being looked for."
-        return State("alarm", "bad", "▲", 1, f"{words} {proposed}".strip())
+        return TwinHealth("alarm", "bad", "▲", 1, f"{words} {proposed}".strip())
     if proposed:
-        return State("to decide", "warn", "◆", 2, proposed)
+        return TwinHealth("to decide", "warn", "◆", 2, proposed)
     silence = (at - now.time).total_seconds()
     if silence > 2 * patience and lag == 0:
         words = f"The newest row is {span_words(silence)} old: its sources are silent."
-        return State("silent", "warn", "◇", 3, words)
+        return TwinHealth("silent", "warn", "◇", 3, words)
     if now.stage in LEARNS:
         words = f"{number(now.rows)} rows have come; {NEXT[now.stage]}."
-        return State("learning", "wait", "◌", 5, words)
+        return TwinHealth("learning", "wait", "◌", 5, words)
     if lag > BEHIND:
-        return State("behind", "warn", "◁", 4, f"{lag} rows wait to be played.")
+        return TwinHealth("behind", "warn", "◁", 4, f"{lag} rows wait to be played.")
     extra = f" It has {', '.join(now.causes)} beyond the model as given." if now.causes else ""
-    return State("in step", "good", "●", 6, f"Readings are as the model lets expect.{extra}")
+    return TwinHealth("in step", "good", "●", 6, f"Readings are as the model lets expect.{extra}")
 
 
 def _decision_words(proposal: Proposal) -> str:

@@ -12,7 +12,7 @@ def span_words(seconds: float) -> str:
     """A length of time as people say it.
 
     >>> span_words(42.0), span_words(400.0), span_words(3 * 86_400.0)
-    ('42 s', '6 min', '3 days')
+    ('42\\xa0s', '6\\xa0min', '3\\xa0days')
     """
     for least, size, unit in _UNITS:
         if seconds >= least:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rga.dashboard.pages.heading import heading
 from rga.dashboard.pages.in_force import BEHIND, InForce, in_force
-from rga.dashboard.surroundings import Seen
+from rga.dashboard.surroundings import SeenTwin
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.findings.phrases import effect_words
 from rga.operation.reading.twin_now import moment
@@ -49,7 +49,7 @@ class VersionRow:
     sha256: str
 
 
-def versions_page(seen: Seen) -> dict[str, Any]:
+def versions_page(seen: SeenTwin) -> dict[str, Any]:
     """What the page of versions shows.
 
     Raises:

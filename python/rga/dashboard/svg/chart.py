@@ -47,7 +47,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Line:
+class ChartLine:
     """A line that is drawn.
 
     Attributes:
@@ -73,7 +73,7 @@ class Tick:
 
 
 @dataclass(frozen=True)
-class Mark:
+class ChartMark:
     """Something that happened.
 
     Attributes:
@@ -90,7 +90,7 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Chart:
+class TimeChart:
     """Lines over time.
 
     Attributes:
@@ -104,11 +104,11 @@ class Chart:
 
     title: str
     unit: str
-    lines: tuple[Line, ...]
+    lines: tuple[ChartLine, ...]
     across: tuple[Tick, ...]
     date: str
     up: tuple[Tick, ...]
-    marks: tuple[Mark, ...]
+    marks: tuple[ChartMark, ...]
     words: str
 
 
@@ -147,9 +147,9 @@ def chart(
     columns: Sequence[Column],
     window: Window,
     *,
-    marks: Sequence[Mark] = (),
+    marks: Sequence[ChartMark] = (),
     logarithmic: bool = False,
-) -> Chart:
+) -> TimeChart:
     """Draw columns over time.
 
     Args:
@@ -169,7 +169,7 @@ def chart(
 
     x = WIDE * np.array([window.share(one) for one in time]) / 100.0
     lines = tuple(
-        Line(
+        ChartLine(
             one.name,
             one.look,
             _path(x, height(one.mean)),
@@ -179,7 +179,7 @@ def chart(
         for one in columns
     )
     said = ", ".join(f"{one.name} {one.last} {unit}".strip() for one in lines)
-    return Chart(
+    return TimeChart(
         title,
         unit,
         lines,
