@@ -77,7 +77,7 @@ def state_of(now: TwinNow | None, at: datetime, patience: float, lag: int) -> Tw
         return TwinHealth("learning", "wait", "◌", 5, words)
     if lag > BEHIND:
         return TwinHealth("behind", "warn", "◁", 4, f"{lag} rows wait to be played.")
-    extra = f" It has {', '.join(now.causes)} beyond the model as given." if now.causes else ""
+    extra = f" Version {now.version} of the model is in force." if now.causes else ""
     return TwinHealth("in step", "good", "●", 6, f"Readings are as the model lets expect.{extra}")
 
 
