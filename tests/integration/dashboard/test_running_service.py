@@ -1,4 +1,4 @@
-"""`rga serve` as a process: killed between decisions, asked by commands, and pestered."""
+"""`rga serve` as a process: killed between decisions, and asked by commands."""
 
 import json
 import os
@@ -129,9 +129,11 @@ def test_decisions_at_once_and_a_kill_in_between(running: Running, rga: Callable
         refused = rga("status", wrong)
         assert refused.code == 2
         assert refused.err.startswith("error: ")
+    check_a_stream_ends_with(running)
 
 
-def test_a_stream_ends_with_the_service(running: Running) -> None:
+def check_a_stream_ends_with(running: Running) -> None:
+    """A stream tells what has happened, and ends when the service does."""
     asked = Request(f"{running.url}{EAST}/stream", headers={"Last-Event-ID": "1"})
     with urlopen(asked, timeout=PATIENCE) as stream:
         lines = []
@@ -179,48 +181,3 @@ def test_users_tokens_and_secrets(
         running.kill()
     assert PASSWORD not in (folder / "said.txt").read_text("utf-8")
     assert PASSWORD.encode() not in (folder / "data" / "service.sqlite").read_bytes()
-
-
-def test_connections_that_say_nothing_are_closed(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # Waits of a fraction of a second, in a process that the test can set them in.
-    program = (
-        "from rga.dashboard import server, bounded_body\n"
-        "server.BoundedProtocol.look = 0.3\n"
-        "bounded_body.BoundedBody.__init__.__defaults__ = (0.5,)\n"
-        "from rga.cli import main\n"
-        "main(['serve', 'serve.toml'])\n"
-    )
-    monkeypatch.setattr(subprocess, "Popen", _starting(["-c", program], subprocess.Popen))
-    running = Running(folder)
-    try:
-        host = f"Host: 127.0.0.1:{running.port}\r\n".encode()
-        nothing, half = (
-            socket.create_connection(("127.0.0.1", running.port), PATIENCE) for _ in range(2)
-        )
-        half.sendall(b"GET /healthz HTTP/1.1\r\n" + host)
-        assert nothing.recv(1) == b""
-        assert half.recv(1) == b""
-        drips = socket.create_connection(("127.0.0.1", running.port), PATIENCE)
-        drips.sendall(
-            b"POST " + EAST.encode() + b"/packets HTTP/1.1\r\n" + host
-            + b"Content-Type: application/json\r\nContent-Length: 1000\r\n\r\n{"
-        )  # fmt: skip
-        assert drips.recv(100).startswith(b"HTTP/1.1 408")
-        large = socket.create_connection(("127.0.0.1", running.port), PATIENCE)
-        large.sendall(b"GET /healthz HTTP/1.1\r\nX: " + b"x" * 100_000)
-        assert large.recv(100).startswith(b"HTTP/1.1 400")
-        # Others are answered all the while.
-        assert running.get("/healthz") == {"state": "up"}
-    finally:
-        running.kill()
-
-
-def _starting(arguments: list[str], popen: Any) -> Callable[..., Any]:
-    """Starts Python with other arguments."""
-
-    def start(_: list[str], **options: Any) -> Any:
-        return popen([sys.executable, *arguments], **options)
-
-    return start
