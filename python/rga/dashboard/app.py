@@ -36,8 +36,8 @@ from rga.errors import InputError
 from rga.operation.service import Service
 from rga.twin.repository.faults import RepositoryFault
 
-#: name of the folder of reports
-REPORTS = "reports"
+#: name of the folder of reports, which is that of no twin
+REPORTS = ".reports"
 
 
 def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> FastAPI:

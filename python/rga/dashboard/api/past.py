@@ -91,6 +91,15 @@ class EventAnswer:
 
 
 @dataclass(frozen=True)
+class LogAnswer:
+    """An exchange of query and response, or an event: its row, kinds, and words."""
+
+    row: int
+    messages: str
+    words: str
+
+
+@dataclass(frozen=True)
 class StreamAnswer:
     """Numbers of packets that a logger counts: the next, and first and last of those missing."""
 
@@ -191,6 +200,12 @@ def events(seen: TheTwin, last: Last = 100) -> list[EventAnswer]:
         )
         for one in _view(seen).events()[-last:]
     ]
+
+
+@router.get("/twins/{twin}/log")
+def log(seen: TheTwin, last: Last = 100) -> list[LogAnswer]:
+    """Queries, responses and events in words, the oldest first."""
+    return [LogAnswer(*one) for one in begun_twin(seen).log()[-last:]]
 
 
 @router.get("/twins/{twin}/account")

@@ -80,7 +80,7 @@ def _messages(seen: SeenTwin, told: int | None) -> tuple[list[ServerSentEvent], 
         return [], told
     if told is None:
         return [_row(now, 1)], now.steps
-    if not now.steps - MOST_STEPS <= told <= now.steps:
+    if not max(0, now.steps - MOST_STEPS) <= told <= now.steps:
         return [ServerSentEvent(event="reload", data={}, id=str(now.steps)), _row(now, 1)], (
             now.steps
         )
