@@ -15,7 +15,7 @@ from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.service import Service
 from rga.records import Record
 from rga.twin import Twin
-from served_bridge import packets_of
+from served.bridges import packets_of
 
 START = datetime(2026, 11, 23, tzinfo=UTC)
 

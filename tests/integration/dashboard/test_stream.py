@@ -6,21 +6,21 @@ import pytest
 
 from rga.dashboard.api import stream
 from rga.dashboard.api.stream import _messages, _number
-from rga.dashboard.pages.surroundings import Seen, Surroundings
+from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.service import Service
 
 
 @pytest.fixture
-def seen(service: Service) -> Seen:
+def seen(service: Service) -> SeenTwin:
     return Surroundings(service).twin("east")
 
 
-def told(seen: Seen, since: int | None) -> tuple[list[tuple[str | None, Any]], int | None]:
+def told(seen: SeenTwin, since: int | None) -> tuple[list[tuple[str | None, Any]], int | None]:
     messages, step = _messages(seen, since)
     return [(one.event, one.data) for one in messages], step
 
 
-def test_a_new_stream_begins_with_the_newest_row(seen: Seen) -> None:
+def test_a_new_stream_begins_with_the_newest_row(seen: SeenTwin) -> None:
     now = seen.reading.now()
     assert now is not None
     (only,), step = told(seen, None)
@@ -28,7 +28,7 @@ def test_a_new_stream_begins_with_the_newest_row(seen: Seen) -> None:
     assert told(seen, step) == ([], step)
 
 
-def test_what_was_missed_is_told_in_order(seen: Seen) -> None:
+def test_what_was_missed_is_told_in_order(seen: SeenTwin) -> None:
     now, view = seen.reading.now(), seen.reading.view()
     assert now is not None
     assert view is not None
@@ -46,7 +46,7 @@ def test_what_was_missed_is_told_in_order(seen: Seen) -> None:
     assert events > 3
 
 
-def test_a_proposal_is_told_once(seen: Seen) -> None:
+def test_a_proposal_is_told_once(seen: SeenTwin) -> None:
     now = seen.reading.now()
     assert now is not None
     kinds = [kind for kind, _ in told(seen, 1)[0]]
@@ -55,11 +55,13 @@ def test_a_proposal_is_told_once(seen: Seen) -> None:
 
 
 @pytest.mark.parametrize("since", [-1, 10**9])
-def test_what_is_no_step_of_the_twin_is_to_be_read_anew(seen: Seen, since: int) -> None:
+def test_what_is_no_step_of_the_twin_is_to_be_read_anew(seen: SeenTwin, since: int) -> None:
     assert [kind for kind, _ in told(seen, since)[0]] == ["reload", "row"]
 
 
-def test_who_was_away_for_long_is_to_read_anew(seen: Seen, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_who_was_away_for_long_is_to_read_anew(
+    seen: SeenTwin, monkeypatch: pytest.MonkeyPatch
+) -> None:
     now = seen.reading.now()
     assert now is not None
     monkeypatch.setattr(stream, "MOST_STEPS", 3)

@@ -11,7 +11,7 @@ from rga.dashboard.access.roles import Who
 from rga.dashboard.access.tokens import Tokens
 from rga.dashboard.access.users import Users
 from rga.operation.service_file import service_file
-from served_bridge import configured
+from served.bridges import configured
 
 PASSWORD = "four words of mine"
 
