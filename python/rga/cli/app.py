@@ -22,6 +22,7 @@ from rga.cli.operation.replay import replay
 from rga.cli.operation.run import run
 from rga.cli.operation.serve import serve
 from rga.cli.operation.status import status
+from rga.cli.operation.user import user
 from rga.cli.preparation.check import check
 from rga.cli.preparation.draw import draw
 from rga.cli.preparation.example import example
@@ -45,8 +46,8 @@ app = typer.Typer(
 )
 for command in (
     example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, status,
-    replay, accept, reject, rollback, export, serve, feed, simulate, results, whatif, dataset,
-    verify, schema, doctor,
+    replay, accept, reject, rollback, export, serve, user, feed, simulate, results, whatif,
+    dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)
 # Other packages, as the benchmarks in this wheel, add commands of their own.

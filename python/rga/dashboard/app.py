@@ -1,87 +1,99 @@
-"""The HTTP door of a service."""
+"""The HTTP door of a service: its API, its pages, and what guards both."""
 
-from dataclasses import asdict
-from typing import Any
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 
-from fastapi import FastAPI, HTTPException, Request
-from starlette.concurrency import run_in_threadpool
+from fastapi import APIRouter, FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from starlette.responses import JSONResponse, Response
+from starlette.staticfiles import StaticFiles
 
+from rga.dashboard.access.access import Access
+from rga.dashboard.access.guard import Guard
+from rga.dashboard.access.login import router as login
+from rga.dashboard.access.login import to_login
+from rga.dashboard.access.may import NotLoggedIn
+from rga.dashboard.api import (
+    commands,
+    health,
+    metrics,
+    packets,
+    past,
+    readings,
+    report,
+    series,
+    stream,
+    twins,
+    whatif,
+)
+from rga.dashboard.api.bounds import IntakeRoom, RateLimit
+from rga.dashboard.api.reports import Reports
+from rga.dashboard.api.served import PREFIX
+from rga.dashboard.bounded_body import BoundedBody
+from rga.dashboard.pages.routes import router as pages
+from rga.dashboard.surroundings import Surroundings
 from rga.errors import InputError
-from rga.operation.inbox.account import Account
-from rga.operation.packets.formats import format_of_type
-from rga.operation.packets.packet import MOST_BYTES
-from rga.operation.served_twin import ServedTwin
 from rga.operation.service import Service
+from rga.twin.repository.faults import RepositoryFault
 
-#: how long a sender waits where nothing can be written [s]
-AGAIN = 5
+#: name of the folder of reports, which is that of no twin
+REPORTS = ".reports"
 
 
-def app_of(service: Service) -> FastAPI:
-    """The API of a service.
+def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> FastAPI:
+    """The API and the pages of a service.
 
     Args:
         service: that runs.
+        is_ending: whether streams are to end.
+
+    Raises:
+        InputError: anybody could come in.
     """
-    app = FastAPI(title="rga", docs_url=None, redoc_url=None, openapi_url="/api/v1/openapi.json")
+    settings = service.configuration.service
+    access, reports = Access(settings), Reports(settings.data / REPORTS)
 
-    def twin_of(name: str) -> ServedTwin:
-        if name not in service.twins:
-            raise HTTPException(404, f"there is no twin {name!r}")
-        return service.twins[name]
+    @asynccontextmanager
+    async def life(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        reports.close()
+        access.close()
 
-    @app.get("/healthz")
-    def health() -> dict[str, str]:
-        return {"state": "up"}
-
-    @app.post("/api/v1/twins/{twin}/packets")
-    async def packets(twin: str, request: Request) -> dict[str, Any]:
-        """Take a packet in; the answer comes when it is on the disk."""
-        served = twin_of(twin)
-        source = served.http_source
-        if source is None:
-            raise HTTPException(404, f"twin {twin!r} has no source of kind http")
-        payload = await _body(request)
-        kind = format_of_type(request.headers.get("content-type"))
-        try:
-            fates = await run_in_threadpool(served.receive, source, [("http", payload)], kind=kind)
-        except InputError as error:
-            raise HTTPException(503, str(error), {"Retry-After": str(AGAIN)}) from None
-        (fate, reason), *_ = fates
-        told: dict[str, Any] = {"stored": 0, "duplicate": 0, "late": 0, "refused": []}
-        if fate == "refused":
-            told["refused"].append(reason)
-        else:
-            told["stored" if fate == "waiting" else fate] = 1
-        return told
-
-    @app.get("/api/v1/twins/{twin}/account")
-    def account(twin: str) -> dict[str, Any]:
-        """What became of every packet, by source."""
-        served = twin_of(twin)
-        sources: dict[str, Account] = {}
-        for (source, _), one in served.packets.account().items():
-            sources[source] = sources.get(source, Account()) + one
-        return {
-            name: asdict(one)
-            | {"difference": one.difference}
-            | {
-                "streams": {
-                    stream: {"next": known.next, "missing": known.gaps}
-                    for stream, known in served.numbers(name).items()
-                }
-            }
-            for name, one in sources.items()
-        }
-
+    app = FastAPI(
+        title="rga",
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=f"{PREFIX}/openapi.json",
+        lifespan=life,
+    )
+    app.state.access, app.state.reports = access, reports
+    app.state.surroundings = Surroundings(service)
+    app.state.rate_limit, app.state.room = RateLimit(), IntakeRoom()
+    app.state.is_ending = is_ending
+    app.add_middleware(BoundedBody)
+    app.add_middleware(Guard, access=access)
+    app.add_exception_handler(NotLoggedIn, to_login)
+    app.add_exception_handler(RequestValidationError, _told_of_mistake)
+    app.add_exception_handler(InputError, _told_of_error)
+    api = APIRouter(prefix=PREFIX)
+    # What of the API is about alarms comes here too.
+    for one in (twins, readings, series, past, whatif, commands, packets, stream, report):
+        api.include_router(one.router)
+    for router in (api, health.router, metrics.router, login, pages):
+        app.include_router(router)
+    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
     return app
 
 
-async def _body(request: Request) -> bytes:
-    """What was sent, of no more bytes than a packet has."""
-    payload = bytearray()
-    async for part in request.stream():
-        payload += part
-        if len(payload) > MOST_BYTES:
-            raise HTTPException(413, f"a packet has {MOST_BYTES} bytes at most")
-    return bytes(payload)
+def _told_of_mistake(request: Request, error: Exception) -> Response:
+    """Of a call that is not what its path takes: the first mistake, in words."""
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    place = ".".join(str(one) for one in first["loc"])
+    return JSONResponse({"detail": f"{place}: {first['msg']}"}, 422)
+
+
+def _told_of_error(request: Request, error: Exception) -> Response:
+    """Of what cannot be done: 503 where it may be done later, else 422."""
+    status = 503 if isinstance(error, RepositoryFault) else 422
+    return JSONResponse({"detail": str(error)}, status)

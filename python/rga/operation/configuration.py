@@ -1,5 +1,6 @@
 """What `rga serve` does: its twins, where their data comes from, and how rows are made of it."""
 
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,6 +13,14 @@ from rga.operation.rows.grid import Grid
 from rga.operation.settings_types import Duration, Name, SettingsTable, duration_of
 from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated
+
+
+def _address(given: Any) -> str:
+    return str(ip_address(given))
+
+
+#: of a machine, as numbers
+Address = Annotated[str, BeforeValidator(_address)]
 
 
 class RowSettings(SettingsTable):
@@ -89,6 +98,9 @@ class ServiceSettings(SettingsTable):
         listen: address and port of the API and the pages.
         data: folder of the twins, beside the configuration.
         repository: URL of a PostgreSQL database for the repositories; None: they are in `data`.
+        certificate, key: files of TLS, beside the configuration; None: plain HTTP.
+        trusted_proxies: addresses of proxies that are believed for whom they call.
+        user_header: by which they say whom they have let in; None: they let nobody in.
         link: address of the pages as people reach them, for notices; None: that of `listen`.
     """
 
@@ -97,12 +109,25 @@ class ServiceSettings(SettingsTable):
     )
     data: Path = Path("data")
     repository: str | None = None
+    certificate: Path | None = None
+    key: Path | None = None
+    trusted_proxies: tuple[Address, ...] = ()
+    user_header: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9-]{0,63}$")] | None = None
     link: Annotated[str, Field(pattern=r"^https?://[^\s]+$")] | None = None
 
     @property
     def address(self) -> str:
         """Address of the pages, without a slash at its end."""
-        return (self.link or f"http://{self.listen}").rstrip("/")
+        secure = "s" if self.certificate is not None else ""
+        return (self.link or f"http{secure}://{self.listen}").rstrip("/")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "ServiceSettings":
+        if (self.certificate is None) != (self.key is None):
+            raise ValueError("certificate and key come together")
+        if self.user_header is not None and not self.trusted_proxies:
+            raise ValueError("user_header: anybody could send it; name a proxy in trusted_proxies")
+        return self
 
 
 class Configuration(SettingsTable):

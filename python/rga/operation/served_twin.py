@@ -38,6 +38,12 @@ class ServedTwin:
         repository: URL of a PostgreSQL database, or None.
         clock: of the service.
 
+    Attributes:
+        model: as it was given.
+        archive: packets of long ago.
+        inbox: rows and commands that wait for it.
+        packets: that have come.
+
     Raises:
         InputError: its model, its settings or a mapping cannot be used.
     """

@@ -38,6 +38,7 @@ class Service:
         clock: None: that of this machine.
 
     Attributes:
+        configuration: of it.
         twins: by name.
         alarms: what is wrong, and what people do about it.
         outbox: notices of alarms.
@@ -48,7 +49,7 @@ class Service:
 
     def __init__(self, configuration: Configuration, clock: ServiceClock | None = None) -> None:
         service, clock = configuration.service, clock or ServiceClock()
-        self._configuration, self._clock = configuration, clock
+        self.configuration, self._clock = configuration, clock
         self.twins = {
             one.name: ServedTwin(one, service.data / one.name, service.repository, clock)
             for one in configuration.twin
@@ -75,7 +76,7 @@ class Service:
         Raises:
             InputError: an address for notices cannot be used.
         """
-        self._telling = [self._teller(one) for one in self._configuration.notify]
+        self._telling = [self._teller(one) for one in self.configuration.notify]
         self._threads = [
             Thread(target=self._seal, name=ROWS, daemon=True),
             self._again(WATCH, ALARMS, self.supervision.round),
@@ -105,13 +106,13 @@ class Service:
 
     def _supervision(self) -> Supervision:
         """What looks at the twins and at the service."""
-        settings, clock = self._configuration.alarms, self._clock
-        service = self._configuration.service
+        settings, clock = self.configuration.alarms, self._clock
+        service = self.configuration.service
         twins = [
             TwinWatch(
                 self.twins[one.name], one, service.repository, settings.lag, self._file, clock
             )
-            for one in self._configuration.twin
+            for one in self.configuration.twin
         ]
         watch = ServiceWatch(service.data, settings.disk, self.outbox.failing, clock)
         return Supervision(self.alarms, twins, watch, self._troubles, self.faults, clock)

@@ -48,7 +48,8 @@ def rate_of(given: Any) -> tuple[int, float]:
 
 Rate = Annotated[tuple[int, float], BeforeValidator(rate_of)]
 #: as it stands in addresses, topics and names of folders
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
+NAME_PATTERN = r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$"
+Name = Annotated[str, Field(pattern=NAME_PATTERN)]
 
 
 class SettingsTable(BaseModel):

@@ -22,6 +22,8 @@ MISSING_WORDS = frozenset({
 THOUSANDS = " '’\u00a0\u202f\u2009"
 #: the sign of subtraction, which typesetters take for that of a negative number
 MINUS = "\u2212"
+#: signs of a number: looking at one takes their square
+LONGEST = 400
 _LEADING = r"[+-]?[1-9][0-9]{0,2}"
 _GROUPED = re.compile(rf"{_LEADING}([{THOUSANDS}]\d{{3}})+([.,]\d*)?")
 
@@ -104,7 +106,7 @@ def notation_of(cells: Iterable[str], decimal: str | None, thousands: str | None
     grouped = {".": 0, ",": 0}
     marked = {".": 0, ",": 0}
     maybe = 0
-    for cell in (one.replace(MINUS, "-") for one in cells):
+    for cell in (one.replace(MINUS, "-") for one in cells if len(one) <= LONGEST):
         both = re.fullmatch(r"[+-]?[\d.,]*\d[\d.,]*([eEdD][+-]?\d+)?", cell)
         if both is None:
             continue

@@ -93,6 +93,8 @@ _SIGNS = {
 }  # fmt: skip
 #: what stands where a unit would, and states none
 _NO_UNIT = {"", "-", "--", "---", "\u2013", "\u2014", "\u2212", "n/a", "na", "none", "nan", "null"}
+#: letters of a name of a column that are looked through for a unit: it takes their square
+LONGEST_NAME = 1000
 _BRACKETS = {"(": ")", "[": "]", "<": ">", "{": "}"}
 
 
@@ -173,6 +175,8 @@ def name_and_unit(column: str) -> tuple[str, str | None]:
     >>> name_and_unit("Kraft [kN]"), name_and_unit("MS1 [µm/m] CH=4"), name_and_unit("temp(1)")
     (('Kraft', 'kN'), ('MS1', 'µm/m'), ('temp(1)', None))
     """
+    if len(column) > LONGEST_NAME:
+        return column, None
     found = re.fullmatch(r"(?P<name>.*?\S)\s*(\[(?P<unit>[^]]+)\]|\((?P<round>[^)]+)\))"
                          r"(\s+CH=\S+)?", column.strip())  # fmt: skip
     if found is None or "," in column:

@@ -202,10 +202,20 @@ def read_effects(path: str | Path) -> dict[str, Effect]:
     if not isinstance(content, dict):
         raise InputError("this is no effect", str(path), "give an object with a 'kind'")
     named = {path.stem: content} if "kind" in content else content
-    return {name: _effect(effect, name, str(path)) for name, effect in named.items()}
+    return {name: effect_of(effect, name, str(path)) for name, effect in named.items()}
 
 
-def _effect(content: Any, name: str, where: str) -> Effect:
+def effect_of(content: Any, name: str, where: str) -> Effect:
+    """An effect of the vocabulary from its keys.
+
+    Args:
+        content: the keys.
+        name: of the effect.
+        where: it stands, for an error.
+
+    Raises:
+        InputError: it is none.
+    """
     try:
         return read_effect(content, name)
     except ValidationError as error:

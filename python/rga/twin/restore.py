@@ -16,7 +16,7 @@ from rga.twin.digital_twin import TwinState, follow
 from rga.twin.hardware.interface import LIVE, Station
 from rga.twin.history import Event, History, Version
 from rga.twin.messages.queries import R5, Query, Response, read_message, sha256
-from rga.twin.repository import RunView, StoredReadings
+from rga.twin.repository import RunView, StoredMessage, StoredReadings
 from rga.twin.repository.faults import Damaged
 from rga.twin.rows.recent import Stretch, carried_on
 from rga.twin.run_state import Standing
@@ -58,18 +58,27 @@ def log_of(view: RunView, kind: str | None = None) -> list[Query | Response]:
     Raises:
         InputError: an entry of the log is no message.
     """
+    return [_read(one) for one in view.messages(kind)]
+
+
+def story_of(
+    view: RunView, first: int = 0, end: int | None = None
+) -> list[Query | Response | Event]:
+    """Messages and events in the order in which they passed, at rows from one to before another.
+
+    Raises:
+        InputError: an entry of the log is no message.
+    """
+    return [one if isinstance(one, Event) else _read(one) for one in view.story(first, end)]
+
+
+def _read(stored: StoredMessage) -> Query | Response:
     try:
-        return [read_message(one.kind, one.row, one.body) for one in view.messages(kind)]
+        return read_message(stored.kind, stored.row, stored.body)
     except ValidationError as error:
         raise InputError(
             "an entry of the log is no message", "repository", "begin a new run"
         ) from error
-
-
-def story_of(view: RunView) -> list[Query | Response | Event]:
-    """Messages and events in the order in which they passed (see `log_of`)."""
-    messages = iter(log_of(view))
-    return [one if isinstance(one, Event) else next(messages) for one in view.story()]
 
 
 def standing_of(view: RunView) -> Standing:

@@ -11,6 +11,7 @@ from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 
 from rga.operation.service_file import FILE_NAME
+from served import notices_to_kill
 from served.notice_server import NoticeServer, notice_server
 
 #: `RGA_TEST_KILLS=200` kills more often

@@ -63,7 +63,7 @@ def test_rows_and_history_are_those_of_the_record(seed: int, folder: Path, recor
     draw = random.Random(seed)
     service = Service(read_configuration(folder / "serve.toml"))
     twin = service.twins["east"]
-    client = TestClient(app_of(service))
+    client = TestClient(app_of(service), base_url="http://127.0.0.1")
     # At most three rows behind others, and some of them twice.
     sent = [(k + draw.uniform(0, 3), one) for k, one in enumerate(packets_of(record, draw))]
     sent += [
@@ -104,7 +104,7 @@ def test_rows_and_history_are_those_of_the_record(seed: int, folder: Path, recor
 
 def test_what_cannot_be_taken_is_told(folder: Path) -> None:
     service = Service(read_configuration(folder / "serve.toml"))
-    client = TestClient(app_of(service))
+    client = TestClient(app_of(service), base_url="http://127.0.0.1")
     assert client.post("/api/v1/twins/west/packets", content=b"").status_code == 404
     answer = client.post("/api/v1/twins/east/packets", content=b"{}")
     assert answer.status_code == 200

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rga.cli.operation.replay import Place
+from rga.cli.operation.running_service import ServiceClient, is_service
 from rga.cli.options import whole
 
 if TYPE_CHECKING:
@@ -50,5 +51,10 @@ def rollback(place: Place, to: VersionNumber, who: Who = None, why: Why = "") ->
 def _carry_out(place: str, command: "AnyCommand") -> None:
     from rga.twin import carry_out
 
-    outcome = carry_out(place if "://" in place else Path(place), command)
+    if is_service(place):
+        # Who asks is whoever the service lets in.
+        sent = command.model_dump(mode="json", exclude={"who", "given_at"}, exclude_none=True)
+        outcome = ServiceClient(place).outcome_of(sent)
+    else:
+        outcome = carry_out(place if "://" in place else Path(place), command)
     typer.echo(f"{outcome[0].upper()}{outcome[1:]}.")

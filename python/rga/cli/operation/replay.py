@@ -5,14 +5,18 @@ from typing import Annotated
 
 import typer
 
+from rga.cli.operation.running_service import ServiceClient, is_service
 from rga.cli.options import JsonTarget, whole
 from rga.quantities import plain
 
-#: damage that is listed
-MOST = 5
+#: damage that is listed, and entries of the log of a service
+MOST, MOST_OF_SERVICE = 5, 1000
 
 Place = Annotated[
-    str, typer.Argument(metavar="DIR", help="Directory of a run, or a database by URL.")
+    str,
+    typer.Argument(
+        metavar="DIR", help="Directory of a run, a database by URL, or http://host:port/twin."
+    ),
 ]
 Row = Annotated[
     int | None,
@@ -47,6 +51,9 @@ def replay(
     from rga.errors import InputError
     from rga.twin import Twin
 
+    if is_service(place):
+        _replay_served(place, row, time, check, json)
+        return
     if row is not None and time is not None:
         raise InputError("both --row and --time are given", "options", "give one of them")
     proved = _proved(place) if check else ""
@@ -74,6 +81,27 @@ def replay(
         typer.echo(proved)
     where = "before its first row" if state["row"] is None else f"at row {state['row']}"
     typer.echo(f"The twin stands {where}, with model version {state['version']}.")
+
+
+def _replay_served(
+    place: str, row: int | None, time: str | None, check: bool, json: str | None
+) -> None:
+    """Replay the latest part of the log of a twin of a service."""
+    from rga.cli.output import write_json
+    from rga.errors import InputError
+
+    if row is not None or time is not None or check:
+        remedy = "leave out --row, --time and --check, or name its directory"
+        raise InputError("a service shows its log as it stands now", place, remedy)
+    client = ServiceClient(place)
+    log, now = client.get("/log", {"last": MOST_OF_SERVICE}), client.get()["now"]
+    if json is not None:
+        write_json({"log": log, "twin": now}, json)
+    if json == "-":
+        return
+    for one in log:
+        typer.echo(f"row {one['row']:>6}  {one['messages']}  {one['words']}")
+    typer.echo(f"The twin stands at row {now['rows'] - 1}, with model version {now['version']}.")
 
 
 def _proved(place: str) -> str:

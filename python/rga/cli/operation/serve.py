@@ -12,18 +12,19 @@ ConfigurationFile = Annotated[
 
 def serve(configuration: ConfigurationFile) -> None:
     """Take in what loggers send, play the twins, and show them to people and programs."""
-    import uvicorn
-
     from rga.dashboard.app import app_of
+    from rga.dashboard.server import server_of
     from rga.operation.configuration import read_configuration
     from rga.operation.service import Service
 
     chosen = read_configuration(configuration)
-    host, _, port = chosen.service.listen.rpartition(":")
     service = Service(chosen)
+    app = app_of(service, lambda: server.should_exit)
+    server = server_of(app, chosen.service)
     service.start()
-    typer.echo(f"rga serves {', '.join(service.twins)} at http://{chosen.service.listen}")
+    scheme = "http" if chosen.service.certificate is None else "https"
+    typer.echo(f"rga serves {', '.join(service.twins)} at {scheme}://{chosen.service.listen}")
     try:
-        uvicorn.run(app_of(service), host=host.strip("[]"), port=int(port), log_level="warning")
+        server.run()
     finally:
         service.stop()

@@ -6,6 +6,7 @@ from pathlib import Path
 import typer
 
 from rga.cli.operation.replay import Place
+from rga.cli.operation.running_service import ServiceClient, is_service
 from rga.cli.options import JsonTarget
 
 
@@ -16,6 +17,9 @@ def status(place: Place, json: JsonTarget = None) -> None:
     from rga.jobs.run import FILE
     from rga.twin import Twin
 
+    if is_service(place):
+        _show_served(place, json)
+        return
     waiting = _waiting(place)
     if waiting and not Path(place, FILE).exists():
         remedy = "play it, or name the URL of its repository"
@@ -29,6 +33,36 @@ def status(place: Place, json: JsonTarget = None) -> None:
     typer.echo(found.words())
     if waiting:
         typer.echo(waiting)
+
+
+def _show_served(place: str, json: str | None) -> None:
+    """Show where a twin of a service stands."""
+    from rga.cli.output import write_json
+    from rga.quantities import counted
+    from rga.twin.status import NEXT
+
+    client = ServiceClient(place)
+    found = client.get()
+    if json is not None:
+        write_json(found, json)
+    if json == "-":
+        return
+    now = found["now"]
+    if now is None:
+        typer.echo(f"{client.twin} waits for its first rows.")
+    else:
+        last = f", the last of {now['time']}" if now["time"] else ""
+        causes = f" with {', '.join(now['causes'])}" if now["causes"] else ""
+        state = "out of sync" if now["out_of_sync"] else "no alarm is open"
+        typer.echo(f"{client.twin}: {counted(now['rows'], 'row')}{last}; {NEXT[now['stage']]}.")
+        typer.echo(f"Model version {now['version']}{causes} is in force; {state}.")
+        if now["undecided"] is not None:
+            typer.echo(f"Undecided: proposal {now['undecided']['number']}, ", nl=False)
+            typer.echo(f"{now['undecided']['words']}.")
+    if found["lag"]:
+        typer.echo(f"{counted(found['lag'], 'row')} wait to be played.")
+    for what, words in found["faults"].items():
+        typer.echo(f"{what}: {words}")
 
 
 def _waiting(place: str) -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rga.cli.operation.running_service import ServiceClient, is_service
 from rga.cli.options import JsonTarget, once
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ Source = Annotated[
     str,
     typer.Argument(
         metavar="MODEL|DIR",
-        help="Model file, or the directory of a run: then from where its twin stands.",
+        help="Model file, or a run (directory, or http://host:port/twin): then as its twin stands.",
     ),
 ]
 
@@ -61,6 +62,8 @@ def whatif(
 
 
 def _answer(source: str, settings: dict[str, float], add: "dict[str, Effect]") -> "WhatIf":
+    if is_service(source):
+        return _asked(source, settings, add)
     if "://" in source or Path(source).is_dir() or Path(source).suffix == ".sqlite":
         from rga.twin import Twin
 
@@ -70,6 +73,33 @@ def _answer(source: str, settings: dict[str, float], add: "dict[str, Effect]") -
     from rga.simulation.whatif import whatif as compare
 
     return compare(load_model(source), settings, add)
+
+
+def _asked(source: str, settings: dict[str, float], add: "dict[str, Effect]") -> "WhatIf":
+    """What a twin of a service answers."""
+    import numpy as np
+
+    from rga.simulation.whatif import WhatIf
+
+    effects = {name: one.model_dump(mode="json", exclude_none=True) for name, one in add.items()}
+    found = ServiceClient(source).post("/whatif", {"settings": settings, "add": effects})
+    sensors = found["sensors"]
+
+    def column(key: str) -> Any:
+        values = [one[key] for one in sensors.values()]
+        return None if None in values else np.array(values, dtype=float)
+
+    return WhatIf(
+        tuple(sensors),
+        tuple(one["unit"] for one in sensors.values()),
+        column("before"),
+        column("after"),
+        column("after_ci90"),
+        column("change_ci90"),
+        found["contexts_before"],
+        found["contexts"],
+        found["warnings"],
+    )
 
 
 def _content(result: "WhatIf") -> dict[str, Any]:

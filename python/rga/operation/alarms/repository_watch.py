@@ -93,7 +93,7 @@ class RepositoryWatch:
         view, here = self._view, RunPlace(self._view.identity.key, self._view.steps)
         if self._seen is None or self._seen.place != here:
             # As it stood then: steps that are taken meanwhile are looked at the next time.
-            self._seen = self._look_at(view.after_step(here.step), here)
+            self._seen = self._look_at(view.at_step(here.step), here)
         if not self._seen.occurred:
             self._place = here
         return self._seen
@@ -102,7 +102,7 @@ class RepositoryWatch:
         before = here if self._place is None else self._place
         since = before.step if before.run == here.run else 0
         occurred = tuple(
-            self._gap(view.after_step(step), event)
+            self._gap(view.at_step(step), event)
             for step, event in view.events_since(since)
             if event.kind == "alarm"
         )

@@ -47,7 +47,9 @@ class HttpSender:
         parts = urlsplit(url)
         twin = parts.path.strip("/")
         self._url = f"{parts.scheme}://{parts.netloc}/api/v1/twins/{twin}/packets"
-        self._headers = {} if token is None else {"Authorization": f"Bearer {token}"}
+        self._headers = {"Content-Type": "application/octet-stream"}
+        if token is not None:
+            self._headers["Authorization"] = f"Bearer {token}"
 
     def send(self, payload: bytes, number: Number | None) -> None:
         """Send a payload until the service says what became of it.

@@ -19,6 +19,10 @@ _request = Table(
 )
 
 
+class KeyUsed(InputError):
+    """Another command was sent with a key."""
+
+
 class Requests:
     """The commands of one twin, in the file of its inbox.
 
@@ -46,7 +50,8 @@ class Requests:
             Its number, or that of the command that the key was sent with before.
 
         Raises:
-            InputError: the key was sent with another command, or nothing can be written.
+            KeyUsed: the key was sent with another command.
+            InputError: nothing can be written.
         """
         with self._inbox.writing() as connection:
             of_key = select(_request).where(_request.c.key == key)
@@ -54,7 +59,7 @@ class Requests:
             if found is not None:
                 known = values_of(_request, found)
                 if known["command"] != compared:
-                    raise InputError(
+                    raise KeyUsed(
                         "another command was sent with this key", "request", "draw a new key"
                     )
                 return int(known["number"])

@@ -87,9 +87,12 @@ class Overview:
             self._joined = _joined(self._blocks, self._columns)
             self._blocks = [self._joined] if len(self._joined) else []
         found = _joined([self._joined, self._open], self._columns)
-        # A block counts with all its rows.
-        first = max(0, int(np.searchsorted(found.time, begin, side="right")) - 1)
-        last = int(np.searchsorted(found.time, end))
+        # A block counts with all its rows, as some may lie within.
+        first = int(np.searchsorted(found.time, begin))
+        before = int(np.searchsorted(found.time, begin, side="right")) - 1
+        if 0 <= before < len(self._joined):
+            first = before
+        last = int(np.searchsorted(found.time, end)) if end > begin else first
         parts = (found.mean, found.least, found.most)
         return Trace(found.time[first:last], *(one[first:last] for one in parts))
 

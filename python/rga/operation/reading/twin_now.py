@@ -6,11 +6,15 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from rga.findings.phrases import effect_words
+from rga.report.figures.of_run.run_gap import mean
 from rga.twin.commands.proposals import decision
 from rga.twin.repository import Proposal, RunView
 from rga.twin.restore import standing_of
 from rga.twin.run_state import Stage
 from rga.twin.twin import Twin
+
+#: rows over which a gap is averaged
+RECENT = 24
 
 
 @dataclass(frozen=True)
@@ -21,12 +25,14 @@ class SensorNow:
         measured, simulated: in its unit; None: missing.
         noise: standard deviation of a row [its unit]; None: nothing tells it.
         gap: squared difference over the variance of the noise [-].
+        recent: mean of the gap over the last rows, which tells more than one of them [-].
     """
 
     measured: float | None
     simulated: float | None
     noise: float | None
     gap: float | None
+    recent: float | None
 
 
 @dataclass(frozen=True)
@@ -43,6 +49,7 @@ class TwinNow:
         out_of_sync: whether an alarm is being dealt with.
         undecided: the proposal that nobody has decided about.
         gap: mean over the sensors of the last row [-].
+        recent: mean over the sensors and the last rows [-].
         sensors: by name.
         contexts: mean and standard deviation of each, in its unit.
     """
@@ -56,6 +63,7 @@ class TwinNow:
     out_of_sync: bool
     undecided: Proposal | None
     gap: float | None
+    recent: float | None
     sensors: dict[str, SensorNow]
     contexts: dict[str, tuple[float, float]]
 
@@ -70,19 +78,26 @@ def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
     """
     row, standing = view.rows - 1, standing_of(view)
     last, gaps = view.measured(max(0, row), row + 1), view.gaps(max(0, row), row + 1)
+    before = view.gaps(max(0, row + 1 - RECENT), row + 1, at_the_time=True)
     station = twin.station
     names = list(station.channels)
     none = np.full(len(names), np.nan)
     measured = last.readings[-1] if len(last.rows) else none
     simulated = gaps.simulated[-1] if len(gaps.rows) else none
     squares = gaps.gaps[-1] if len(gaps.rows) else none
+    recent = mean(before.gaps, axis=0) if len(before.rows) else none
     sensors = {}
     for k, name in enumerate(names):
         own = noise.get(name, np.nan)
         sensors[name] = SensorNow(
-            _number(measured[k]), _number(simulated[k]), _number(own), _number(squares[k] / own**2)
+            _number(measured[k]),
+            _number(simulated[k]),
+            _number(own),
+            _number(squares[k] / own**2),
+            _number(recent[k] / own**2),
         )
     known = [one.gap for one in sensors.values() if one.gap is not None]
+    usual = [one.recent for one in sensors.values() if one.recent is not None]
     proposals = view.proposals()
     open_ = proposals[-1] if proposals and decision(view, proposals[-1]) is None else None
     effects = twin.state.versions.get(twin.version, {})
@@ -97,6 +112,7 @@ def twin_now(twin: Twin, view: RunView, noise: dict[str, float]) -> TwinNow:
         out_of_sync=standing.alarm is not None,
         undecided=open_,
         gap=float(np.mean(known)) if known else None,
+        recent=float(np.mean(usual)) if usual else None,
         sensors=sensors,
         contexts={
             name: (float(mean), spread.get(name, 0.0)) for name, mean in twin.context.items()

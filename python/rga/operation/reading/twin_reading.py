@@ -60,7 +60,7 @@ class TwinReading:
 
     def __init__(self, name: str, directory: Path, repository: str | None) -> None:
         self.name = name
-        self._place: str | Path = repository or directory
+        self.place: str | Path = repository or directory
         self._file = None if repository else directory / FILE
         self._lock = RLock()
         self._repository: Repository | None = None
@@ -92,7 +92,7 @@ class TwinReading:
             if self._twin is None or view.steps != self._steps:
                 # It is told apart by its number of steps, which a step at this moment may raise.
                 steps = view.steps
-                self._twin, self._now = Twin(view, self._place), None
+                self._twin, self._now = Twin(view, self.place), None
                 self._steps = steps
             return self._twin
 
@@ -110,6 +110,25 @@ class TwinReading:
                 view = self._begun()
                 self._now = twin_now(twin, view, dict(zip(*self._noise_by_name(twin), strict=True)))
             return self._now
+
+    def as_of(self, elapsed: float) -> TwinNow | None:
+        """Where the twin stood when its rows had reached a time [s since the first].
+
+        Returns:
+            None where it had not begun then.
+
+        Raises:
+            InputError: its repository cannot be read.
+        """
+        with self._lock:
+            twin = self.twin
+            if twin is None:
+                return None
+            past = self._begun().as_of(time=max(0.0, elapsed))
+            if past.row < 0 or not past.versions():
+                return None
+            noise = dict(zip(*self._noise_by_name(twin), strict=True))
+            return twin_now(Twin(past, self.place), past, noise)
 
     def events(self) -> tuple[Event, ...]:
         """What happened to the twin, in order."""
@@ -240,7 +259,7 @@ class TwinReading:
             if self._repository is None:
                 if self._file is not None and not self._file.exists():
                     return None
-                self._repository = Repository.open(self._place, read_only=True)
+                self._repository = Repository.open(self.place, read_only=True)
             source = f"{LIVE}{self.name}"
             runs = [one for one in self._repository.runs() if one.identity.source == source]
             begun = [one for one in runs if one.kept("station") is not None]

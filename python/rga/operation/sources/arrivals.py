@@ -3,11 +3,15 @@
 from collections.abc import Callable, Sequence
 from hashlib import sha256
 
-from rga.errors import InputError
+from rga.errors import InputError, in_short
 from rga.operation.inbox.arrival import Arrival
 from rga.operation.packets.formats import PACKETS, PayloadFormat
 from rga.operation.rows.samples import Reader
 from rga.operation.sources.clock import ClockSight, ClockWatch
+
+#: cells of a line of a text: reading it takes the square of them
+MOST_CELLS = 1_000
+_DELIMITERS = (b",", b";", b"\t", b"|", b" ")
 
 
 def arrival_of(
@@ -38,10 +42,12 @@ def arrival_of(
             moments = [one.times for one in packets]
             channels = frozenset(name for one in packets for name in one.channels)
         else:
+            _check_width(payload, where)
             samples, timed = reader.of_rows(kind, payload, where, arrived)
             moments, channels = [samples.times], frozenset(samples.names)
-    except InputError as error:
-        return Arrival(payload, kind, arrived, sha256=digest, refused=str(error), place=where)
+    except Exception as error:  # whatever a reader meets, the payload is kept aside
+        told = in_short(error)
+        return Arrival(payload, kind, arrived, sha256=digest, refused=told, place=where)
     first, last = min(int(one.min()) for one in moments), max(int(one.max()) for one in moments)
     fault = None
     if clock is not None:
@@ -76,3 +82,18 @@ def arrivals_of_lines(
             return [whole]
     first = arrivals_of_lines(head, lines[:middle], arrive)
     return first + arrivals_of_lines(head, lines[middle:], arrive)
+
+
+def _check_width(payload: bytes, where: str) -> None:
+    """Whether lines of a text have no more cells than loggers write.
+
+    Raises:
+        InputError: one has.
+    """
+    cells = max(line.count(sign) for line in payload.split(b"\n") for sign in _DELIMITERS)
+    if cells > MOST_CELLS:
+        raise InputError(
+            f"a line has {cells} cells, and {MOST_CELLS} are allowed",
+            where,
+            "send packets of rga's own, or fewer channels at once",
+        )

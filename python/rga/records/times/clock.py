@@ -333,7 +333,7 @@ class _Reading:
 
     def _is_number(self, series: pl.Series) -> bool:
         read, bad = numbers_of(series.head(1), self.table.notation)
-        return not bad[0] and bool(np.isfinite(read[0]))
+        return len(read) > 0 and not bad[0] and bool(np.isfinite(read[0]))
 
 
 def _by_format(text: str, pattern: str) -> datetime:

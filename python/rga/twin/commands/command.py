@@ -32,6 +32,8 @@ class Command(BaseModel):
         who: asks.
         why: in words.
         given_at: wall clock, UTC, as ISO 8601 text.
+        version_seen: number of the version in force that whoever asks has seen: where another is
+            by then, the command is refused. None: it is carried out whatever is in force.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -39,6 +41,7 @@ class Command(BaseModel):
     who: Annotated[str, Field(min_length=1, max_length=200)]
     why: Annotated[str, Field(max_length=20_000)] = ""
     given_at: str = Field(default_factory=_now)
+    version_seen: Number | None = None
 
     def __init__(self, **given: Any) -> None:
         """A command of values.

@@ -64,6 +64,7 @@ class CommandDesk:
         Raises:
             InputError: it cannot be done.
         """
+        self._check_seen(command.version_seen)
         body = _body(command)
         if isinstance(command, Accept | Reject):
             body["proposal"] = self._proposals.open(command.proposal).number
@@ -187,6 +188,17 @@ class CommandDesk:
         why = f" ({command.why})" if command.why else ""
         words = f"{command.who} asked to {command.kind}{why}: {outcome}"
         self._analysis.event("command", self._row, words)
+
+    def _check_seen(self, version: int | None) -> None:
+        """Whether the version that somebody has seen is still in force.
+
+        Raises:
+            InputError: another has come into force meanwhile.
+        """
+        now = self._archive.run.version_in_force()
+        if version is not None and now is not None and now.number != version:
+            what = f"version {now.number} has come into force meanwhile in place of {version}"
+            raise InputError(what, PLACE, "look at it, and ask again")
 
     def _check_calibrated(self) -> None:
         if not self._analysis.standing.calibrated:

@@ -25,6 +25,12 @@ def retold(messages: Sequence[Message | Event]) -> Iterator[tuple[int, str, str]
     >>> next(retold(log))
     (0, 'Q2 R2', '9 simulations of version 1 wanted: 2 held, 7 missing')
     """
+    for one in exchanges(messages):
+        yield row_of(one), kinds_of(one), words_of(one)
+
+
+def exchanges(messages: Sequence[Message | Event]) -> list[list[Pair] | Event]:
+    """What belongs together: a query with its response, packets in a row, an event."""
     runs: list[list[Pair] | Event] = []
     query: Message | None = None
     for one in messages:
@@ -39,12 +45,20 @@ def retold(messages: Sequence[Message | Event]) -> Iterator[tuple[int, str, str]
             else:
                 runs.append([(query, one)])
             query = None
-    for run in runs:
-        if isinstance(run, Event):
-            yield run.row, TASKS.get(run.kind, run.kind), run.words
-        else:
-            first, response = run[0]
-            yield first.row, f"{first.kind} {response.kind}", _words(run)
+    return runs
+
+
+def row_of(exchange: list[Pair] | Event) -> int:
+    """The row of the record at which an exchange or an event passed, its first."""
+    return exchange.row if isinstance(exchange, Event) else exchange[0][0].row
+
+
+def kinds_of(exchange: list[Pair] | Event) -> str:
+    """The kinds of query and response, or of an event."""
+    if isinstance(exchange, Event):
+        return TASKS.get(exchange.kind, exchange.kind)
+    query, response = exchange[0]
+    return f"{query.kind} {response.kind}"
 
 
 def _continues(before: Message, query: Message) -> bool:
@@ -53,8 +67,11 @@ def _continues(before: Message, query: Message) -> bool:
     return before.version == query.version and query.first == before.first + before.rows
 
 
-def _words(run: list[Pair]) -> str:
-    query, response = run[0]
+def words_of(exchange: list[Pair] | Event) -> str:
+    """An exchange or an event in words."""
+    if isinstance(exchange, Event):
+        return exchange.words
+    query, response = exchange[0]
     if isinstance(query, Q1) and isinstance(response, R1):
         return _adequacy(query, response)
     if isinstance(query, Q2) and isinstance(response, R2):
@@ -66,11 +83,11 @@ def _words(run: list[Pair]) -> str:
     if isinstance(query, Q4) and isinstance(response, R4):
         rows = f"{response.simulated_rows} simulated and {response.measured_rows} measured rows"
         return f"data set to learn from: {rows}"
-    last = run[-1][0]
+    last = exchange[-1][0]
     assert isinstance(query, Q5)
     assert isinstance(last, Q5)
     rows = f"rows {query.first} to {last.first + last.rows - 1}"
-    packets = f" in {len(run)} packets" if len(run) > 1 else ""
+    packets = f" in {len(exchange)} packets" if len(exchange) > 1 else ""
     return f"contexts of {rows}{packets} sent, simulated by version {query.version}"
 
 

@@ -41,6 +41,10 @@ class InUse(RepositoryFault):
     """Another process writes there."""
 
 
+class DiskFull(RepositoryFault):
+    """There is no room."""
+
+
 class Damaged(RepositoryFault):
     """What is there is not what was written."""
 
@@ -51,8 +55,7 @@ class NotWhole(Exception):
 
 #: rows that no record has
 MOST_ROWS = 2**40
-#: what says that another process writes there
-_LOCKED = ("SQLITE_BUSY", "55P03")
+_KINDS = {"SQLITE_BUSY": InUse, "55P03": InUse, "SQLITE_FULL": DiskFull}
 
 
 @contextmanager
@@ -70,8 +73,7 @@ def as_input_errors(where: str) -> Iterator[None]:
         name = name or getattr(error.orig, "sqlstate", None) or ""
         for beginning, (what, remedy) in _MENDED.items():
             if name.startswith(beginning):
-                kind = InUse if name in _LOCKED else RepositoryFault
-                raise kind(what, where, remedy) from error
+                raise _KINDS.get(name, RepositoryFault)(what, where, remedy) from error
         words = str(error.orig).strip().partition("\n")[0]
         if isinstance(error.orig, sqlite3.Error):
             raise _damaged(words, where) from error

@@ -72,11 +72,16 @@ class Source:
 
     def last(self, table: Table, *where: ColumnElement[bool]) -> Row[Any] | None:
         """The entry that was stored last, if any."""
+        found = self.latest(table, 1, *where)
+        return found[0] if found else None
+
+    def latest(self, table: Table, number: int, *where: ColumnElement[bool]) -> Sequence[Row[Any]]:
+        """The entries that were stored last, so many or fewer, in the order of storing."""
         order = table.c.step.desc(), table.c.ordinal.desc()
-        statement = self._select(table, *table.columns).where(*where).order_by(*order).limit(1)
+        statement = self._select(table, *table.columns).where(*where).order_by(*order)
         with self.reading() as connection:
-            entry = connection.execute(statement).one_or_none()
-            return None if entry is None else whole(table, entry)
+            found = connection.execute(statement.limit(number)).all()
+            return [whole(table, entry) for entry in reversed(found)]
 
     def last_chunk(self, table: Table) -> Row[Any] | None:
         """The chunk of the last rows, if any."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from sqlalchemy import ColumnElement, Row, func
+from sqlalchemy import ColumnElement, Row, Table, func
 
 from rga.arrays import FloatArray
 from rga.twin.history import Event
@@ -66,10 +66,10 @@ class RunView:
             reached = row
         else:
             raise TypeError("as_of takes either a row or a time")
-        return self.after_step(self._source.step_at(reached))
+        return self.at_step(self._source.step_at(reached))
 
-    def after_step(self, number: int) -> "RunView":
-        """The run as it stood when a step had been acknowledged."""
+    def at_step(self, number: int) -> "RunView":
+        """The run as it stood after a step."""
         return RunView(replace(self._source, until=number), self.identity, self.begun_at)
 
     @property
@@ -242,9 +242,9 @@ class RunView:
         entries = self._source.entries(tables.findings)
         return tuple(StoredFindings(entry.row, entry.findings) for entry in entries)
 
-    def events(self) -> tuple[Event, ...]:
-        """What happened to the twin."""
-        return tuple(_event(entry) for entry in self._source.entries(tables.event))
+    def events(self, after: int = 0) -> tuple[Event, ...]:
+        """What happened to the twin in steps behind one, in order."""
+        return tuple(event for _, event in self.events_since(after))
 
     def events_since(self, step: int) -> tuple[tuple[int, Event], ...]:
         """What happened in the steps behind one, each with the number of its step."""
@@ -280,21 +280,30 @@ class RunView:
             for entry in self._source.entries(tables.command)
         )
 
-    def messages(self, kind: str | None = None) -> tuple[StoredMessage, ...]:
-        """The log of queries and responses, or of one kind."""
+    def messages(
+        self, kind: str | None = None, latest: int | None = None
+    ) -> tuple[StoredMessage, ...]:
+        """The log of queries and responses, or of one kind; all, or the latest so many."""
         where = [] if kind is None else [tables.message.c.kind == kind]
-        return tuple(_message(one) for one in self._source.entries(tables.message, where=where))
+        if latest is None:
+            found = self._source.entries(tables.message, where=where)
+        else:
+            found = self._source.latest(tables.message, latest, *where)
+        return tuple(map(_message, found))
 
     def last_message(self, kind: str) -> StoredMessage | None:
         """The last message of a kind; None where there is none."""
         entry = self._source.last(tables.message, tables.message.c.kind == kind)
         return None if entry is None else _message(entry)
 
-    def story(self) -> tuple[StoredMessage | Event, ...]:
-        """Messages and events together, in the order in which they were stored."""
-        messages = zip(self._source.entries(tables.message), self.messages(), strict=True)
-        happened = zip(self._source.entries(tables.event), self.events(), strict=True)
-        both: list[tuple[Row[Any], StoredMessage | Event]] = [*messages, *happened]
+    def story(self, first: int = 0, end: int | None = None) -> tuple[StoredMessage | Event, ...]:
+        """Messages and events together in the order in which they were stored, as of `messages`."""
+        sent = self._source.entries(tables.message, where=_between(tables.message, first, end))
+        events = self._source.entries(tables.event, where=_between(tables.event, first, end))
+        both: list[tuple[Row[Any], StoredMessage | Event]] = [
+            *((one, _message(one)) for one in sent),
+            *((one, _event(one)) for one in events),
+        ]
         return tuple(what for entry, what in sorted(both, key=lambda one: _place(one[0])))
 
     def kept(self, name: str) -> bytes | None:
@@ -305,6 +314,12 @@ class RunView:
 
 def _place(entry: Row[Any]) -> tuple[int, int]:
     return entry.step, entry.ordinal
+
+
+def _between(table: Table, first: int, end: int | None) -> list[ColumnElement[bool]]:
+    """What belongs to rows of the record from one to before another."""
+    where = [] if first <= 0 else [table.c.row >= first]
+    return where if end is None else [*where, table.c.row < end]
 
 
 def _event(entry: Row[Any]) -> Event:

@@ -1,0 +1,1 @@
+"""Who may see and do what: users, their sessions, tokens of programs, and what guards them."""

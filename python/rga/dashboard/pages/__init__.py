@@ -1,0 +1,1 @@
+"""The pages of a service, one a file: plain data for their templates."""

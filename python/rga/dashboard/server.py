@@ -1,0 +1,82 @@
+"""The server of the HTTP door, within bounds that nobody outside can pass."""
+
+import asyncio
+
+import uvicorn
+from starlette.types import ASGIApp
+from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
+
+from rga.errors import InputError
+from rga.operation.configuration import ServiceSettings
+
+#: connections and calls at once; more are answered by 503
+MOST_CALLS = 500
+#: how long a connection may be idle, a call may take until its body, at most twice, and the
+#: service waits for open calls as it ends [s]
+IDLE, SAYING, ENDING = 30, 20.0, 3
+#: bytes of what a call says before its body
+MOST_HEADERS = 32 * 1024
+
+
+class BoundedProtocol(H11Protocol):
+    """HTTP on connections that are closed where they do not say what they want."""
+
+    #: how often is looked whether they have said something [s]
+    look = SAYING
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Wait for calls."""
+        super().connection_made(transport)
+        self.loop.call_later(self.look, self._close_unless_called, None)
+
+    def _close_unless_called(self, last: RequestResponseCycle | None) -> None:
+        """Close the connection where nothing was called since it was last looked at.
+
+        Args:
+            last: call that was over then.
+        """
+        if self.transport.is_closing():
+            return
+        call: RequestResponseCycle | None = self.cycle
+        over = call is None or call.response_complete
+        if over and call is last:
+            self.transport.close()
+        else:
+            self.loop.call_later(self.look, self._close_unless_called, call if over else None)
+
+
+def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
+    """The server of an application.
+
+    Args:
+        app: that answers.
+        settings: where it listens, and by which certificate.
+
+    Raises:
+        InputError: a file of TLS cannot be used.
+    """
+    host, _, port = settings.listen.rpartition(":")
+    config = uvicorn.Config(
+        app,
+        host=host.strip("[]"),
+        port=int(port),
+        ssl_certfile=settings.certificate,
+        ssl_keyfile=settings.key,
+        # Which proxy is believed is decided where the caller is asked for.
+        proxy_headers=False,
+        server_header=False,
+        log_level="warning",
+        http=BoundedProtocol,
+        ws="none",
+        h11_max_incomplete_event_size=MOST_HEADERS,
+        limit_concurrency=MOST_CALLS,
+        timeout_keep_alive=IDLE,
+        timeout_graceful_shutdown=ENDING,
+    )
+    try:
+        config.load()
+    except OSError as error:
+        where = f"[service] certificate = {str(settings.certificate)!r}"
+        words = (error.strerror or str(error)).lower()
+        raise InputError(f"TLS cannot begin: {words}", where, "give PEM files") from None
+    return uvicorn.Server(config)

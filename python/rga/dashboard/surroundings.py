@@ -1,0 +1,92 @@
+"""What the API and the pages see of a service."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+from rga.operation.alarms.alarm_book import AlarmBook
+from rga.operation.reading.twin_now import TwinNow
+from rga.operation.reading.twin_reading import TwinReading
+from rga.operation.served_twin import ServedTwin
+from rga.operation.service import Service
+from rga.twin.commands.command import AnyCommand, read_command
+from rga.twin.restore import standing_of
+
+
+@dataclass(frozen=True)
+class SeenTwin:
+    """A twin as its pages see it.
+
+    Attributes:
+        name: of the twin.
+        served: what its sources send to.
+        reading: what it says of itself.
+        patience: after which a silent source is waited for no longer [s].
+        faults: what keeps its sources or its rows from going on, in words, by what it concerns.
+        alarms: of the service, of this twin among others.
+    """
+
+    name: str
+    served: ServedTwin
+    reading: TwinReading
+    patience: float
+    faults: Mapping[str, str]
+    alarms: AlarmBook
+
+    def waiting(self) -> list[AnyCommand]:
+        """What people have asked for, and nothing has carried out yet."""
+        view = self.reading.view()
+        done = 0 if view is None else standing_of(view).commanded
+        return [read_command(text) for _, text in self.served.inbox.commands(done)]
+
+    def lag(self, now: TwinNow | None) -> int:
+        """Rows that are sealed, and that the twin has not played yet."""
+        return self.served.inbox.rows - (0 if now is None else now.rows)
+
+
+class Surroundings:
+    """The twins of a service, opened for reading once.
+
+    Args:
+        service: that runs.
+
+    Attributes:
+        alarms: of it.
+    """
+
+    def __init__(self, service: Service) -> None:
+        self._service, self.alarms = service, service.alarms
+        settings = service.configuration
+        self._readings = {
+            one.name: TwinReading(
+                one.name, service.twins[one.name].directory, settings.service.repository
+            )
+            for one in settings.twin
+        }
+        self._patience = {one.name: one.rows.patience for one in settings.twin}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the twins."""
+        return tuple(self._readings)
+
+    def twin(self, name: str) -> SeenTwin:
+        """A twin.
+
+        Raises:
+            KeyError: there is none of this name.
+        """
+        faults = {what: words for (of, what), words in self._service.faults.items() if of == name}
+        return SeenTwin(
+            name,
+            self._service.twins[name],
+            self._readings[name],
+            self._patience[name],
+            faults,
+            self.alarms,
+        )
+
+    @staticmethod
+    def now() -> datetime:
+        """The time at which a page is drawn."""
+        return datetime.now(UTC)
