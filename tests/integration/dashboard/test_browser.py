@@ -13,8 +13,8 @@ import uvicorn
 from rga.dashboard.app import app_of
 from rga.operation.service import Service
 from rga.records import Record
+from rga_bench.operation.service_process import free_port
 from served.bridges import lived, packets_of, played
-from served.made_service import free_port
 
 from .conftest import START
 
