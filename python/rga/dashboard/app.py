@@ -14,6 +14,7 @@ from rga.dashboard.access.login import router as login
 from rga.dashboard.access.login import to_login
 from rga.dashboard.access.may import NotLoggedIn
 from rga.dashboard.api import (
+    alarms,
     commands,
     health,
     metrics,
@@ -76,8 +77,8 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
     app.add_exception_handler(RequestValidationError, _told_of_mistake)
     app.add_exception_handler(InputError, _told_of_error)
     api = APIRouter(prefix=PREFIX)
-    # What of the API is about alarms comes here too.
-    for one in (twins, readings, series, past, whatif, commands, packets, stream, report):
+    parts = (twins, readings, series, past, whatif, commands, alarms, packets, stream, report)
+    for one in parts:
         api.include_router(one.router)
     for router in (api, health.router, metrics.router, login, pages):
         app.include_router(router)
