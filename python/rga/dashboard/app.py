@@ -28,6 +28,7 @@ from rga.dashboard.api import (
     whatif,
 )
 from rga.dashboard.api.bounds import IntakeRoom, RateLimit
+from rga.dashboard.api.following import FollowedTwin
 from rga.dashboard.api.reports import Reports
 from rga.dashboard.api.served import PREFIX
 from rga.dashboard.bounded_body import BoundedBody
@@ -68,7 +69,8 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
         lifespan=life,
     )
     app.state.access, app.state.reports = access, reports
-    app.state.surroundings = Surroundings(service)
+    app.state.surroundings = known = Surroundings(service)
+    app.state.followed = {name: FollowedTwin(known.twin(name)) for name in known.names}
     app.state.rate_limit, app.state.room = RateLimit(), IntakeRoom()
     app.state.is_ending = is_ending
     app.add_middleware(BoundedBody)
