@@ -1,6 +1,5 @@
 """Sends messages to a broker, and waits until it has taken them."""
 
-import json
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,6 +7,7 @@ from threading import Event
 from typing import Any
 
 from paho.mqtt.client import Client
+from pydantic_core import to_json
 
 from rga.errors import InputError
 from rga.operation.sources.broker_client import address_of, broker_client
@@ -65,7 +65,7 @@ class Publisher:
         sent = [
             self._client.publish(
                 f"{self._above}/{one.topic}",
-                b"" if one.body is None else json.dumps(one.body),
+                b"" if one.body is None else to_json(one.body, inf_nan_mode="null"),
                 qos=1,
                 retain=one.retained,
             )

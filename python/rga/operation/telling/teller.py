@@ -9,7 +9,7 @@ from rga.operation.sources.settings import MqttSource, source_name
 from rga.operation.sources.source import Polling
 from rga.operation.telling.publisher import Publisher
 from rga.operation.telling.told_place import NO_RUN, ToldPlace, ToldPlaces
-from rga.operation.telling.twin_messages import Standing, TwinMessage, TwinMessages
+from rga.operation.telling.twin_messages import TwinMessage, TwinMessages
 from rga.twin.repository.table_file import TableFile
 
 #: how often is looked for what is new, and where a twin stands is told at the least [s]
@@ -75,26 +75,23 @@ class Teller:
         """
         self._publisher.check()
         connections, now = self._publisher.connections, self._clock.monotonic()
-        self._told = self._told or self._places.last()
+        told = self._told or self._places.last()
         found = self._messages.standing()
         said, place = list[TwinMessage](), found.place
-        if self._told is not None and self._told.run in (place.run, NO_RUN):
-            news, place = self._messages.since(found, self._told)
-            said += news
-        if connections != self._connections:
+        is_new, stands = connections != self._connections, now - self._stated >= ANEW
+        if told is not None and told.run in (place.run, NO_RUN):
+            said, place = self._messages.since(found, told)
+            stands = stands or told.step != place.step
+        else:
+            is_new = True
+        if is_new:
             said += self._messages.every_state(found)
-        stands = self._stands(found, now, connections)
-        if stands:
+        if is_new or stands:
             said += self._messages.state(found)
         if said and not self._publisher.publish(said, ending):
             return
-        if place != self._told:
+        if place != told:
             self._places.keep(place)
         self._told, self._connections = place, connections
-        if stands:
+        if is_new or stands:
             self._stated = now
-
-    def _stands(self, found: Standing, now: float, connections: int) -> bool:
-        """Whether where the twin stands is to be told: it is news, or its age is."""
-        is_known = self._told is not None and self._told.step == found.place.step
-        return not is_known or connections != self._connections or now - self._stated >= ANEW

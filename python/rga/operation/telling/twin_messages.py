@@ -3,10 +3,6 @@
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from pydantic_core import to_jsonable_python
 
 from rga.operation.alarms.alarm_book import AlarmBook
 from rga.operation.alarms.alarm_summary import AlarmSummary
@@ -29,13 +25,13 @@ class TwinMessage:
 
     Attributes:
         topic: below that of the twin.
-        body: content; None: what is retained there is not so any more.
+        body: content, of names, numbers and times; None: what is retained is not so any more.
         retained: whether who comes later is told too.
     """
 
     topic: str
-    body: dict[str, Any] | None
-    retained: bool
+    body: object
+    retained: bool = True
 
 
 @dataclass(frozen=True)
@@ -95,7 +91,7 @@ class TwinMessages:
             "out_of_sync": now.out_of_sync,
             "gap": now.gap,
         }
-        return [_message("state", body)]
+        return [TwinMessage("state", body)]
 
     def every_state(self, found: Standing) -> list[TwinMessage]:
         """All that is so now: for a broker that was told nothing, or has lost it.
@@ -107,8 +103,8 @@ class TwinMessages:
         said = [message for one in open_ for message in _of_alarm(one)]
         if found.view is not None:
             said += self._gaps(found.view, found.place.rows - 1, found.place.rows)
-            for one in found.view.proposals()[-1:]:
-                said += _of_proposal(found.view, one)
+            if found.now is not None and found.now.undecided is not None:
+                said += _of_proposal(found.view, found.now.undecided)
         return said
 
     def since(self, found: Standing, told: ToldPlace) -> tuple[list[TwinMessage], ToldPlace]:
@@ -138,12 +134,9 @@ class TwinMessages:
         series = self._reading.series(float(time[0]), float(time[-1]) + 1e-3, len(time))
         assert series is not None  # it has begun
         for seconds, gaps in zip(series.gap.time, series.gap.mean, strict=True):
-            own = {
-                name: float(gap) if np.isfinite(gap) else None
-                for name, gap in zip(series.sensors, gaps, strict=True)
-            }
+            own = dict(zip(series.sensors, gaps.tolist(), strict=True))
             body = {"time": moment(twin.station.start, float(seconds)), "sensors": own}
-            yield _message("gap", body)
+            yield TwinMessage("gap", body)
 
 
 def _steps(view: RunView, told: int) -> Iterator[TwinMessage]:
@@ -160,7 +153,7 @@ def _steps(view: RunView, told: int) -> Iterator[TwinMessage]:
             "sensors": one.sensors,
         }
         count[step] += 1
-        yield _message("event", body, retained=False)
+        yield TwinMessage("event", body, retained=False)
     before = view.at_step(told)
     known = len(before.proposals())
     for proposal in view.proposals():
@@ -175,8 +168,8 @@ def _is_open(view: RunView, proposal: Proposal) -> bool:
 
 
 def _of_alarm(alarm: OperatorAlarm) -> list[TwinMessage]:
-    body = to_jsonable_python(AlarmSummary.of(alarm))
-    return _while_it_lasts(f"alarm/{alarm.id}", body, lasts=alarm.state != "closed")
+    summary = AlarmSummary.of(alarm)
+    return _while_it_lasts(f"alarm/{alarm.id}", summary, lasts=alarm.state != "closed")
 
 
 def _of_proposal(view: RunView, proposal: Proposal) -> list[TwinMessage]:
@@ -191,12 +184,8 @@ def _of_proposal(view: RunView, proposal: Proposal) -> list[TwinMessage]:
     return _while_it_lasts(f"proposal/{proposal.number}", body, lasts=_is_open(view, proposal))
 
 
-def _while_it_lasts(topic: str, body: dict[str, Any], *, lasts: bool) -> list[TwinMessage]:
+def _while_it_lasts(topic: str, body: object, *, lasts: bool) -> list[TwinMessage]:
     """What is retained while it is so; when it ends, who listens is told, and nothing stays."""
     if lasts:
-        return [_message(topic, body)]
-    return [_message(topic, body, retained=False), TwinMessage(topic, None, retained=True)]
-
-
-def _message(topic: str, body: dict[str, Any], *, retained: bool = True) -> TwinMessage:
-    return TwinMessage(topic, to_jsonable_python(body), retained)
+        return [TwinMessage(topic, body)]
+    return [TwinMessage(topic, body, retained=False), TwinMessage(topic, None)]
