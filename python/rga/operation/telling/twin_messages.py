@@ -35,7 +35,7 @@ class TwinMessage:
 
 
 @dataclass(frozen=True)
-class Standing:
+class FoundTwin:
     """A twin as it was found at one time.
 
     Attributes:
@@ -61,7 +61,7 @@ class TwinMessages:
     def __init__(self, reading: TwinReading, alarms: AlarmBook, clock: ServiceClock) -> None:
         self._reading, self._alarms, self._clock = reading, alarms, clock
 
-    def standing(self) -> Standing:
+    def standing(self) -> FoundTwin:
         """The twin as it stands.
 
         Raises:
@@ -70,13 +70,13 @@ class TwinMessages:
         change = self._alarms.last()
         now, view = self._reading.now(), self._reading.view()
         if now is None or view is None:
-            return Standing(ToldPlace(NO_RUN, 0, 0, change), None, None)
+            return FoundTwin(ToldPlace(NO_RUN, 0, 0, change), None, None)
         then = view.at_step(now.steps)
         own = standing_of(then)
         rows = own.row if own.calibrated else 0
-        return Standing(ToldPlace(view.identity.key, now.steps, rows, change), now, then)
+        return FoundTwin(ToldPlace(view.identity.key, now.steps, rows, change), now, then)
 
-    def state(self, found: Standing) -> list[TwinMessage]:
+    def state(self, found: FoundTwin) -> list[TwinMessage]:
         """Where the twin stands."""
         now, at = found.now, self._clock.now()
         if now is None:
@@ -93,7 +93,7 @@ class TwinMessages:
         }
         return [TwinMessage("state", body)]
 
-    def every_state(self, found: Standing) -> list[TwinMessage]:
+    def every_state(self, found: FoundTwin) -> list[TwinMessage]:
         """All that is so now: for a broker that was told nothing, or has lost it.
 
         Raises:
@@ -107,7 +107,7 @@ class TwinMessages:
                 said += _of_proposal(found.view, found.now.undecided)
         return said
 
-    def since(self, found: Standing, told: ToldPlace) -> tuple[list[TwinMessage], ToldPlace]:
+    def since(self, found: FoundTwin, told: ToldPlace) -> tuple[list[TwinMessage], ToldPlace]:
         """What has happened since a place of the same run, and the place up to which it is told.
 
         Raises:
