@@ -1,9 +1,14 @@
 """`rga serve`: twins of structures whose readings go on arriving."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from socket import socket
+
+    from rga.operation.configuration import Configuration
 
 ConfigurationFile = Annotated[
     Path, typer.Argument(metavar="CONFIG", help="What is served (TOML); `rga schema serve`.")
@@ -12,19 +17,29 @@ ConfigurationFile = Annotated[
 
 def serve(configuration: ConfigurationFile) -> None:
     """Take in what loggers send, play the twins, and show them to people and programs."""
-    from rga.dashboard.app import app_of
-    from rga.dashboard.server import server_of
+    from rga.dashboard.server import listening_socket
     from rga.operation.configuration import read_configuration
-    from rga.operation.service import Service
+    from rga.operation.service_file import only_service
 
     chosen = read_configuration(configuration)
+    with only_service(chosen.service.data), listening_socket(chosen.service) as listening:
+        _serve(chosen, listening)
+
+
+def _serve(chosen: "Configuration", listening: "socket") -> None:
+    """Run a service until somebody ends it."""
+    from rga.dashboard.app import app_of
+    from rga.dashboard.server import server_of
+    from rga.operation.service import Service
+
     service = Service(chosen)
     app = app_of(service, lambda: server.should_exit)
     server = server_of(app, chosen.service)
     service.start()
+    twins = [f"{name} ({', '.join(one.source_names)})" for name, one in service.twins.items()]
     scheme = "http" if chosen.service.certificate is None else "https"
-    typer.echo(f"rga serves {', '.join(service.twins)} at {scheme}://{chosen.service.listen}")
+    typer.echo(f"rga listens at {scheme}://{chosen.service.listen} and serves {', '.join(twins)}")
     try:
-        server.run()
+        server.run([listening])
     finally:
         service.stop()

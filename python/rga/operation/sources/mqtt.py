@@ -1,7 +1,6 @@
 """A broker that loggers send to: a message is acknowledged when its packet is on the disk."""
 
 import json
-import ssl
 import time
 from collections.abc import Sequence
 from functools import partial
@@ -9,16 +8,14 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
 from typing import Any
-from urllib.parse import urlsplit
 
-from paho.mqtt.client import Client, MQTTMessage, MQTTv5
-from paho.mqtt.enums import CallbackAPIVersion
+from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.sources.secrets import credentials_of
+from rga.operation.sources.broker_client import address_of, broker_client
 from rga.operation.sources.source import Inlet, attempt
 
 #: messages that are kept together
@@ -64,9 +61,7 @@ class Broker:
         credentials: Path | None,
         inlet: Inlet,
     ) -> None:
-        parts = urlsplit(url)
-        secure = parts.scheme == "mqtts"
-        self._host, self._port = parts.hostname or "", parts.port or (8883 if secure else 1883)
+        self._host, self._port = address_of(url)
         self._topics, self._inlet = tuple(topics), inlet
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
@@ -76,7 +71,7 @@ class Broker:
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
         self._untold: dict[str, Numbers] = {}
-        self._client = self._made(f"rga-{twin}-{source}", secure, credentials)
+        self._client = self._made(broker_client(f"rga-{twin}-{source}", url, credentials))
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
 
@@ -99,18 +94,11 @@ class Broker:
         self._client.disconnect()
         self._client.loop_stop()
 
-    def _made(self, name: str, secure: bool, credentials: Path | None) -> Client:
-        client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
-        if credentials is not None:
-            client.username_pw_set(*credentials_of(credentials))
-        if secure:
-            client.tls_set_context(ssl.create_default_context())
+    def _made(self, client: Client) -> Client:
+        client.manual_ack_set(True)
         client.will_set(self._status, "offline", qos=1, retain=True)
-        client.reconnect_delay_set(1, 60)
         client.on_connect, client.on_disconnect = self._connected, self._disconnected
         client.on_message = self._came
-        # Else a callback that fails would end the thread of the connection.
-        client.suppress_exceptions = True
         return client
 
     def _connected(self, client: Client, _: Any, flags: Any, reason: Any, *__: Any) -> None:
