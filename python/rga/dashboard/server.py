@@ -1,6 +1,7 @@
 """The server of the HTTP door, within bounds that nobody outside can pass."""
 
 import asyncio
+import socket
 
 import uvicorn
 from starlette.types import ASGIApp
@@ -8,6 +9,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 from rga.errors import InputError
 from rga.operation.configuration import ServiceSettings
+from rga.operation.readiness import READY, tell_system
 
 #: connections and calls at once; more are answered by 503
 MOST_CALLS = 500
@@ -45,6 +47,16 @@ class BoundedProtocol(H11Protocol):
             self.loop.call_later(self.look, self._close_unless_called, call if over else None)
 
 
+class ToldServer(uvicorn.Server):
+    """A server that tells the system when it answers."""
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, and tell."""
+        await super().startup(sockets)
+        if self.started:
+            tell_system(READY)
+
+
 def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
     """The server of an application.
 
@@ -79,4 +91,4 @@ def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
         where = f"[service] certificate = {str(settings.certificate)!r}"
         words = (error.strerror or str(error)).lower()
         raise InputError(f"TLS cannot begin: {words}", where, "give PEM files") from None
-    return uvicorn.Server(config)
+    return ToldServer(config)

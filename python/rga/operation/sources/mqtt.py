@@ -64,10 +64,7 @@ class Broker:
         credentials: Path | None,
         inlet: Inlet,
     ) -> None:
-        parts = urlsplit(url)
-        secure = parts.scheme == "mqtts"
-        self._host, self._port = parts.hostname or "", parts.port or (8883 if secure else 1883)
-        self._topics, self._inlet = tuple(topics), inlet
+        self._place, self._topics, self._inlet = place_of(url), tuple(topics), inlet
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
         self._status = f"rga/v1/{twin}/status"
@@ -76,7 +73,7 @@ class Broker:
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
         self._untold: dict[str, Numbers] = {}
-        self._client = self._made(f"rga-{twin}-{source}", secure, credentials)
+        self._client = self._made(f"rga-{twin}-{source}", url, credentials)
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
 
@@ -85,7 +82,7 @@ class Broker:
         properties = Properties(PacketTypes.CONNECT)  # type: ignore[no-untyped-call]
         properties.SessionExpiryInterval = SESSION
         properties.ReceiveMaximum = RECEIVE_MAXIMUM
-        self._client.connect_async(self._host, self._port, clean_start=False, properties=properties)
+        self._client.connect_async(*self._place, clean_start=False, properties=properties)
         self._client.loop_start()
         self._thread.start()
 
@@ -99,18 +96,12 @@ class Broker:
         self._client.disconnect()
         self._client.loop_stop()
 
-    def _made(self, name: str, secure: bool, credentials: Path | None) -> Client:
-        client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
-        if credentials is not None:
-            client.username_pw_set(*credentials_of(credentials))
-        if secure:
-            client.tls_set_context(ssl.create_default_context())
+    def _made(self, name: str, url: str, credentials: Path | None) -> Client:
+        client = client_of(name, url, credentials)
         client.will_set(self._status, "offline", qos=1, retain=True)
         client.reconnect_delay_set(1, 60)
         client.on_connect, client.on_disconnect = self._connected, self._disconnected
         client.on_message = self._came
-        # Else a callback that fails would end the thread of the connection.
-        client.suppress_exceptions = True
         return client
 
     def _connected(self, client: Client, _: Any, flags: Any, reason: Any, *__: Any) -> None:
@@ -189,3 +180,34 @@ class Broker:
             self.fault = "the broker is connected and brings nothing"
             self._client.reconnect()
         self._client.publish(self._probe, b"", qos=1)
+
+
+def place_of(url: str) -> tuple[str, int]:
+    """Host and port of a broker.
+
+    >>> place_of("mqtts://broker"), place_of("mqtt://broker:1884")
+    (('broker', 8883), ('broker', 1884))
+    """
+    parts = urlsplit(url)
+    return parts.hostname or "", parts.port or (8883 if parts.scheme == "mqtts" else 1883)
+
+
+def client_of(name: str, url: str, credentials: Path | None) -> Client:
+    """A client of a broker that acknowledges nothing by itself, and is not connected yet.
+
+    Args:
+        name: under which the broker knows it.
+        url: mqtt:// or mqtts://, host and port.
+        credentials: file of two lines, user and password.
+
+    Raises:
+        InputError: the credentials cannot be read.
+    """
+    client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
+    if credentials is not None:
+        client.username_pw_set(*credentials_of(credentials))
+    if urlsplit(url).scheme == "mqtts":
+        client.tls_set_context(ssl.create_default_context())
+    # Else a callback that fails would end the thread of the connection.
+    client.suppress_exceptions = True
+    return client
