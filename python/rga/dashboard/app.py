@@ -75,14 +75,19 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
     app.add_exception_handler(NotLoggedIn, to_login)
     app.add_exception_handler(RequestValidationError, _told_of_mistake)
     app.add_exception_handler(InputError, _told_of_error)
+    add_routes(app)
+    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
+    return app
+
+
+def add_routes(app: FastAPI) -> None:
+    """Give an application every path of the API and of the pages."""
     api = APIRouter(prefix=PREFIX)
     # What of the API is about alarms comes here too.
     for one in (twins, readings, series, past, whatif, commands, packets, stream, report):
         api.include_router(one.router)
     for router in (api, health.router, metrics.router, login, pages):
         app.include_router(router)
-    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
-    return app
 
 
 def _told_of_mistake(request: Request, error: Exception) -> Response:
