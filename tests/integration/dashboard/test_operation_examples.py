@@ -14,10 +14,13 @@ import yaml
 from paho.mqtt.client import Client, MQTTv5
 from paho.mqtt.enums import CallbackAPIVersion
 from starlette.testclient import TestClient
+from typer.testing import CliRunner
 
 from documentation import ROOT
+from rga.cli.app import app
 from rga.operation.configuration import read_configuration
 from rga_bench.operation.broker import PROGRAM, Mosquitto
+from served.made_service import write_service
 
 EXAMPLES = ROOT / "examples" / "operation"
 #: exposure of a service to the system, of 10, that may not be passed
@@ -179,3 +182,30 @@ def test_a_logger_may_send_below_its_twin_alone(guarded: Mosquitto, tmp_path: Pa
     assert service.came == [own]
     for one in (service, logger, stranger):
         one.close()
+
+
+@pytest.mark.parametrize(
+    ("password", "code", "words"),
+    [
+        ("secret of rga", 0, "warning: nothing came within 0.6 s"),
+        ("guessed", 2, "error: the broker refuses: Not authorized"),
+    ],
+)
+def test_a_check_comes_in_by_the_password_of_the_service(
+    guarded: Mosquitto,
+    measured_bridge: dict[str, Any],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    password: str,
+    code: int,
+    words: str,
+) -> None:
+    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "rga.pem"))
+    (tmp_path / "broker.secret").write_text(f"rga\n{password}\n", "utf-8")
+    url = f'url = "mqtts://127.0.0.1:{guarded.port}"'
+    more = 'topics = ["rga/v1/east/data/#"]\ncredentials = "broker.secret"'
+    write_service(tmp_path, measured_bridge, source=f'kind = "mqtt"\n{url}\n{more}')
+    asked = ["serve", str(tmp_path / "serve.toml"), "--check", "--wait", "0.6"]
+    found = CliRunner().invoke(app, asked)
+    assert found.exit_code == code
+    assert words in found.output
