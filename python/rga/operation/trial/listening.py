@@ -7,7 +7,6 @@ from threading import Event
 from typing import Any
 
 from rga.errors import InputError
-from rga.operation.configuration import TwinSettings
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.packets.packet import MOST_BYTES
 from rga.operation.sources.opened import opened
@@ -87,13 +86,11 @@ class Heard:
     fault: str | None = None
 
 
-def listened_to(
-    sources: Sequence[tuple[TwinSettings, AnySource, FileMapping]], wait: float
-) -> list[Heard]:
+def listened_to(sources: Sequence[tuple[str, AnySource, FileMapping]], wait: float) -> list[Heard]:
     """What sources bring, all at once.
 
     Args:
-        sources: each with its twin and the mapping of its logger.
+        sources: each with the name of its twin and the mapping of its logger.
         wait: how long they are listened to [s].
     """
     inlets = [TrialInlet() for _ in sources]
@@ -101,7 +98,7 @@ def listened_to(
     running: list[DataSource | None] = []
     for (twin, source, mapping), inlet in zip(sources, inlets, strict=True):
         try:
-            running.append(_listener(twin.name, source, mapping, inlet))
+            running.append(_listener(twin, source, mapping, inlet))
             errors.append(None)
         except InputError as error:
             running.append(None)

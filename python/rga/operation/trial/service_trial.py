@@ -58,7 +58,7 @@ def service_findings(configuration: Configuration, wait: float) -> list[Finding]
 def _heard(files: Sequence[TwinFiles], data: Path, wait: float) -> list[Finding]:
     """What is wrong with sources and with what they bring."""
     sources = [
-        (one.settings, source, one.mappings[source_name(source)])
+        (one.settings.name, source, one.mappings[source_name(source)])
         for one in files
         for source in one.settings.source
     ]
