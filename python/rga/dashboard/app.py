@@ -78,14 +78,19 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
     app.add_exception_handler(NotLoggedIn, to_login)
     app.add_exception_handler(RequestValidationError, _told_of_mistake)
     app.add_exception_handler(InputError, _told_of_error)
+    add_routes(app)
+    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
+    return app
+
+
+def add_routes(app: FastAPI) -> None:
+    """Give an application every path of the API and of the pages."""
     api = APIRouter(prefix=PREFIX)
     parts = (twins, readings, series, past, whatif, commands, alarms, packets, stream, report)
     for one in parts:
         api.include_router(one.router)
     for router in (api, health.router, metrics.router, login, pages):
         app.include_router(router)
-    app.mount("/static", StaticFiles(packages=[("rga.dashboard", "static")]), name="static")
-    return app
 
 
 def _told_of_mistake(request: Request, error: Exception) -> Response:

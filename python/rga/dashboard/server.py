@@ -9,6 +9,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 from rga.errors import InputError
 from rga.operation.configuration import ServiceSettings
+from rga.operation.readiness import READY, tell_system
 
 #: connections and calls at once; more are answered by 503
 MOST_CALLS = 500
@@ -63,6 +64,16 @@ def listening_socket(settings: ServiceSettings) -> socket.socket:
         raise InputError(f"nothing can listen there: {words}", where, remedy) from None
 
 
+class ToldServer(uvicorn.Server):
+    """A server that tells the system when it answers."""
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, and tell."""
+        await super().startup(sockets)
+        if self.started:
+            tell_system(READY)
+
+
 def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
     """The server of an application.
 
@@ -94,7 +105,7 @@ def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
         where = f"[service] certificate = {str(settings.certificate)!r}"
         words = (error.strerror or str(error)).lower()
         raise InputError(f"TLS cannot begin: {words}", where, "give PEM files") from None
-    return uvicorn.Server(config)
+    return ToldServer(config)
 
 
 def _address_of(settings: ServiceSettings) -> tuple[str, int]:

@@ -353,13 +353,7 @@ def live(
         InputError: such a model cannot go on for ever, a setting is missing, the seed is none, or
             another twin is there.
     """
-    given, chosen, seed = as_model(model), as_settings(settings), as_seed(seed)
-    check_lives(given)
-    chosen.pace(None)
-    text, digest = written(given)
-    wanted = Addressee(
-        name or given.name, text, given.sha256 or digest, chosen.model_dump_json(), seed
-    )
+    wanted = addressee_of(as_model(model), as_settings(settings), name, seed)
     place = made_directory(directory)
     _check_holds_no_record(place)
     inbox = Inbox(place)
@@ -367,11 +361,35 @@ def live(
         known = inbox.name(wanted)
     finally:
         inbox.close()
+    check_same(known, wanted, place)
+    return LiveTwin(place, repository, progress)
+
+
+def addressee_of(model: Model, settings: Settings, name: str | None, seed: int) -> Addressee:
+    """Whom rows of a live twin are for.
+
+    Raises:
+        InputError: such a model cannot go on for ever, a setting is missing, or the seed is none.
+    """
+    seed = as_seed(seed)
+    check_lives(model)
+    settings.pace(None)
+    text, digest = written(model)
+    return Addressee(
+        name or model.name, text, model.sha256 or digest, settings.model_dump_json(), seed
+    )
+
+
+def check_same(known: Addressee, wanted: Addressee, place: Path) -> None:
+    """Whether the twin of a directory is the one that is wanted there.
+
+    Raises:
+        InputError: it is another.
+    """
     compared = ("name", "model", "settings", "seed")
     if others := [one for one in compared if getattr(known, one) != getattr(wanted, one)]:
         raise InputError(
             f"a live twin that differs in {' and '.join(others)} is here",
-            str(directory),
+            str(place),
             "take another directory, or go on with LiveTwin(directory)",
         )
-    return LiveTwin(place, repository, progress)

@@ -66,7 +66,7 @@ class ServedTwin:
             repository=repository,
         ).close()
         self._sources = {source_name(one): one for one in settings.source}
-        self._mappings = {name: _mapping_of(one) for name, one in self._sources.items()}
+        self._mappings = {name: mapping_of(one) for name, one in self._sources.items()}
         self._readers = {
             name: Reader(name, model, self._mappings[name], one.stated)
             for name, one in self._sources.items()
@@ -270,7 +270,12 @@ class _TwinInlet:
         return self.twin.numbers(self.source)
 
 
-def _mapping_of(source: AnySource) -> RecordMapping:
+def mapping_of(source: AnySource) -> RecordMapping:
+    """How what a source brings is read.
+
+    Raises:
+        InputError: its file cannot be read, or has a zero or files beside it.
+    """
     mapping = RecordMapping() if source.mapping is None else read_mapping(source.mapping)
     if mapping.zero is not None or mapping.beside:
         raise InputError(

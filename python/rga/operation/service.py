@@ -15,6 +15,7 @@ from rga.operation.inbox.packets import NEVER
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.notices.outbox import Outbox
 from rga.operation.notices.words import all_is_well
+from rga.operation.readiness import ALIVE, tell_system
 from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.served_twin import ServedTwin
 from rga.operation.service_clock import ServiceClock, microseconds, moment_of
@@ -175,6 +176,8 @@ class Service:
     def _seal(self) -> None:
         """Make rows, and tell what is wrong, until the end."""
         while not self._ending.wait(SEAL):
+            # Whoever watches over the service begins it anew when rows are made no more.
+            tell_system(ALIVE)
             for twin in self.twins.values():
                 self._tell(twin.name, ROWS, attempt(partial(_seal, twin)))
                 for name in twin.source_names:

@@ -21,6 +21,8 @@ from rga.operation.packets.native import read_packet
 from rga.operation.sources.opcua import OpcUaServer
 from rga.operation.sources.settings import OpcUaSource
 from rga.operation.sources.source import Outcome
+from rga.operation.trial.listening import listened_to
+from rga.records import RecordMapping
 
 NODE = "ns=2;i=7"
 
@@ -219,3 +221,12 @@ def test_a_source_that_never_connects_ends(monkeypatch: pytest.MonkeyPatch) -> N
     source.start()
     waited_for(lambda: "the server is away" in str(source.fault))
     source.stop()
+
+
+def test_a_check_hears_a_server(plant: Plant) -> None:
+    plant.write(1)
+    settings = OpcUaSource(kind="opcua", url=plant.url, nodes={"D1": NODE})
+    heard = listened_to([("east", settings, RecordMapping())], 3.0)[0]
+    assert heard.fault is None
+    values = [value for _, one in heard.inlet.payloads for value in read_packet(one, "").values]
+    assert plant.count in values

@@ -277,7 +277,7 @@ def test_what_is_wrong_is_told_in_a_line(sqlite: str, tmp_path: Path) -> None:
         ({"table": "missing"}, "no such table"),
         ({"position": "missing"}, "no column 'missing'"),
         ({"time": "missing"}, "no column 'missing'"),
-        ({"url": f"sqlite:///{tmp_path}/no/where.sqlite"}, "the database says"),
+        ({"url": f"sqlite:///{tmp_path}/no/where.sqlite"}, "there is no such file"),
     ):
         stated = {"url": sqlite, "table": "reading", "position": "id"} | more
         with pytest.raises(InputError, match=words):

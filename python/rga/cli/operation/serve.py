@@ -13,15 +13,27 @@ if TYPE_CHECKING:
 ConfigurationFile = Annotated[
     Path, typer.Argument(metavar="CONFIG", help="What is served (TOML); `rga schema serve`.")
 ]
+Check = Annotated[
+    bool, typer.Option("--check", help="Say what would go wrong, and neither serve nor write.")
+]
+Wait = Annotated[
+    float, typer.Option(min=0.1, max=600, help="How long --check listens to the sources [s].")
+]
 
 
-def serve(configuration: ConfigurationFile) -> None:
-    """Take in what loggers send, play the twins, and show them to people and programs."""
+def serve(configuration: ConfigurationFile, check: Check = False, wait: Wait = 5.0) -> None:
+    """Take in what loggers send, play the twins, and show them to people and programs.
+
+    The exit code of --check is 2 where there is an error; warnings and notes leave it 0.
+    """
     from rga.dashboard.server import listening_socket
     from rga.operation.configuration import read_configuration
     from rga.operation.service_file import only_service
 
     chosen = read_configuration(configuration)
+    if check:
+        _check(chosen, wait)
+        return
     with only_service(chosen.service.data), listening_socket(chosen.service) as listening:
         _serve(chosen, listening)
 
@@ -43,3 +55,17 @@ def _serve(chosen: "Configuration", listening: "socket") -> None:
         server.run([listening])
     finally:
         service.stop()
+
+
+def _check(chosen: "Configuration", wait: float) -> None:
+    from rga.dashboard.door_trial import door_findings
+    from rga.operation.trial.service_trial import service_findings
+    from rga.quantities import counted
+
+    found = [*door_findings(chosen.service), *service_findings(chosen, wait)]
+    for one in found:
+        typer.echo(str(one))
+    errors = sum(one.severity == "error" for one in found)
+    typer.echo(f"{counted(errors, 'error')}: mend what it says" if errors else "It can be served.")
+    if errors:
+        raise typer.Exit(2)

@@ -44,28 +44,11 @@ class Access:
         self.sessions, self.tokens = Sessions(self._file, clock), Tokens(self._file, clock)
         self.failures, self.logins = Failures(self._file, clock), LoginLog(self._file, clock)
         self._is_local = is_loopback(settings.listen.rpartition(":")[0])
-        self._check_is_closed()
+        check_is_closed(settings, self.users.exist)
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
-
-    def _check_is_closed(self) -> None:
-        settings, where = self._settings, f"[service] listen = {self._settings.listen!r}"
-        if self._is_local and not settings.trusted_proxies:
-            return
-        if not self.users.exist:
-            raise InputError(
-                "others than this machine could call, and there are no users",
-                where,
-                "add one by `rga user CONFIG add NAME --role admin`",
-            )
-        if not self._is_local and settings.certificate is None and not settings.trusted_proxies:
-            raise InputError(
-                "passwords would cross the network in plain text",
-                where,
-                "give certificate and key, or name the proxy that has them in trusted_proxies",
-            )
 
     def origin_of(self, call: HTTPConnection) -> CallOrigin:
         """Where a call comes from."""
@@ -119,3 +102,27 @@ class Access:
         self.sessions.end(secret)
         if user is not None:
             self.logins.write(user, origin.address, "out")
+
+
+def check_is_closed(settings: ServiceSettings, has_users: bool) -> None:
+    """Whether only those who may can come in.
+
+    Raises:
+        InputError: anybody could: it listens beyond this machine without users or TLS.
+    """
+    where = f"[service] listen = {settings.listen!r}"
+    is_local = is_loopback(settings.listen.rpartition(":")[0])
+    if is_local and not settings.trusted_proxies:
+        return
+    if not has_users:
+        raise InputError(
+            "others than this machine could call, and there are no users",
+            where,
+            "add one by `rga user CONFIG add NAME --role admin`",
+        )
+    if not is_local and settings.certificate is None and not settings.trusted_proxies:
+        raise InputError(
+            "passwords would cross the network in plain text",
+            where,
+            "give certificate and key, or name the proxy that has them in trusted_proxies",
+        )

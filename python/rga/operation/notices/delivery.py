@@ -41,7 +41,7 @@ class Delivery:
         self._recipient, self._outbox = recipient, outbox
         self._summary, self._clock = summary, clock
         self._said = ""
-        _sender(recipient)
+        sender_of(recipient)
 
     def round(self) -> None:
         """Write the messages that are due, and send them.
@@ -72,7 +72,7 @@ class Delivery:
         """Why a message did not arrive; None: it did."""
         try:
             # The file is read anew each time: what is secret in it may change.
-            sender = _sender(self._recipient)
+            sender = sender_of(self._recipient)
         except InputError as error:
             return str(error)
         with _Complaints() as complaints:
@@ -106,7 +106,7 @@ class _Complaints(logging.Handler):
             self.words = in_a_line(record.getMessage())
 
 
-def _sender(recipient: NotifySettings) -> Apprise:
+def sender_of(recipient: NotifySettings) -> Apprise:
     """What sends to the addresses of a recipient.
 
     Raises:

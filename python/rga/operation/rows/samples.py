@@ -30,6 +30,7 @@ Columns = tuple[tuple[str, str], ...]
 _MOST_KNOWN = 1000
 #: of rows whose time is that of their arrival
 _PLAIN = TimeColumns()
+_UNKNOWN = "the model has no such channel"
 
 
 class Reader:
@@ -66,6 +67,7 @@ class Reader:
         more = {"empty": "missing", "unknown": "unused", "time": time}
         self._mapping = mapping.model_copy(update=more)
         self._known: dict[Columns, dict[str, ColumnSource]] = {}
+        self._told: set[Columns] = set()
         named = {one.column for one in mapping.channels.values() if one.column}
         self._columns = {*model.sensors, *model.context, *mapping.unused, *named}
 
@@ -143,7 +145,9 @@ class Reader:
     def _of_table(self, payload: bytes, mapping: FileMapping) -> SensorSamples:
         check_size(payload, str(self._where))
         table = read_format(payload, self._where, mapping, self._columns)
-        found = measured(table, _for(table, mapping), self._model)
+        chosen = _for(table, mapping)
+        found = measured(table, chosen, self._model)
+        self._tell_unknown(table, chosen, found.clock.columns)
         if not isinstance(found.clock.start, str):
             raise InputError(
                 "its times are no time stamps",
@@ -176,7 +180,7 @@ class Reader:
             used = {one.column for one in sources.values()}
             for column, _ in columns:
                 if column not in used and column not in self.left_out:
-                    self._refuse(column, "the model has no such channel")
+                    self._refuse(column, _UNKNOWN)
             if len(self._known) >= _MOST_KNOWN:
                 self._known.clear()
             self._known[columns] = {
@@ -193,6 +197,23 @@ class Reader:
                 self._refuse(source.column, error.what)
                 return False
         return True
+
+    def _tell_unknown(
+        self, table: Table, mapping: FileMapping, time_columns: Iterable[str]
+    ) -> None:
+        """Tell of columns of a file that the model has no channel for, once for each set."""
+        columns = tuple((name, "") for name in table.frame.columns)
+        if columns in self._told:
+            return
+        if len(self._told) >= _MOST_KNOWN:
+            self._told.clear()
+        self._told.add(columns)
+        sources = sources_of(table, mapping, self._model, tuple(time_columns))
+        known = {one.column for one in sources.values()} | {*time_columns, *table.bookkeeping}
+        for column, _ in columns:
+            names = {column, table.names.get(column, column), mapping.channel_of(column)[0]}
+            if column not in known and not names & self.left_out:
+                self._refuse(column, _UNKNOWN)
 
     def _refuse(self, column: str, why: str) -> None:
         if len(self.refused) < _MOST_KNOWN:

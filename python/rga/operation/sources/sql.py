@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from datetime import datetime
 from decimal import Decimal
+from pathlib import Path
 from threading import Event
 from typing import Any
 
@@ -106,6 +107,7 @@ class SqlTable:
     @contextmanager
     def _connected(self) -> Iterator[Connection]:
         """A transaction that sees one state of the database, and changes nothing."""
+        self._check_is_there()
         options: dict[str, Any] = {}
         if self._is_postgresql:
             options = {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}
@@ -124,6 +126,17 @@ class SqlTable:
                 self._where,
                 "it is tried again",
             ) from None
+
+    def _check_is_there(self) -> None:
+        """Whether there is a file, where the database is one: it would be made else.
+
+        Raises:
+            InputError: there is none.
+        """
+        url = self._engine.url
+        is_file = url.get_backend_name() == "sqlite" and url.database not in (None, "", ":memory:")
+        if is_file and not Path(str(url.database)).is_file():
+            raise InputError("there is no such file", self._where, "correct url; it is tried again")
 
     @property
     def _is_postgresql(self) -> bool:

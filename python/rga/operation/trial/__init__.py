@@ -1,0 +1,1 @@
+"""What would go wrong if a service began: looked at without writing anything (`--check`)."""
