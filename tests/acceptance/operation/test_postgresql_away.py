@@ -8,7 +8,6 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-import pytest
 from starlette.testclient import TestClient
 
 import rga
@@ -110,7 +109,7 @@ def test_a_server_that_goes_away_in_the_middle_of_a_step(
             playing = Thread(target=worker.round)
             playing.start()
             with Repository.open(repository) as opened:
-                waited_for(lambda: opened.runs() and opened.latest().rows)  # noqa: B023
+                waited_for(lambda: opened.runs() and opened.latest().rows)
             postgresql_server.stop()
             playing.join()
             assert not worker.round()

@@ -1,5 +1,10 @@
 """What a stream tells: all that has happened since, or that it is too long ago."""
 
+import asyncio
+from asyncio import to_thread
+from datetime import timedelta
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -8,6 +13,10 @@ from rga.dashboard.api import stream
 from rga.dashboard.api.stream import _messages, _number
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.service import Service
+from rga.records import Record
+from served.bridges import lived, packets_of
+
+from .conftest import START
 
 
 @pytest.fixture
@@ -75,3 +84,31 @@ def test_who_was_away_for_long_is_to_read_anew(
 )
 def test_what_a_browser_sends_is_a_step_or_none(given: str | None, step: int | None) -> None:
     assert _number(given) == step
+
+
+def test_a_browser_that_reads_slowly_is_told_of_all_rows_in_one_message(
+    service: Service, lived_through: tuple[Path, Record], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stream, "LOOK", 0.0)
+    seen, twin = Surroundings(service).twin("east"), service.twins["east"]
+    ending = SimpleNamespace(app=SimpleNamespace(state=SimpleNamespace(is_ending=lambda: False)))
+    later = packets_of(lived_through[1], START + timedelta(hours=20), "later")
+
+    async def read() -> list[Any]:
+        messages = stream.stream(seen, ending)  # type: ignore[arg-type]
+        found = [await anext(messages)]
+        # Nothing is read while rows come by several steps.
+        for first in range(0, 60, 10):
+            await to_thread(lived, twin, later[first : first + 10])
+        while found[-1].event != "row" or len(found) == 1:
+            found.append(await anext(messages))
+        await messages.aclose()
+        return found
+
+    before = seen.reading.now()
+    assert before is not None
+    *_, last = asyncio.run(read())
+    now = seen.reading.now()
+    assert now is not None
+    assert last.data.merged == now.rows - before.rows > 10
+    assert last.data.now == now
