@@ -20,7 +20,7 @@ from served.bridges import packets_of
 from served.made_service import write_service
 from served.service_times import NOON, SetClock
 
-ROWS = 100
+ROWS, FEW = 200, 30
 HTTP = 'kind = "http"'
 
 
@@ -33,7 +33,7 @@ def test_a_clock_of_the_service_that_is_set_changes_no_row(
 ) -> None:
     write_service(tmp_path, measured_bridge, source=HTTP)
     (settings,) = read_configuration(tmp_path / "serve.toml").twin
-    record = sinking(read_model(measured_bridge, "bridge"), measured_record, ROWS)
+    record = sinking(read_model(measured_bridge, "bridge"), measured_record, FEW)
     rows = []
     for place, by in (("calm", timedelta(0)), ("set", jump)):
         clock = SetClock()
@@ -42,15 +42,15 @@ def test_a_clock_of_the_service_that_is_set_changes_no_row(
             assert twin.receive("http", [("http", packet)]) == [("waiting", None)]
             clock.pass_by(600)
             twin.seal()
-            if number == ROWS // 2:
+            if number == FEW // 2:
                 clock.at += by
         assert sum(one.difference for one in twin.packets.account().values()) == 0
         station = twin.inbox.station
         assert station is not None
-        rows.append(twin.inbox.packet(station, 0, ROWS))
+        rows.append(twin.inbox.packet(station, 0, FEW))
         twin.close()
     calm, found = rows
-    assert len(calm.time) > ROWS - 5
+    assert len(calm.time) > FEW - 5
     np.testing.assert_array_equal(found.time, calm.time)
     np.testing.assert_array_equal(found.readings, calm.readings)
 
@@ -62,7 +62,7 @@ def test_a_diagnosis_that_fails_is_asked_again_later(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     write_service(tmp_path, measured_bridge)
-    record = sinking(read_model(measured_bridge, "bridge"), measured_record, 2 * ROWS)
+    record = sinking(read_model(measured_bridge, "bridge"), measured_record, ROWS)
     asked = runner.Running._ask_diagnosis
     failures = iter([InputError("too little is known", "a test", "wait")])
 
