@@ -120,6 +120,8 @@ def test_a_broker_holds_what_cannot_be_kept(
     monkeypatch.setattr(mqtt, "PROBE", 0.1)
     monkeypatch.setattr(mqtt, "BROKEN", 0.5)
     monkeypatch.setattr(mqtt, "AGAIN", 0.1)
+    # The broker sends no more, the probe neither, before the first of so many are acknowledged.
+    monkeypatch.setattr(mqtt, "RECEIVE_MAXIMUM", 5)
     monkeypatch.setattr(senders, "UNACKNOWLEDGED", 0.5)
     source = f'kind = "mqtt"\nurl = "{mosquitto.url}"\ntopics = ["{TOPIC}"]\nclock.check = false'
     service = served(source=source)

@@ -57,6 +57,8 @@ def test_rows_are_kept_and_played_when_it_is_there_again(
             worker._idle.clear()
             worker.round()
 
+        # A server on which nothing is yet is one on which the twin has not begun.
+        assert client.get(EAST).status_code == client.get("/readyz").status_code == 200
         send(packets[:60])
         assert worker.failed == {}
         assert client.get(EAST).status_code == 200
