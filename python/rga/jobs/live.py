@@ -318,7 +318,8 @@ def _check_holds_no_record(place: Path) -> None:
     Raises:
         InputError: one was.
     """
-    if not (place / FILE).exists():
+    if (place / INBOX).exists() or not (place / FILE).exists():
+        # Where an inbox is, a live twin has begun; its repository may be of an earlier rga.
         return
     with Repository.open(place, read_only=True) as repository:
         if any(not one.identity.source.startswith(LIVE) for one in repository.runs()):

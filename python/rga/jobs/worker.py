@@ -13,6 +13,7 @@ from rga.jobs.run import FILE
 from rga.twin.hardware.inbox import INBOX
 from rga.twin.history import Event
 from rga.twin.repository import InUse
+from rga.twin.repository.faults import Damaged, RepositoryFault
 from rga.twin.runner import Running
 
 Kind = Literal["watch", "heavy"]
@@ -36,7 +37,8 @@ class Worker:
         repository: URL of a PostgreSQL database, if they are kept there.
 
     Attributes:
-        failed: why a twin cannot be played, by directory; after three times it is left alone.
+        failed: why a twin cannot be played, by directory; after three times it is left alone,
+            unless all that it needs is room on a disk, or a server that is there again.
 
     Example: `Worker(["a", "b"]).round()` plays all that is due in two directories.
     """
@@ -82,8 +84,11 @@ class Worker:
             except InUse:
                 continue
             except InputError as error:
-                self._failures[directory] += 1
                 self.failed[directory] = str(error)
+                if isinstance(error, RepositoryFault) and not isinstance(error, Damaged):
+                    self._idle[directory] = time.monotonic(), written
+                else:
+                    self._failures[directory] += 1
                 continue
             self._failures[directory] = 0
             self.failed.pop(directory, None)

@@ -1,16 +1,23 @@
 """What a stream tells: all that has happened since, or that it is too long ago."""
 
 import asyncio
-from datetime import UTC, datetime
+from asyncio import to_thread
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from rga.dashboard.api import following
+from rga.dashboard.api import following, stream
 from rga.dashboard.api.following import FollowedTwin, StreamPlace, TwinLook
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.operation.alarms.condition import Condition, ConditionKey, Observation
 from rga.operation.service import Service
+from rga.records import Record
+from served.bridges import lived, packets_of
+
+from .conftest import START
 
 
 @pytest.fixture
@@ -134,3 +141,33 @@ def test_one_look_serves_all_who_follow(
     messages, later = asyncio.run(followed.since(place))
     assert [one.event for one in messages] == ["alarm"]
     assert asyncio.run(followed.since(later)) == ([], later)
+
+
+def test_a_browser_that_reads_slowly_is_told_of_all_rows_in_one_message(
+    service: Service, lived_through: tuple[Path, Record], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(following, "LOOK", 0.0)
+    monkeypatch.setattr(stream, "REST", 0.0)
+    seen, twin = Surroundings(service).twin("east"), service.twins["east"]
+    state = SimpleNamespace(is_ending=lambda: False, followed={"east": FollowedTwin(seen)})
+    request = SimpleNamespace(app=SimpleNamespace(state=state))
+    later = packets_of(lived_through[1], START + timedelta(hours=20), "later")
+
+    async def read() -> list[Any]:
+        messages = stream.stream(seen, request)  # type: ignore[arg-type]
+        found = [await anext(messages)]
+        # Nothing is read while rows come by several steps.
+        for first in range(0, 60, 10):
+            await to_thread(lived, twin, later[first : first + 10])
+        while found[-1].event != "row" or len(found) == 1:
+            found.append(await anext(messages))
+        await messages.aclose()
+        return found
+
+    before = seen.reading.now()
+    assert before is not None
+    *_, last = asyncio.run(read())
+    now = seen.reading.now()
+    assert now is not None
+    assert last.data.merged == now.rows - before.rows > 10
+    assert last.data.now == now

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from threading import Lock
 
 from rga.dashboard.surroundings import SeenTwin
+from rga.errors import InputError
 
 #: calls a second of one caller in the long run, and at once
 RATE, BURST = 500.0, 5_000.0
@@ -77,5 +78,9 @@ def _lacking(seen: SeenTwin) -> str | None:
     free = shutil.disk_usage(seen.served.directory).free
     if free < RESERVE:
         return f"the disk has {free // 2**20} MiB left"
-    lag = seen.lag(seen.reading.now())
+    try:
+        lag = seen.lag(seen.reading.now())
+    except InputError:
+        # The inbox is the buffer for when the repository is away.
+        return None
     return None if lag <= MOST_WAITING else f"{lag} rows wait to be played"

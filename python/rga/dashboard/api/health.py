@@ -47,6 +47,8 @@ def _lacks(room: IntakeRoom, request: Request, name: str) -> bool:
         seen = surroundings_of(request).twin(name)
         with seen.served.inbox.writing():
             pass
+        # Data are taken in without it; more than that nobody is served.
+        seen.reading.now()
         return room.lacking(seen) is not None
     except (InputError, OSError):
         return True

@@ -113,7 +113,13 @@ class BrokerSender:
         self._client.loop_start()
 
     def send(self, payload: bytes, number: Number | None) -> None:
-        """Send a payload, and what was sent before and is not acknowledged."""
+        """Send a payload, and what was sent before and is not acknowledged.
+
+        It waits for the broker: what is sent as the connection begins may overtake what has waited
+        for it.
+        """
+        while not self._client.is_connected():
+            time.sleep(AGAIN / 10)
         if number is not None:
             with self._lock:
                 self._open[number] = payload, time.monotonic()

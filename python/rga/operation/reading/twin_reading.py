@@ -17,6 +17,7 @@ from rga.twin.calibration.channel_noise import noise_of
 from rga.twin.hardware.interface import LIVE
 from rga.twin.history import Event
 from rga.twin.repository import Proposal, Repository, RunView, StoredCommand
+from rga.twin.repository.faults import NothingThere
 from rga.twin.restore import standing_of
 from rga.twin.twin import Twin
 
@@ -259,7 +260,10 @@ class TwinReading:
             if self._repository is None:
                 if self._file is not None and not self._file.exists():
                     return None
-                self._repository = Repository.open(self.place, read_only=True)
+                try:
+                    self._repository = Repository.open(self.place, read_only=True)
+                except NothingThere:
+                    return None
             source = f"{LIVE}{self.name}"
             runs = [one for one in self._repository.runs() if one.identity.source == source]
             begun = [one for one in runs if one.kept("station") is not None]

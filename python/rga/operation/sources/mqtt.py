@@ -26,6 +26,8 @@ RECEIVE_MAXIMUM = 100
 SESSION = 7 * 86_400
 #: how often the way through the broker is tried [s], and after how long it is broken
 PROBE, BROKEN = 30.0, 90.0
+#: how long the broker may say nothing at all, or not let the service in, before it is left [s]
+KEEP_ALIVE = 20
 #: least time between two acknowledgements end to end [s]
 ACKNOWLEDGE = 1.0
 #: gaps that are told at once
@@ -66,7 +68,9 @@ class Broker:
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
         self._status = f"rga/v1/{twin}/status"
-        self._waiting: SimpleQueue[MQTTMessage] = SimpleQueue()
+        # Each with the number of the connection that it came by.
+        self._waiting: SimpleQueue[tuple[int, MQTTMessage]] = SimpleQueue()
+        self._connection = 0
         self._ending = Event()
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
@@ -80,7 +84,9 @@ class Broker:
         properties = Properties(PacketTypes.CONNECT)  # type: ignore[no-untyped-call]
         properties.SessionExpiryInterval = SESSION
         properties.ReceiveMaximum = RECEIVE_MAXIMUM
-        self._client.connect_async(self._host, self._port, clean_start=False, properties=properties)
+        self._client.connect_async(
+            self._host, self._port, KEEP_ALIVE, clean_start=False, properties=properties
+        )
         self._client.loop_start()
         self._thread.start()
 
@@ -106,6 +112,10 @@ class Broker:
             self.fault = f"the broker refuses: {reason}"
             return
         self.fault = None
+        self._connection += 1
+        if flags.session_present:
+            # The broker sends again what is not acknowledged: nothing is to wait here twice.
+            self._waiting = SimpleQueue()
         options = SubscribeOptions(qos=1)
         client.subscribe([(topic, options) for topic in (*self._topics, self._probe)])
         client.publish(self._status, "online", qos=1, retain=True)
@@ -119,13 +129,14 @@ class Broker:
             self._answered = time.monotonic()
             client.ack(message.mid, message.qos)
         else:
-            self._waiting.put(message)
+            self._waiting.put((self._connection, message))
 
     def _work(self) -> None:
         """Keep what comes, in batches, until the end."""
-        batch: list[MQTTMessage] = []
+        batch: list[tuple[int, MQTTMessage]] = []
         while not self._ending.is_set():
-            wrong = attempt(self._try_the_way)
+            # While nothing can be kept, the broker sends nothing more, and that is no fault of it.
+            wrong = None if batch else attempt(self._try_the_way)
             batch = batch or self._batch()
             if batch and not (wrong := attempt(partial(self._keep_batch, batch))):
                 batch = []
@@ -135,9 +146,9 @@ class Broker:
                 self.fault = wrong
                 self._ending.wait(AGAIN)
 
-    def _batch(self) -> list[MQTTMessage]:
+    def _batch(self) -> list[tuple[int, MQTTMessage]]:
         """What has come meanwhile: the more there is, the more is kept at once."""
-        batch: list[MQTTMessage] = []
+        batch: list[tuple[int, MQTTMessage]] = []
         try:
             batch.append(self._waiting.get(timeout=ACKNOWLEDGE / 4))
             while len(batch) < MOST_MESSAGES:
@@ -146,12 +157,14 @@ class Broker:
             pass
         return batch
 
-    def _keep_batch(self, batch: Sequence[MQTTMessage]) -> None:
+    def _keep_batch(self, batch: Sequence[tuple[int, MQTTMessage]]) -> None:
         """Keep messages, then acknowledge them."""
-        self._inlet.receive([(one.topic, bytes(one.payload)) for one in batch])
-        self.fault = None
-        for one in batch:
-            self._client.ack(one.mid, one.qos)
+        self._inlet.receive([(one.topic, bytes(one.payload)) for _, one in batch])
+        self.fault, self._answered = None, time.monotonic()
+        for connection, one in batch:
+            # What an earlier connection brought comes again, and its number may be another's now.
+            if connection == self._connection:
+                self._client.ack(one.mid, one.qos)
         self._untold = self._inlet.numbers()
 
     def _acknowledge(self) -> None:

@@ -49,6 +49,10 @@ class Damaged(RepositoryFault):
     """What is there is not what was written."""
 
 
+class NothingThere(InputError):
+    """Nothing was ever written there."""
+
+
 class NotWhole(Exception):
     """An entry does not hold what was written, in words."""
 

@@ -3,6 +3,7 @@
 import glob
 import logging
 import os
+import shutil
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
@@ -13,7 +14,7 @@ from sqlalchemy import Connection, QueuePool, create_engine, event
 from rga.errors import InputError
 from rga.inputs import remember
 from rga.one_writer import Held, only_writer
-from rga.twin.repository.faults import InUse
+from rga.twin.repository.faults import DiskFull, InUse
 
 # Of a connection that a signal meets as it is closed; the signal itself is told.
 logging.getLogger("sqlalchemy.pool").addHandler(logging.NullHandler())
@@ -148,7 +149,14 @@ class SQLite:
         return [] if found == ["ok"] else [str(one) for one in found]
 
     def back_up(self, revision: str | None) -> None:
-        """Copy the file beside itself, named after the revision of its tables."""
+        """Copy the file beside itself, named after the revision of its tables.
+
+        Raises:
+            DiskFull: there is no room for the copy, and for what the file grows by meanwhile.
+        """
+        if shutil.disk_usage(self._path.parent).free < 2 * self._path.stat().st_size:
+            what = "its tables are to be brought up to date, and the disk has no room for a copy"
+            raise DiskFull(what, self.where, "make room for twice its size")
         copy = self._path.with_name(f"{self._path.name}.revision-{revision}")
         draft = copy.with_name(f"{copy.name}.draft")
         draft.unlink(missing_ok=True)

@@ -13,7 +13,7 @@ from rga.errors import InputError
 from rga.twin.repository import migrations, tables
 from rga.twin.repository.database import Database, database
 from rga.twin.repository.entries import Identity
-from rga.twin.repository.faults import NotWhole, as_input_errors, named, whole
+from rga.twin.repository.faults import NothingThere, NotWhole, as_input_errors, named, whole
 from rga.twin.repository.proof import Proof, prove
 from rga.twin.repository.source import Source
 from rga.twin.repository.sqlite import PATIENCE
@@ -204,7 +204,8 @@ class Repository:
             state = migrations.state(connection)
         if state == "foreign" or (state == "empty" and read_only):
             remedy = "name a repository that rga wrote, or a new one"
-            raise InputError("this is no repository", where, remedy)
+            kind = NothingThere if state == "empty" else InputError
+            raise kind("this is no repository", where, remedy)
         if state == "newer":
             raise InputError("the repository is newer than this rga", where, "install a newer rga")
         if state == "older" and read_only:
