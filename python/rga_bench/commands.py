@@ -97,6 +97,7 @@ CrossingModel = Annotated[
 Small = Annotated[bool, typer.Option("--quick", help="100 rows of 12 sensors only.")]
 Smallest = Annotated[bool, typer.Option("--quick", help="200 rows of 12 sensors only.")]
 Short = Annotated[bool, typer.Option("--quick", help="One run of 3 000 rows only.")]
+Once = Annotated[bool, typer.Option("--quick", help="Few packets, and one kill of each sort.")]
 Few = Annotated[bool, typer.Option("--quick", help="One short stream of each sort only.")]
 
 
@@ -244,6 +245,14 @@ def endless(quick: Short = False, seed: Seed = 0) -> Experiment[Any]:
     from rga_bench.endless.experiment import EndlessExperiment
 
     return EndlessExperiment.of(seed, quick=quick)
+
+
+@_experiment(WRITTEN)
+def operation(quick: Once = False, seed: Seed = 0) -> Experiment[Any]:
+    """What a service loses where it or its broker is killed, and what a packet costs it."""
+    from rga_bench.operation.experiment import OperationExperiment
+
+    return OperationExperiment.of(seed, quick=quick)
 
 
 @_experiment(WRITTEN)

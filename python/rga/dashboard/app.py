@@ -14,6 +14,7 @@ from rga.dashboard.access.login import router as login
 from rga.dashboard.access.login import to_login
 from rga.dashboard.access.may import NotLoggedIn
 from rga.dashboard.api import (
+    alarms,
     commands,
     health,
     metrics,
@@ -27,6 +28,7 @@ from rga.dashboard.api import (
     whatif,
 )
 from rga.dashboard.api.bounds import IntakeRoom, RateLimit
+from rga.dashboard.api.following import FollowedTwin
 from rga.dashboard.api.reports import Reports
 from rga.dashboard.api.served import PREFIX
 from rga.dashboard.bounded_body import BoundedBody
@@ -67,7 +69,8 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
         lifespan=life,
     )
     app.state.access, app.state.reports = access, reports
-    app.state.surroundings = Surroundings(service)
+    app.state.surroundings = known = Surroundings(service)
+    app.state.followed = {name: FollowedTwin(known.twin(name)) for name in known.names}
     app.state.rate_limit, app.state.room = RateLimit(), IntakeRoom()
     app.state.is_ending = is_ending
     app.add_middleware(BoundedBody)
@@ -83,8 +86,8 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
 def add_routes(app: FastAPI) -> None:
     """Give an application every path of the API and of the pages."""
     api = APIRouter(prefix=PREFIX)
-    # What of the API is about alarms comes here too.
-    for one in (twins, readings, series, past, whatif, commands, packets, stream, report):
+    parts = (twins, readings, series, past, whatif, commands, alarms, packets, stream, report)
+    for one in parts:
         api.include_router(one.router)
     for router in (api, health.router, metrics.router, login, pages):
         app.include_router(router)

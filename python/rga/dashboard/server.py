@@ -57,21 +57,35 @@ class ToldServer(uvicorn.Server):
             tell_system(READY)
 
 
+def listening_socket(settings: ServiceSettings) -> socket.socket:
+    """The socket on which a service listens, from now on.
+
+    Raises:
+        InputError: there is no such address here, or another program listens there.
+    """
+    host, port = _address_of(settings)
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        return socket.create_server((host, port), family=family)
+    except (OSError, OverflowError) as error:
+        words = (getattr(error, "strerror", None) or str(error)).lower()
+        where = f"[service] listen = {settings.listen!r}"
+        remedy = "end what listens there, or state another address"
+        raise InputError(f"nothing can listen there: {words}", where, remedy) from None
+
+
 def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
     """The server of an application.
 
     Args:
         app: that answers.
-        settings: where it listens, and by which certificate.
+        settings: by which certificate it answers.
 
     Raises:
         InputError: a file of TLS cannot be used.
     """
-    host, _, port = settings.listen.rpartition(":")
     config = uvicorn.Config(
         app,
-        host=host.strip("[]"),
-        port=int(port),
         ssl_certfile=settings.certificate,
         ssl_keyfile=settings.key,
         # Which proxy is believed is decided where the caller is asked for.
@@ -92,3 +106,8 @@ def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
         words = (error.strerror or str(error)).lower()
         raise InputError(f"TLS cannot begin: {words}", where, "give PEM files") from None
     return ToldServer(config)
+
+
+def _address_of(settings: ServiceSettings) -> tuple[str, int]:
+    host, _, port = settings.listen.rpartition(":")
+    return host.strip("[]"), int(port)

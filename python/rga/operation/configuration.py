@@ -6,11 +6,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, model_validator
 
+from rga.detection.monitor import LEAST, MOST
 from rga.operation.alarms.alarm_settings import AlarmSettings
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.grid import Grid
-from rga.operation.settings_types import Duration, Name, SettingsTable, duration_of
+from rga.operation.settings_types import Duration, Name, Rarity, SettingsTable, duration_of
 from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated
 
@@ -70,6 +71,7 @@ class TwinSettings(SettingsTable):
         name: of it, in addresses and topics.
         model, settings: files, beside the configuration.
         seed: of everything random.
+        false_alarms: of its monitor without a change, instead of `arl0` in its settings.
         rows: how they are made of samples.
         retention: how long packets are kept.
         source: where samples come from.
@@ -79,9 +81,28 @@ class TwinSettings(SettingsTable):
     model: Path
     settings: Path
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 0
+    false_alarms: Rarity | None = None
     rows: RowSettings = RowSettings()
     retention: RetentionSettings = RetentionSettings()
     source: Annotated[list[Source], Field(min_length=1)]
+
+    @property
+    def arl0(self) -> float | None:
+        """Rows between false alarms; None: the settings say it."""
+        if self.false_alarms is None:
+            return None
+        count, span = self.false_alarms
+        return span / count / self.rows.every
+
+    @model_validator(mode="after")
+    def _rare_enough(self) -> "TwinSettings":
+        rows = self.arl0
+        if rows is not None and not LEAST <= rows <= MOST:
+            raise ValueError(
+                f"false_alarms: one in {rows:.0f} rows of {self.rows.every:g} s; "
+                f"{LEAST:g} to {MOST:g} are possible"
+            )
+        return self
 
     @model_validator(mode="after")
     def _named_apart(self) -> "TwinSettings":

@@ -60,7 +60,7 @@ class ServedTwin:
         live(
             model,
             directory,
-            settings=live_settings(settings.settings),
+            settings=live_settings(settings.settings, settings.arl0),
             name=settings.name,
             seed=settings.seed,
             repository=repository,
@@ -218,14 +218,32 @@ class ServedTwin:
         self.inbox.close()
 
 
-def live_settings(path: Path) -> Settings:
+def live_settings(path: Path, arl0: float | None) -> Settings:
     """Settings of a twin that is served: what a diagnosis names is proposed, unless they say so.
 
+    Args:
+        path: of their file.
+        arl0: rows between false alarms; None: the file says it.
+
     Raises:
-        InputError: the file cannot be read, or a setting is unknown or impossible.
+        InputError: the file cannot be read, a setting is unknown or impossible, or false alarms
+            are stated twice, or of a detector that knows nothing of them.
     """
     content = {"adopt": "ask"} | read_table(path, "settings")
-    return validated(Settings, content, str(path), "settings")
+    if arl0 is not None:
+        if "arl0" in content:
+            raise InputError(
+                "arl0 and false_alarms say the same", str(path), "leave out one of the two"
+            )
+        content["arl0"] = arl0
+    found = validated(Settings, content, str(path), "settings")
+    if arl0 is not None and found.detector != "monitor":
+        raise InputError(
+            f"the detector {found.detector!r} has no rate of false alarms",
+            str(path),
+            'leave out false_alarms, or take detector = "monitor"',
+        )
+    return found
 
 
 @dataclass(frozen=True)

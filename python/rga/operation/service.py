@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from threading import Event, Thread
+from typing import TYPE_CHECKING
 
 from rga.operation.alarms import tables as alarm_tables
 from rga.operation.alarms.alarm_book import AlarmBook
@@ -15,11 +16,16 @@ from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.notices.outbox import Outbox
 from rga.operation.notices.words import all_is_well
 from rga.operation.readiness import ALIVE, tell_system
+from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.served_twin import ServedTwin
 from rga.operation.service_clock import ServiceClock, microseconds, moment_of
 from rga.operation.service_file import service_file
+from rga.operation.sources.settings import MqttSource, source_name
 from rga.operation.sources.source import DataSource, attempt
 from rga.operation.workers import Workers
+
+if TYPE_CHECKING:
+    from rga.operation.telling.teller import Teller
 
 #: how often rows are sealed [s]
 SEAL = 0.2
@@ -29,6 +35,8 @@ WATCH, TELL, TIDY = 2.0, 1.0, 3600.0
 LAST_NOTICE = 5.0
 #: what a fault of making rows is kept under
 ROWS = "rows"
+#: what a fault of telling a broker is kept under, before the name of the source
+TELLING = "telling"
 
 
 class Service:
@@ -70,6 +78,7 @@ class Service:
         self.outbox = Outbox(self._file, configuration.notify, service.address, clock)
         self.alarms = AlarmBook(self._file, configuration.alarms.delays, clock, self.outbox.add)
         self.supervision = self._supervision()
+        self._tellers = self._brokers_told()
 
     def start(self) -> None:
         """Begin to take data in, to play the twins, and to tell of alarms.
@@ -83,8 +92,8 @@ class Service:
             self._again(WATCH, ALARMS, self.supervision.round),
             self._again(TIDY, "archive", self._tidy),
         ]
-        for source in self._sources.values():
-            source.start()
+        for one in (*self._sources.values(), *self._tellers.values()):
+            one.start()
         for thread in [*self._threads, *self._telling]:
             thread.start()
         self.workers.start()
@@ -92,8 +101,8 @@ class Service:
     def stop(self) -> None:
         """Let go of everything: what was acknowledged is kept."""
         self._ending.set()
-        for source in self._sources.values():
-            source.stop()
+        for one in (*self._sources.values(), *self._tellers.values()):
+            one.stop()
         for thread in self._threads:
             thread.join()
         for thread in self._telling:
@@ -128,6 +137,23 @@ class Service:
             found[name] = Troubles(own, faults.get((name, ROWS)), failed.get(twin.directory))
         return found
 
+    def _brokers_told(self) -> dict[tuple[str, str], "Teller"]:
+        """What tells brokers of twins, by twin and source."""
+        return {
+            (twin.name, source_name(one)): self._broker_told(twin.name, one)
+            for twin in self.configuration.twin
+            for one in twin.source
+            if isinstance(one, MqttSource) and one.tell
+        }
+
+    def _broker_told(self, twin: str, source: MqttSource) -> "Teller":
+        """What tells a broker of a twin."""
+        from rga.operation.telling.teller import Teller
+
+        repository = self.configuration.service.repository
+        reading = TwinReading(twin, self.twins[twin].directory, repository)
+        return Teller(source, reading, self.alarms, self._file, self._clock)
+
     def _teller(self, settings: NotifySettings) -> Thread:
         """A thread for a recipient: who is slow keeps no other from being told."""
         from rga.operation.notices.delivery import Delivery
@@ -157,6 +183,9 @@ class Service:
                 for name in twin.source_names:
                     fault = self._fault(twin.name, name)
                     self._tell(twin.name, name, fault or twin.clock_fault(name))
+
+            for (name, source), teller in self._tellers.items():
+                self._tell(name, f"{TELLING} {source}", teller.fault)
 
     def _fault(self, twin: str, source: str) -> str | None:
         """What keeps a source from going on; None: nothing, or others send to this service."""

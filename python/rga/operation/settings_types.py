@@ -1,13 +1,21 @@
 """Kinds of values in the file of a service."""
 
 import re
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 _SIZES = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86_400.0}
 _SPANS = {"hour": 3600.0, "day": 86_400.0}
-_RATE = re.compile(rf"([1-9]\d{{0,5}}) an? ({'|'.join(_SPANS)})")
+_YEAR = 365.25 * 86_400.0
+_LONG_SPANS = _SPANS | {
+    "week": 7 * 86_400.0,
+    "month": _YEAR / 12,
+    "quarter": _YEAR / 4,
+    "year": _YEAR,
+}
+_RATE = re.compile(r"([1-9]\d{0,5}) an? ([a-z]+)")
 _DURATION = re.compile(rf"(\d+(?:\.\d+)?) ?({'|'.join(_SIZES)})")
 
 
@@ -40,13 +48,30 @@ def rate_of(given: Any) -> tuple[int, float]:
     >>> rate_of("12 an hour"), rate_of("5 a day")
     ((12, 3600.0), (5, 86400.0))
     """
+    return _rate(given, _SPANS, "'12 an hour' or '20 a day'")
+
+
+def rarity_of(given: Any) -> tuple[int, float]:
+    """The same of what is rare.
+
+    Raises:
+        ValueError: it is none.
+
+    >>> rarity_of("1 a quarter")
+    (1, 7889400.0)
+    """
+    return _rate(given, _LONG_SPANS, "'1 a quarter' or '2 a year'")
+
+
+def _rate(given: Any, spans: Mapping[str, float], examples: str) -> tuple[int, float]:
     found = _RATE.fullmatch(given) if isinstance(given, str) else None
-    if found is None:
-        raise ValueError(f"{given!r} is no rate: write '12 an hour' or '20 a day'")
-    return int(found[1]), _SPANS[found[2]]
+    if found is None or found[2] not in spans:
+        raise ValueError(f"{given!r} is no rate: write {examples}")
+    return int(found[1]), spans[found[2]]
 
 
 Rate = Annotated[tuple[int, float], BeforeValidator(rate_of)]
+Rarity = Annotated[tuple[int, float], BeforeValidator(rarity_of)]
 #: as it stands in addresses, topics and names of folders
 NAME_PATTERN = r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$"
 Name = Annotated[str, Field(pattern=NAME_PATTERN)]

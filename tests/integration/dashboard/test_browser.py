@@ -5,16 +5,18 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any
 
 import pytest
 import uvicorn
 
 from rga.dashboard.app import app_of
+from rga.operation.alarms.condition import Condition, ConditionKey, Observation
 from rga.operation.service import Service
 from rga.records import Record
+from rga_bench.operation.service_process import free_port
 from served.bridges import lived, packets_of, played
-from served.made_service import free_port
 
 from .conftest import START
 
@@ -179,3 +181,14 @@ def test_pointing_at_a_sensor_tells_of_it(opened: Callable[..., Page]) -> None:
     # The keyboard does the same.
     page.locator("#sensor-2").focus()
     assert page.locator(".pointed").inner_text().startswith("D3,")
+
+
+def test_an_alarm_is_drawn_as_it_is_raised(opened: Callable[..., Page], service: Service) -> None:
+    page = opened()
+    page.goto("/twins/east/alarms")
+    page.get_by_text("live", exact=True).wait_for()
+    words = "the west bearing is out of step"
+    assert not page.get_by_text(words).is_visible()
+    there = Condition(ConditionKey("east", "gap", "alarm", "twin"), words, datetime.now(UTC))
+    service.alarms.observe("east", Observation((there,), frozenset({"gap"})))
+    page.get_by_text(words).first.wait_for(timeout=20_000)

@@ -134,7 +134,7 @@ def test_decisions_at_once_and_a_kill_in_between(running: Running, rga: Callable
 
 def check_a_stream_ends_with(running: Running) -> None:
     """A stream tells what has happened, and ends when the service does."""
-    asked = Request(f"{running.url}{EAST}/stream", headers={"Last-Event-ID": "1"})
+    asked = Request(f"{running.url}{EAST}/stream", headers={"Last-Event-ID": "1.0"})
     with urlopen(asked, timeout=PATIENCE) as stream:
         lines = []
         while not lines or not lines[-1].startswith("id: "):

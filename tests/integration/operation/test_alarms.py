@@ -16,6 +16,7 @@ from rga.errors import InputError
 from rga.model import read_model
 from rga.operation.alarms import service_watch
 from rga.operation.configuration import read_configuration
+from rga.operation.inbox.account import Account
 from rga.operation.packets.native import write_packet
 from rga.operation.packets.packet import Number, SensorPacket
 from rga.operation.service import Service
@@ -301,6 +302,40 @@ def test_a_sensor_that_is_silent_is_named(calm: Bridge) -> None:
     assert len(calm.changes) == 1
     calm.send(12)
     assert calm.changes[1:] == [("quality", "silent", "cleared")]
+
+
+def test_channels_that_are_not_used_are_told_of_once(calm: Bridge) -> None:
+    calm.send(8)
+    assert calm.changes == []
+    names, values = ("D1", "D77"), np.array([[0.0, 1.0]])
+    for number in range(5):
+        calm.clock.pass_by(60)
+        times = np.array([microseconds(calm.clock.now())])
+        packet = SensorPacket(Number("another", number), names, times, values)
+        calm.service.twins["east"].receive("http", [("http", write_packet(packet, binary=True))])
+        calm.look(play=False)
+    assert calm.changes == [("quality", "refused", "raised")]
+    (alarm,) = calm.service.alarms.open()
+    assert alarm.words.startswith("source http: 1 channel is not used: D77 (")
+    calm.send(8)
+    assert [one for one in calm.changes if one[1] == "refused"] == [
+        ("quality", "refused", "raised")
+    ]
+
+
+def test_a_packet_of_which_nothing_is_known_is_told_of(calm: Bridge) -> None:
+    calm.send(20)
+    assert calm.changes == []
+    account = {("http", 0): Account(received=5, used=4), ("http", 1): Account(duplicate=1)}
+    packets = calm.service.twins["east"].packets
+    packets.account, sound = lambda: account, packets.account  # type: ignore[method-assign]
+    calm.wait(900)
+    assert calm.changes == [("service", "account", "raised")]
+    (alarm,) = calm.service.alarms.open()
+    assert alarm.words.startswith("source http: of 2 packets nothing is known")
+    packets.account = sound  # type: ignore[method-assign]
+    calm.send(3)
+    assert calm.changes[1:] == [("service", "account", "cleared")]
 
 
 def test_a_twin_that_is_not_played_lags_and_is_told_why(calm: Bridge) -> None:

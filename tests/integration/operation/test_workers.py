@@ -81,6 +81,7 @@ def test_workers_that_are_killed_are_followed_by_others(
         assert_same(history(twin), expected)
 
 
+@pytest.mark.thorough
 def test_a_twin_at_which_workers_end_is_left_alone(
     begun: Callable[[str], Path], playing: Callable[[list[Path]], Workers]
 ) -> None:

@@ -11,7 +11,7 @@ import pytest
 from fastapi import FastAPI, Request
 
 from rga.dashboard.bounded_body import BoundedBody
-from rga.dashboard.server import BoundedProtocol, server_of
+from rga.dashboard.server import BoundedProtocol, listening_socket, server_of
 from rga.errors import InputError
 from rga.operation.configuration import ServiceSettings
 
@@ -33,8 +33,9 @@ def port(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         number = int(free.getsockname()[1])
-    server = server_of(app, ServiceSettings(listen=f"127.0.0.1:{number}"))
-    thread = Thread(target=server.run)
+    settings = ServiceSettings(listen=f"127.0.0.1:{number}")
+    server = server_of(app, settings)
+    thread = Thread(target=server.run, args=[[listening_socket(settings)]])
     thread.start()
     while not server.started:
         assert thread.is_alive()
@@ -93,3 +94,11 @@ def test_files_of_tls_that_are_none_are_told(tmp_path: Path, content: Any) -> No
     files = {"certificate": tmp_path / "c.pem", "key": tmp_path / "c.pem"}
     with pytest.raises(InputError, match="TLS cannot begin"):
         server_of(FastAPI(), ServiceSettings(**files))
+
+
+@pytest.mark.parametrize("listen", ["127.0.0.1:99999", "192.0.2.1:8471", "a.b.invalid:80"])
+def test_an_address_that_is_none_is_told(listen: str) -> None:
+    with pytest.raises(InputError, match="nothing can listen there") as refused:
+        listening_socket(ServiceSettings(listen=listen))
+    assert repr(listen) in str(refused.value)
+    listening_socket(ServiceSettings(listen="127.0.0.1:0")).close()

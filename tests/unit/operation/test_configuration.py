@@ -6,6 +6,7 @@ import pytest
 
 from rga.errors import InputError
 from rga.operation.configuration import read_configuration
+from rga.operation.served_twin import live_settings
 from rga.operation.sources.settings import FolderSource, OpcUaSource, SqlSource
 
 SOUND = """
@@ -104,6 +105,8 @@ def test_a_link_is_where_people_find_the_pages(tmp_path: Path) -> None:
         ('"60 s"', "60", "no duration"),
         ('"60 s"', '"0.1 ms"', "a millisecond at least"),
         ('"60 s"', '"999999 d"', "less than or equal"),
+        ("rows = {", 'false_alarms = "seldom"\nrows = {', "no rate"),
+        ("rows = {", 'false_alarms = "1 an hour"\nrows = {', "one in 60 rows of 60 s"),
         ('"mqtt"', '"kafka"', "kafka"),
         ("mqtt://broker:1883", "http://broker", "no broker"),
         ("mqtt://broker:1883", "mqtt://a:b@broker", "password"),
@@ -158,3 +161,19 @@ def test_two_twins_of_one_name_are_refused(tmp_path: Path) -> None:
     twin = SOUND[SOUND.index("[[twin]]") : SOUND.index("[alarms]")]
     with pytest.raises(InputError, match="two twins are called 'pratt-7'"):
         read_configuration(written(tmp_path, SOUND + twin))
+
+
+@pytest.mark.parametrize(("said", "rows"), [("1 a quarter", 131_490), ("2 a year", 262_980)])
+def test_false_alarms_are_rows_between_them(tmp_path: Path, said: str, rows: float) -> None:
+    text = SOUND.replace("rows = {", f'false_alarms = "{said}"\nrows = {{')
+    twin = read_configuration(written(tmp_path, text)).twin[0]
+    assert twin.arl0 == pytest.approx(rows)
+    path = tmp_path / "settings.toml"
+    path.write_text("packet = 10\n", "utf-8")
+    assert live_settings(path, twin.arl0).arl0 == pytest.approx(rows)
+    assert live_settings(path, None).arl0 == 10_000
+    for line, words in (("arl0 = 20000", "say the same"), ('detector = "window"', "no rate")):
+        path.write_text(f"{line}\n", "utf-8")
+        with pytest.raises(InputError, match=words):
+            live_settings(path, twin.arl0)
+        live_settings(path, None)

@@ -119,7 +119,9 @@ def test_a_row_is_the_mean_of_its_cell(twin: Twin, model: Model) -> None:
     assert sum(twin.packets.account().values(), Account()) == Account(received=40, used=40)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(
+    "seed", [0, 1, *(pytest.param(k, marks=pytest.mark.thorough) for k in range(2, 8))]
+)
 def test_rows_do_not_hang_on_how_packets_arrived(
     seed: int, tmp_path: Path, model: Model, twin: Twin
 ) -> None:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from socket import socket
+
     from rga.operation.configuration import Configuration
 
 ConfigurationFile = Annotated[
@@ -24,16 +26,20 @@ def serve(configuration: ConfigurationFile, check: Check = False, wait: Wait = 5
 
     The exit code of --check is 2 where there is an error; warnings and notes leave it 0.
     """
+    from rga.dashboard.server import listening_socket
     from rga.operation.configuration import read_configuration
+    from rga.operation.service_file import only_service
 
     chosen = read_configuration(configuration)
     if check:
         _check(chosen, wait)
-    else:
-        _serve(chosen)
+        return
+    with only_service(chosen.service.data), listening_socket(chosen.service) as listening:
+        _serve(chosen, listening)
 
 
-def _serve(chosen: "Configuration") -> None:
+def _serve(chosen: "Configuration", listening: "socket") -> None:
+    """Run a service until somebody ends it."""
     from rga.dashboard.app import app_of
     from rga.dashboard.server import server_of
     from rga.operation.service import Service
@@ -42,10 +48,11 @@ def _serve(chosen: "Configuration") -> None:
     app = app_of(service, lambda: server.should_exit)
     server = server_of(app, chosen.service)
     service.start()
+    twins = [f"{name} ({', '.join(one.source_names)})" for name, one in service.twins.items()]
     scheme = "http" if chosen.service.certificate is None else "https"
-    typer.echo(f"rga serves {', '.join(service.twins)} at {scheme}://{chosen.service.listen}")
+    typer.echo(f"rga listens at {scheme}://{chosen.service.listen} and serves {', '.join(twins)}")
     try:
-        server.run()
+        server.run([listening])
     finally:
         service.stop()
 

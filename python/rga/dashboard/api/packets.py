@@ -13,22 +13,20 @@ from rga.dashboard.access.roles import Who
 from rga.dashboard.api.bounds import IntakeRoom, RateLimit
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin, answering
 from rga.errors import InputError
-from rga.operation.packets.formats import format_of_type
+from rga.operation.packets.formats import TYPES, format_of_type
 from rga.operation.packets.packet import MOST_BYTES
 from rga.twin.repository.faults import DiskFull
 
 #: how long a sender waits where nothing can be written [s]
 AGAIN = 5
-#: what a payload may be called; what it is, is seen from itself
+#: what a payload may be called; where that names no format, what it is is seen from itself. The
+#: last is what senders say that were told nothing.
 CONTENT_TYPES = (
     "application/json",
-    "application/msgpack",
     "application/octet-stream",
-    "application/senml+json",
-    "application/vnd.msgpack",
-    "application/x-msgpack",
-    "text/csv",
     "text/plain",
+    *TYPES,
+    "application/x-www-form-urlencoded",
 )
 router = APIRouter(tags=["packets"])
 _BODY = {

@@ -81,6 +81,11 @@ class AlarmBook:
         with self._file.reading() as connection:
             return tuple(store.transitions_after(connection, after, limit))
 
+    def last(self) -> int:
+        """Number of the newest transition; 0: there is none."""
+        with self._file.reading() as connection:
+            return store.last_transition(connection)
+
     def acknowledge(self, id: int, who: str, why: str = "") -> OperatorAlarm:
         """Somebody has seen an alarm.
 

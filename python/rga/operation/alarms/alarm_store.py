@@ -66,6 +66,11 @@ def transitions_after(connection: Connection, number: int, limit: int) -> list[A
     return [_transition(one) for one in connection.execute(chosen)]
 
 
+def last_transition(connection: Connection) -> int:
+    """Number of the newest; 0: there is none."""
+    return int(connection.scalar(select(func.max(tables.transition.c.number))) or 0)
+
+
 def transitions_of(connection: Connection, alarm: int) -> list[AlarmTransition]:
     """The life of an alarm."""
     c = tables.transition.c
@@ -91,8 +96,9 @@ def write_transition(
     else:
         same = tables.alarm.c.id == alarm.id
         connection.execute(update(tables.alarm).where(same).values(**entry))
-    number = 1 + int(connection.scalar(select(func.max(tables.transition.c.number))) or 0)
-    transition = AlarmTransition(number, alarm.id, change, at, who, why, alarm.words)
+    transition = AlarmTransition(
+        last_transition(connection) + 1, alarm.id, change, at, who, why, alarm.words
+    )
     entry = with_checksum(**asdict(transition) | {"at": microseconds(at)})
     connection.execute(insert(tables.transition).values(**entry))
     return transition

@@ -1,14 +1,18 @@
-"""Whether sources still send, all of it, and by a clock that can be believed."""
+"""Whether sources still send, all of it, what can be used, by a clock that can be believed."""
 
 from collections.abc import Mapping, Sequence
 from datetime import timedelta
 
+from rga.errors import in_a_line
 from rga.operation.alarms.condition import Condition, ConditionKey
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.served_twin import ServedTwin
 from rga.operation.service_clock import ServiceClock
 from rga.operation.sources.clock import in_words
 from rga.quantities import counted
+
+#: channels that are not used, and that words name
+MOST_NAMED = 5
 
 
 class SourceWatch:
@@ -62,10 +66,27 @@ class SourceWatch:
             clock = self._twin.clock_fault(name)
             if clock is not None:
                 found.append(Condition(self._key("clock", name), f"source {name}: {clock}", now))
+            if refused := self._twin.refused_channels(name):
+                key = self._key("refused", name)._replace(kind="quality")
+                words = f"source {name}: {_not_used(refused)}"
+                found.append(Condition(key, words, now, size=len(refused)))
         return found
 
     def _key(self, cause: str, source: str) -> ConditionKey:
         return ConditionKey(self._twin.name, "source", cause, source)
+
+
+def _not_used(refused: Mapping[str, str]) -> str:
+    """Channels that are not used, and why.
+
+    >>> _not_used({"D7": "the model has no such channel"})
+    '1 channel is not used: D7 (the model has no such channel)'
+    """
+    listed = [f"{name} ({why})" for name, why in [*refused.items()][:MOST_NAMED]]
+    if len(refused) > MOST_NAMED:
+        listed.append("...")
+    are = "is" if len(refused) == 1 else "are"
+    return in_a_line(f"{counted(len(refused), 'channel')} {are} not used: {', '.join(listed)}")
 
 
 class _Missing:

@@ -8,6 +8,7 @@ from sqlalchemy import Connection, delete, insert, select
 
 from rga.errors import InputError
 from rga.operation.alarms import tables
+from rga.operation.alarms.account_watch import AccountWatch
 from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey, Observation
 from rga.operation.alarms.repository_watch import RepositoryWatch, RunPlace, SeenRun
 from rga.operation.alarms.sensor_quality import SensorQuality
@@ -85,6 +86,7 @@ class TwinWatch:
         self._reading = TwinReading(twin.name, twin.directory, repository)
         self._run = RepositoryWatch(self._reading, chosen, self._rows.every, place)
         self._quality: SensorQuality | None = None
+        self._account = AccountWatch(twin, clock)
         names = [source_name(one) for one in settings.source]
         self._sources = SourceWatch(twin, names, self.patience, self._rows.lateness, clock)
 
@@ -110,6 +112,7 @@ class TwinWatch:
             found.append(self._trouble("repository", f"the repository: {error}"))
         try:
             found += [*self._of_sensors(), *self._sources.look(troubles.sources)]
+            found += self._account.look()
         except InputError as error:
             unknown |= {"quality", "source"}
             found.append(self._trouble("inbox", f"the inbox: {error}"))

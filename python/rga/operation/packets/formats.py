@@ -17,7 +17,8 @@ from rga.operation.packets.topics import TopicPattern, read_number
 PayloadFormat = Literal["packet", "senml", "sensorthings", "line_protocol", "number", "row", "file"]
 #: formats whose payloads are read as packets; the others are read as files
 PACKETS = ("packet", "senml", "sensorthings", "line_protocol", "number")
-_TYPES: dict[str, PayloadFormat] = {
+#: formats that a Content-Type of HTTP names
+TYPES: dict[str, PayloadFormat] = {
     "application/vnd.rga.packet+json": "packet",
     "application/msgpack": "packet",
     "application/vnd.msgpack": "packet",
@@ -37,7 +38,7 @@ def format_of_type(content_type: str | None) -> PayloadFormat | None:
     ('senml', None)
     """
     named = (content_type or "").partition(";")[0].strip().lower()
-    return _TYPES.get(named)
+    return TYPES.get(named)
 
 
 def format_of_bytes(payload: bytes) -> PayloadFormat:

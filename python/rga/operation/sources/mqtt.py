@@ -1,7 +1,6 @@
 """A broker that loggers send to: a message is acknowledged when its packet is on the disk."""
 
 import json
-import ssl
 import time
 from collections.abc import Sequence
 from functools import partial
@@ -9,16 +8,14 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
 from typing import Any
-from urllib.parse import urlsplit
 
-from paho.mqtt.client import Client, MQTTMessage, MQTTv5
-from paho.mqtt.enums import CallbackAPIVersion
+from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.sources.secrets import credentials_of
+from rga.operation.sources.broker_client import address_of, broker_client
 from rga.operation.sources.source import Inlet, attempt
 
 #: messages that are kept together
@@ -64,7 +61,8 @@ class Broker:
         credentials: Path | None,
         inlet: Inlet,
     ) -> None:
-        self._place, self._topics, self._inlet = place_of(url), tuple(topics), inlet
+        self._host, self._port = address_of(url)
+        self._topics, self._inlet = tuple(topics), inlet
         self._probe = f"rga/v1/{twin}/probe/{source}"
         self._ack = f"rga/v1/{twin}/ack/{source}"
         self._status = f"rga/v1/{twin}/status"
@@ -73,7 +71,7 @@ class Broker:
         self._probed = self._answered = time.monotonic()
         self._told = 0.0
         self._untold: dict[str, Numbers] = {}
-        self._client = self._made(f"rga-{twin}-{source}", url, credentials)
+        self._client = self._made(broker_client(f"rga-{twin}-{source}", url, credentials))
         self._thread = Thread(target=self._work, name=f"broker of {twin}", daemon=True)
         self.fault: str | None = "not connected yet"
 
@@ -82,7 +80,7 @@ class Broker:
         properties = Properties(PacketTypes.CONNECT)  # type: ignore[no-untyped-call]
         properties.SessionExpiryInterval = SESSION
         properties.ReceiveMaximum = RECEIVE_MAXIMUM
-        self._client.connect_async(*self._place, clean_start=False, properties=properties)
+        self._client.connect_async(self._host, self._port, clean_start=False, properties=properties)
         self._client.loop_start()
         self._thread.start()
 
@@ -96,10 +94,9 @@ class Broker:
         self._client.disconnect()
         self._client.loop_stop()
 
-    def _made(self, name: str, url: str, credentials: Path | None) -> Client:
-        client = client_of(name, url, credentials)
+    def _made(self, client: Client) -> Client:
+        client.manual_ack_set(True)
         client.will_set(self._status, "offline", qos=1, retain=True)
-        client.reconnect_delay_set(1, 60)
         client.on_connect, client.on_disconnect = self._connected, self._disconnected
         client.on_message = self._came
         return client
@@ -180,34 +177,3 @@ class Broker:
             self.fault = "the broker is connected and brings nothing"
             self._client.reconnect()
         self._client.publish(self._probe, b"", qos=1)
-
-
-def place_of(url: str) -> tuple[str, int]:
-    """Host and port of a broker.
-
-    >>> place_of("mqtts://broker"), place_of("mqtt://broker:1884")
-    (('broker', 8883), ('broker', 1884))
-    """
-    parts = urlsplit(url)
-    return parts.hostname or "", parts.port or (8883 if parts.scheme == "mqtts" else 1883)
-
-
-def client_of(name: str, url: str, credentials: Path | None) -> Client:
-    """A client of a broker that acknowledges nothing by itself, and is not connected yet.
-
-    Args:
-        name: under which the broker knows it.
-        url: mqtt:// or mqtts://, host and port.
-        credentials: file of two lines, user and password.
-
-    Raises:
-        InputError: the credentials cannot be read.
-    """
-    client = Client(CallbackAPIVersion.VERSION2, name, protocol=MQTTv5, manual_ack=True)
-    if credentials is not None:
-        client.username_pw_set(*credentials_of(credentials))
-    if urlsplit(url).scheme == "mqtts":
-        client.tls_set_context(ssl.create_default_context())
-    # Else a callback that fails would end the thread of the connection.
-    client.suppress_exceptions = True
-    return client

@@ -98,6 +98,7 @@ class MqttSource(PayloadSettings):
         topics: that hold data; + and # as in MQTT.
         channel_topic: where a topic names the channel of a number, such as "site/+/{channel}".
         credentials: file of two lines, user and password.
+        tell: whether the broker is told how the twin is: state, gaps, alarms, events, proposals.
     """
 
     kind: Literal["mqtt"]
@@ -105,6 +106,7 @@ class MqttSource(PayloadSettings):
     topics: Annotated[list[str], Field(min_length=1)]
     channel_topic: str | None = None
     credentials: Path | None = None
+    tell: bool = False
 
     @property
     def stated(self) -> StatedFormat:

@@ -6,7 +6,7 @@ from typing import Any
 from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.subscribeoptions import SubscribeOptions
 
-from rga.operation.sources.mqtt import client_of, place_of
+from rga.operation.sources.broker_client import address_of, broker_client
 from rga.operation.sources.settings import MqttSource
 from rga.operation.sources.source import Inlet
 
@@ -26,7 +26,7 @@ class BrokerVisit:
         self._settings, self._inlet = settings, inlet
         # The name of the service would throw the service out, and take its messages.
         name = f"rga-check-{token_hex(6)}"
-        self._client = client_of(name, settings.url, settings.credentials)
+        self._client = broker_client(name, settings.url, settings.credentials)
         self._client.on_connect, self._client.on_message = self._connected, self._came
         self._client.on_subscribe, self._client.on_connect_fail = self._subscribed, self._away
         self.fault: str | None = "the broker does not answer"
@@ -34,7 +34,7 @@ class BrokerVisit:
     def start(self) -> None:
         """Connect, and take messages."""
         # Without a time of expiry the session ends with the connection.
-        self._client.connect_async(*place_of(self._settings.url), clean_start=True)
+        self._client.connect_async(*address_of(self._settings.url), clean_start=True)
         self._client.loop_start()
 
     def stop(self) -> None:

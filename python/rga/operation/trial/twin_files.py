@@ -45,7 +45,7 @@ class TwinFiles:
         Raises:
             InputError: one cannot be used.
         """
-        model, run = load_model(settings.model), live_settings(settings.settings)
+        model, run = load_model(settings.model), live_settings(settings.settings, settings.arl0)
         addressee_of(model, run, settings.name, settings.seed)
         sources = {source_name(one): one for one in settings.source}
         mappings = {name: mapping_of(one) for name, one in sources.items()}

@@ -1,0 +1,1 @@
+"""What brokers are told of a twin."""
