@@ -47,6 +47,16 @@ class BoundedProtocol(H11Protocol):
             self.loop.call_later(self.look, self._close_unless_called, call if over else None)
 
 
+class ToldServer(uvicorn.Server):
+    """A server that tells the system when it answers."""
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, and tell."""
+        await super().startup(sockets)
+        if self.started:
+            tell_system(READY)
+
+
 def listening_socket(settings: ServiceSettings) -> socket.socket:
     """The socket on which a service listens, from now on.
 
