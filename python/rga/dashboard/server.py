@@ -74,16 +74,6 @@ def listening_socket(settings: ServiceSettings) -> socket.socket:
         raise InputError(f"nothing can listen there: {words}", where, remedy) from None
 
 
-class ToldServer(uvicorn.Server):
-    """A server that tells the system when it answers."""
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Listen, and tell."""
-        await super().startup(sockets)
-        if self.started:
-            tell_system(READY)
-
-
 def server_of(app: ASGIApp, settings: ServiceSettings) -> uvicorn.Server:
     """The server of an application.
 
