@@ -2,7 +2,6 @@
 
 import multiprocessing
 import time
-from collections import Counter
 from collections.abc import Sequence
 from ctypes import c_int
 from multiprocessing.connection import Connection
@@ -14,6 +13,8 @@ from rga.jobs.worker import MOST_FAILURES, Kind, Worker
 
 #: how long a worker rests where nothing is due [s]
 REST = 0.2
+#: within what time workers that end at the same twin are taken for its fault [s]
+REMEMBERED = 3600.0
 KINDS: tuple[Kind, ...] = ("watch", "heavy")
 NONE = -1
 
@@ -22,18 +23,18 @@ class Workers:
     """Plays the twins of a service, short steps and long ones in processes of their own.
 
     What a worker was at when it was killed is done again by the next. A twin at which workers
-    ended three times is left alone, so that it does not keep the others from being played.
+    ended three times within an hour is left alone, so that the others are played.
 
     Args:
         places: directories of the twins.
         repository: URL of a PostgreSQL database, or None.
-
     """
 
     def __init__(self, places: Sequence[Path], repository: str | None) -> None:
         self._places, self._repository = list(places), repository
         self._spawn = multiprocessing.get_context("spawn")
-        self._ended: Counter[Path] = Counter()
+        #: when workers ended at each twin [s, monotonic]
+        self._ended: dict[Path, list[float]] = {}
         self._at: dict[Kind, tuple[list[Path], c_int]] = {}
         self._told: dict[Kind, dict[Path, str]] = {}
         self._left_alone: dict[Path, str] = {}
@@ -102,10 +103,12 @@ class Workers:
             # It ended at nothing: another may fare better a little later.
             self._ending.wait(1.0)
             return
-        self._ended[places[at]] += 1
-        if self._ended[places[at]] >= MOST_FAILURES:
+        place, now = places[at], time.monotonic()
+        ended = [one for one in self._ended.get(place, []) if now - one < REMEMBERED]
+        self._ended[place] = [*ended, now]
+        if len(self._ended[place]) >= MOST_FAILURES:
             words = f"its worker ended {MOST_FAILURES} times (exit code {code}): is there memory?"
-            self._left_alone[places[at]] = words
+            self._left_alone[place] = words
 
 
 def _play(

@@ -65,14 +65,22 @@ def taken_up(
         patience: how long to wait for another process that plays the run [s].
 
     Raises:
-        InputError: the repository cannot be used, or the seed is none.
+        InputError: the repository cannot be used, it holds rows that never arrived, or the seed is
+            none.
     """
     seed = as_seed(seed)
     digest = model.sha256 or written(model)[1]
     hardware = Recorded(record, model) if isinstance(record, Record) else record
     identity = Identity(digest, hardware.source, seed, settings.model_dump_json())
     with threadpool_limits(1), Repository.open(place, patience=patience) as kept:
-        yield Running(model, hardware, kept.run(identity), settings, seed, progress, learn)
+        running = Running(model, hardware, kept.run(identity), settings, seed, progress, learn)
+        if running.row > hardware.rows:
+            raise InputError(
+                f"{running.row} rows were taken in, and {hardware.rows} have ever arrived",
+                hardware.source,
+                "bring the inbox and the repository back from one copy",
+            )
+        yield running
 
 
 @contextmanager
