@@ -15,8 +15,8 @@ _SERVICE, _PARTS = "integration/operation", "unit/operation"
 #: by what fails, files of tests, and names of tests in them
 FAILURES: dict[str, tuple[tuple[str, str], ...]] = {
     "service killed": (
-        (f"{_SERVICE}/test_kills.py", "test_a_service_that_is_killed"),
-        (f"{_SERVICE}/test_kills.py", "test_a_service_behind_a_broker_that_is_killed"),
+        (f"{_SERVICE}/test_kills.py", "test_all_is_there_once"),
+        (f"{_SERVICE}/test_kills.py", "test_all_is_there_once"),
         (f"{_DOOR}/test_running_service.py", "test_decisions_at_once_and_a_kill_in_between"),
     ),
     "worker killed, out of memory": (
@@ -24,7 +24,7 @@ FAILURES: dict[str, tuple[tuple[str, str], ...]] = {
         (f"{_SERVICE}/test_workers.py", "test_a_twin_at_which_workers_end_is_left_alone"),
     ),
     "broker restarts, loses session or queue": (
-        (f"{_SERVICE}/test_kills.py", "test_a_broker_that_is_killed"),
+        (f"{_SERVICE}/test_kills.py", "test_all_is_there_once"),
         (f"{_SERVICE}/test_broker.py", "test_a_broker_that_was_killed_is_found_again"),
         (f"{_SERVICE}/test_alarms.py", "test_packets_that_never_came_are_told_of"),
     ),
