@@ -12,7 +12,7 @@ import pytest
 
 from live_streams import sinking
 from rga.dashboard.app import app_of
-from rga.dashboard.server import server_of
+from rga.dashboard.server import listening_socket, server_of
 from rga.model import read_model
 from rga.operation.configuration import read_configuration
 from rga.operation.feeding import senders
@@ -141,7 +141,8 @@ def door(measured_bridge: dict[str, Any], tmp_path: Path) -> Iterator[Any]:
     configuration = read_configuration(tmp_path / "serve.toml")
     service = Service(configuration)
     server = server_of(app_of(service), configuration.service)
-    thread = Thread(target=server.run, daemon=True)
+    listening = listening_socket(configuration.service)
+    thread = Thread(target=server.run, args=([listening],), daemon=True)
     thread.start()
     waited_for(lambda: server.started)
     with relay_to(int(configuration.service.listen.rpartition(":")[2])) as relay:
