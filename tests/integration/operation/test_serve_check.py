@@ -31,6 +31,7 @@ __all__ = ["mosquitto"]
 
 FOLDER = 'kind = "folder"\npath = "logger"\nfiles = "*.csv"'
 TOPIC = "rga/v1/east/data/logger"
+SHORT = '"calibration_rows":40'
 
 
 def checked(folder: Path, wait: str = "0.6") -> tuple[int, str]:
@@ -79,8 +80,12 @@ def write_logger(
 
 @pytest.fixture
 def model(measured_bridge: dict[str, Any], tmp_path: Path) -> Model:
-    """The model of a service that reads a folder, beside its other files."""
+    """The model of a service that reads a folder and calibrates for three days."""
     write_service(tmp_path, measured_bridge, source=FOLDER)
+    settings = tmp_path / "settings.json"
+    text = settings.read_text("utf-8")
+    assert SHORT in text
+    settings.write_text(text.replace(SHORT, '"calibration_rows":432'), "utf-8")
     return load_model(tmp_path / "model.json")
 
 
@@ -138,6 +143,17 @@ def test_rows_that_are_quieter_than_the_model_says_are_told(model: Model, tmp_pa
     code, said = checked(tmp_path)
     assert code == 0
     assert "rows scatter less than half as much as the model's noise" in said
+
+
+def test_a_calibration_of_less_than_three_days_is_told(model: Model, tmp_path: Path) -> None:
+    write_logger(tmp_path, model)
+    settings = tmp_path / "settings.json"
+    text = settings.read_text("utf-8")
+    settings.write_text(text.replace(":432", ":431"), "utf-8")
+    code, said = checked(tmp_path)
+    assert code == 0
+    assert "the calibration takes 2.99 days" in said
+    assert "give 432 calibration_rows or more: 3 days" in said
 
 
 def test_a_folder_that_is_away_is_told(model: Model, tmp_path: Path) -> None:

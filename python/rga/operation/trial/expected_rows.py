@@ -1,7 +1,8 @@
-"""What rows will be like: how much they scatter beside the model, and what a year of them takes."""
+"""What rows will be like: how many days tell what is usual, how they scatter, what a year takes."""
 
 import shutil
 from collections.abc import Iterator, Sequence
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from rga.model import Model
 from rga.operation.configuration import TwinSettings
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.cells import cells_of
+from rga.operation.sources.clock import DAY, in_words
 from rga.operation.trial.what_came import WhatCame
 
 #: rows that tell how much they scatter
@@ -19,9 +21,31 @@ ENOUGH = 20
 QUIETER = 0.5
 #: median of the absolute value of the difference of two rows, in standard deviations of one
 _MEDIAN = 0.6745 * 2**0.5
-YEAR = 365.25 * 86_400
+YEAR = 365.25 * DAY
+#: of a calibration that has seen what days differ by [s]: measured, see docs/howto/service.md
+LEAST_CALIBRATED = 3 * DAY
 #: bytes of a reading, what is simulated for it and its gap; and of a step beside its rows
 READING, STEP = 24, 4_000
+
+
+def calibration_findings(
+    where: str, model: Model, twin: TwinSettings, calibrated: int
+) -> Iterator[Finding]:
+    """Whether the calibration is over before it has seen the contexts of a few days.
+
+    Args:
+        where: of which twin it is.
+        model: of the twin.
+        twin: its settings.
+        calibrated: rows of its calibration.
+    """
+    takes = calibrated * twin.rows.every
+    if model.context and takes < LEAST_CALIBRATED:
+        what = f"the calibration takes {in_words(takes)}: what later days bring is new to the twin"
+        what += ", and alarms come more often than was asked"
+        rows = ceil(LEAST_CALIBRATED / twin.rows.every)
+        remedy = f"give {rows} calibration_rows or more: {in_words(LEAST_CALIBRATED)}"
+        yield Finding("warning", where, what, remedy)
 
 
 def noise_findings(

@@ -13,7 +13,11 @@ from rga.operation.configuration import Configuration, ServiceSettings
 from rga.operation.service_clock import ServiceClock, microseconds
 from rga.operation.sources.settings import AnySource, source_name
 from rga.operation.sources.source import attempt
-from rga.operation.trial.expected_rows import growth_findings, noise_findings
+from rga.operation.trial.expected_rows import (
+    calibration_findings,
+    growth_findings,
+    noise_findings,
+)
 from rga.operation.trial.listening import Heard, listened_to
 from rga.operation.trial.twin_files import TwinFiles, repository_findings
 from rga.operation.trial.what_came import (
@@ -87,8 +91,9 @@ def _of_twin(
     where = f"twin {twin.name!r}"
     yield from silent_findings(where, model, twin.source, came, list(files.readers.values()))
     yield from noise_findings(where, model, twin, came)
-    packet = files.run.pace(None).packet
-    yield from growth_findings(where, model, twin, packet, came, data)
+    pace = files.run.pace(None)
+    yield from calibration_findings(where, model, twin, pace.calibration_rows)
+    yield from growth_findings(where, model, twin, pace.packet, came, data)
 
 
 def _disk(service: ServiceSettings, least: float) -> Iterator[Finding]:
