@@ -22,7 +22,7 @@ QUIETER = 0.5
 #: median of the absolute value of the difference of two rows, in standard deviations of one
 _MEDIAN = 0.6745 * 2**0.5
 YEAR = 365.25 * DAY
-#: of a calibration that has seen what days differ by [s]: measured, see docs/howto/service.md
+#: of a calibration that has seen what days differ by [s]
 LEAST_CALIBRATED = 3 * DAY
 #: bytes of a reading, what is simulated for it and its gap; and of a step beside its rows
 READING, STEP = 24, 4_000
