@@ -159,6 +159,32 @@ def test_what_comes_after_its_row_is_late(twin: Twin) -> None:
     assert account == Account(received=3, used=2, late=1)
 
 
+@pytest.mark.parametrize("sealed_before", [False, True])
+def test_of_a_packet_across_what_is_sealed_the_rest_is_used(
+    twin: Twin, sealed_before: bool
+) -> None:
+    values = readings()
+    sent = payloads(values)
+    # Of seconds 280 to 308.
+    across = sent.pop(8)
+    # The last of these is of second 448: rows are final up to second 300.
+    for payload in sent[:12]:
+        twin.send("logger", payload)
+    if sealed_before:
+        assert twin.sealing.seal(silent=()) == 5
+    assert twin.send("logger", across) == "waiting"
+    for payload in sent[12:]:
+        twin.send("logger", payload)
+    assert twin.sealing.seal(silent=["logger"]) + 5 * sealed_before == 24
+    second = STEP * np.arange(COUNT)
+    in_time = (second < 280) | (second >= 300)
+    for k, row in enumerate(twin.rows()):
+        mean = values[(second // 60 == k) & in_time].mean(axis=0)
+        np.testing.assert_allclose(row[[1, 2, -1]], mean, rtol=1e-12)
+    account = sum(twin.packets.account().values(), Account())
+    assert account == Account(received=40, used=40, partly_late=1)
+
+
 def test_rows_wait_for_every_source_until_it_is_silent(tmp_path: Path, model: Model) -> None:
     mapping = RecordMapping()
     twin = Twin(tmp_path, model, {"east": mapping, "west": mapping})

@@ -115,6 +115,7 @@ class AccountAnswer:
     used: int
     duplicate: int
     late: int
+    partly_late: int
     refused: int
     waiting: int
     difference: int

@@ -12,6 +12,7 @@ class Account:
         used: all their rows are sealed.
         duplicate: they had come before; nothing of them is kept.
         late: the rows that they are of were sealed before; they are kept, and not used live.
+        partly_late: of those used or waiting, the ones that begin before what was sealed.
         refused: they cannot be read, or their clock is wrong; they are kept aside.
         waiting: for the rows that they are of.
 
@@ -23,6 +24,7 @@ class Account:
     used: int = 0
     duplicate: int = 0
     late: int = 0
+    partly_late: int = 0
     refused: int = 0
     waiting: int = 0
 

@@ -44,6 +44,7 @@ class KeptPacket:
         payload: as it was sent.
         place: that it came from, such as a topic.
         arrived: microseconds since 1970 (UTC).
+        late_before: its samples before this moment came too late; None: all came in time.
     """
 
     source: str
@@ -51,6 +52,7 @@ class KeptPacket:
     payload: bytes
     place: str
     arrived: int
+    late_before: int | None = None
 
 
 class Packets:
@@ -96,17 +98,23 @@ class Packets:
             aside: list[dict[str, Any]] = []
             number, refused = _last(connection, tables.packet), _last(connection, tables.refused)
             fates: list[Fate] = []
+            counts: dict[int, Counter[str]] = {}
             for one in arrivals:
                 final = self._grid.final_until(latest)
                 until = sealed if final is None else max(sealed, final)
                 fate, reason = known.fate_of(one, until)
                 fates.append(fate)
+                late_before = until if fate == "waiting" and one.first < until else None
+                count = counts.setdefault(one.arrived - one.arrived % HOUR, Counter())
+                count.update(received=1, partly_late=int(late_before is not None))
                 if fate == "waiting":
                     latest[source] = max(one.last, latest[source] or NEVER)
+                else:
+                    count.update([fate])
                 if fate == "refused":
                     aside.append(_refused(refused := refused + 1, source, one, reason))
                 elif fate != "duplicate":
-                    entries.append(_entry(number := number + 1, source, one, fate))
+                    entries.append(_entry(number := number + 1, source, one, fate, late_before))
             if entries:
                 connection.execute(insert(tables.packet), entries)
             if aside:
@@ -115,10 +123,6 @@ class Packets:
             _move_on(connection, source, entries)
             for part, state in (cursor or {}).items():
                 _keep_cursor(connection, source, part, json.dumps(state))
-            counts: dict[int, Counter[str]] = {}
-            for one, fate in zip(arrivals, fates, strict=True):
-                count = counts.setdefault(one.arrived - one.arrived % HOUR, Counter())
-                count.update(["received"] if fate == "waiting" else ["received", fate])
             for hour, count in counts.items():
                 _count(connection, source, hour, count)
         return fates
@@ -175,8 +179,13 @@ class Packets:
                     break
             chosen = select(tables.packet).where(waits & (c.first < end)).order_by(c.id)
             found = [whole(tables.packet, one) for one in connection.execute(chosen)]
-        kept = [(one.source, one.kind, bytes(one.payload), one.place, one.arrived) for one in found]
-        return [KeptPacket(*one) for one in kept], end
+        kept = [
+            KeptPacket(
+                one.source, one.kind, bytes(one.payload), one.place, one.arrived, one.late_before
+            )
+            for one in found
+        ]
+        return kept, end
 
     def seal(self, until: int, station: Station | None, cells: Sequence[Cell]) -> None:
         """Rows before a moment are final: give them to the twin, with what lies beside them.
@@ -242,7 +251,9 @@ def _refused(id: int, source: str, arrival: Arrival, reason: str | None) -> dict
     )
 
 
-def _entry(id: int, source: str, arrival: Arrival, fate: Fate) -> dict[str, Any]:
+def _entry(
+    id: int, source: str, arrival: Arrival, fate: Fate, late_before: int | None
+) -> dict[str, Any]:
     number = arrival.number
     return with_checksum(
         id=id,
@@ -254,6 +265,7 @@ def _entry(id: int, source: str, arrival: Arrival, fate: Fate) -> dict[str, Any]
         place=arrival.place,
         first=arrival.first,
         last=arrival.last,
+        late_before=late_before,
         arrived=arrival.arrived,
         fate=fate,
         payload=arrival.payload,
@@ -316,7 +328,7 @@ def _count(connection: Connection, source: str, hour: int, more: Counter[str]) -
     c = tables.account.c
     where = (c.source == source) & (c.hour == hour)
     found = connection.execute(select(tables.account).where(where)).one_or_none()
-    names = ("received", "used", "duplicate", "late", "refused")
+    names = ("received", "used", "duplicate", "late", "partly_late", "refused")
     if found is None:
         known: dict[str, Any] = {"source": source, "hour": hour} | dict.fromkeys(names, 0)
         connection.execute(insert(tables.account).values(**with_checksum(**known)))

@@ -22,7 +22,7 @@ def _number(name: str, key: bool = False) -> "Column[int]":
 
 
 # What waits for the rows that it is of, was used, or came too late for them. Moments are
-# microseconds since 1970 (UTC).
+# microseconds since 1970 (UTC); those of its samples before `late_before` came too late.
 packet = Table(
     "packet",
     metadata,
@@ -35,6 +35,7 @@ packet = Table(
     Column("place", Text, nullable=False),
     _number("first"),
     _number("last"),
+    Column("late_before", BigInteger),
     _number("arrived"),
     Column("fate", Text, nullable=False),
     Column("payload", LargeBinary, nullable=False),
@@ -74,6 +75,7 @@ account = Table(
     _number("used"),
     _number("duplicate"),
     _number("late"),
+    _number("partly_late"),
     _number("refused"),
     _number(COLUMN),
 )

@@ -2,7 +2,8 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from datetime import timedelta
-from itertools import chain
+from itertools import chain, groupby
+from operator import attrgetter
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from rga.twin.hardware.interface import Station
 
 #: bytes of payload that are read at a time
 MOST_BYTES = 64 * 2**20
+#: after any moment
+EVER = 2**62
 
 
 class Sealing:
@@ -63,7 +66,7 @@ class Sealing:
             if end < until:
                 end = cell_of(end, self._grid.every)
                 if end <= begin:
-                    kept, end = self._packets.between(begin, begin + self._grid.every, 2**62)
+                    kept, end = self._packets.between(begin, begin + self._grid.every, EVER)
             rows += self._seal_with(kept, begin, end)
         return rows
 
@@ -84,10 +87,11 @@ class Sealing:
         samples = []
         for source, reader in sorted(self._readers.items()):
             own = [one for one in kept if one.source == source]
-            told = [(one.kind, one.payload, one.place, one.arrived) for one in own]
-            packets = [reader.packets_of(*one) for one in told if one[0] in PACKETS]
-            samples += reader.of_packets(chain.from_iterable(packets))
-            samples += [reader.of_rows(*one)[0] for one in told if one[0] not in PACKETS]
+            for late_before, some in groupby(own, key=attrgetter("late_before")):
+                read = _read(reader, list(some))
+                if late_before is not None:
+                    read = [_within(one, late_before, EVER) for one in read]
+                samples += read
         return samples
 
     def _station(self, samples: Sequence[SensorSamples]) -> Station:
@@ -102,6 +106,14 @@ class Sealing:
         start = (EPOCH + timedelta(microseconds=first)).isoformat()
         none = {name: np.zeros(0) for name in (*measured, "time")}
         return Station(channels, measured, start, "iso", none)
+
+
+def _read(reader: Reader, kept: Sequence[KeptPacket]) -> list[SensorSamples]:
+    """SensorSamples of packets of one source."""
+    told = [(one.kind, one.payload, one.place, one.arrived) for one in kept]
+    packets = [reader.packets_of(*one) for one in told if one[0] in PACKETS]
+    samples = list(reader.of_packets(chain.from_iterable(packets)))
+    return samples + [reader.of_rows(*one)[0] for one in told if one[0] not in PACKETS]
 
 
 def _within(samples: SensorSamples, begin: int, end: int) -> SensorSamples:
