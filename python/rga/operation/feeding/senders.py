@@ -5,8 +5,8 @@ import ssl
 import time
 from collections import OrderedDict
 from pathlib import Path
-from threading import Lock
-from typing import Protocol
+from threading import Event, Lock
+from typing import Any, Protocol
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit
 from urllib.request import Request, urlopen
@@ -79,6 +79,10 @@ class HttpSender:
 class BrokerSender:
     """Sends through a broker, and again what the service does not acknowledge.
 
+    A broker that was killed has forgotten messages that it had taken. So after each break all that
+    is not acknowledged is sent again, in order, and before that only the first of it until the
+    service answers: what a broker gets while nobody listens would come too late.
+
     Args:
         url: of the broker and the topic, mqtt://host:port/rga/v1/twin/data/logger.
         source: of the twin, of which the service says what it has.
@@ -91,35 +95,26 @@ class BrokerSender:
     def __init__(
         self, url: str, source: str = "mqtt", credentials: tuple[str, str] | None = None
     ) -> None:
-        parts = urlsplit(url)
-        self._topic = parts.path.strip("/")
+        self._parts, self._credentials = urlsplit(url), credentials
+        self._topic = self._parts.path.strip("/")
         root, twin = self._topic.split("/")[:2], self._topic.split("/")[2:3]
         if root != ["rga", "v1"] or not twin:
             raise InputError(
                 "the topic names no twin", url, "write mqtt://host:1883/rga/v1/TWIN/data/LOGGER"
             )
+        self._acknowledged = f"rga/v1/{twin[0]}/ack/{source}"
         self._open: OrderedDict[Number, tuple[bytes, float]] = OrderedDict()
-        self._lock = Lock()
-        self._client = Client(CallbackAPIVersion.VERSION2, protocol=MQTTv5)
-        if credentials is not None:
-            self._client.username_pw_set(*credentials)
-        if parts.scheme == "mqtts":
-            self._client.tls_set_context(ssl.create_default_context())
-        acknowledged = f"rga/v1/{twin[0]}/ack/{source}"
-        self._client.on_connect = lambda client, *_: client.subscribe(acknowledged, 1)
-        self._client.on_message = self._told
-        port = parts.port or (8883 if parts.scheme == "mqtts" else 1883)
-        self._client.connect_async(parts.hostname or "", port)
-        self._client.loop_start()
+        self._lock, self._answered = Lock(), Event()
+        self._refused: str | None = None
+        self._client = self._new_client()
 
     def send(self, payload: bytes, number: Number | None) -> None:
         """Send a payload, and what was sent before and is not acknowledged.
 
-        It waits for the broker: what is sent as the connection begins may overtake what has waited
-        for it.
+        Raises:
+            InputError: the broker refuses the connection.
         """
-        while not self._client.is_connected():
-            time.sleep(AGAIN / 10)
+        self._stay_connected()
         if number is not None:
             with self._lock:
                 self._open[number] = payload, time.monotonic()
@@ -130,14 +125,75 @@ class BrokerSender:
             self._send_again()
 
     def finish(self) -> None:
-        """Wait until everything is acknowledged."""
+        """Wait until everything is acknowledged.
+
+        Raises:
+            InputError: the broker refuses the connection.
+        """
         while self._open:
             time.sleep(AGAIN / 10)
             self._send_again()
         self._client.disconnect()
         self._client.loop_stop()
 
+    def _new_client(self) -> Client:
+        client = Client(CallbackAPIVersion.VERSION2, protocol=MQTTv5, reconnect_on_failure=False)
+        if self._credentials is not None:
+            client.username_pw_set(*self._credentials)
+        if self._parts.scheme == "mqtts":
+            client.tls_set_context(ssl.create_default_context())
+        client.on_connect, client.on_message = self._connected, self._told
+        return client
+
+    def _stay_connected(self) -> None:
+        """Connect anew, as often as it takes, if the connection has broken."""
+        while not self._client.is_connected():
+            # What the client itself has not sent yet would come before what the broker has lost.
+            self._client.loop_stop()
+            self._client = self._new_client()
+            self._answered.clear()
+            if self._connects():
+                self._send_from_the_first()
+            else:
+                time.sleep(AGAIN / 10)
+
+    def _connects(self) -> bool:
+        """Whether the broker takes a connection."""
+        port = self._parts.port or (8883 if self._parts.scheme == "mqtts" else 1883)
+        try:
+            self._client.connect(self._parts.hostname or "", port)
+        except OSError:
+            return False
+        self._client.loop_start()
+        until = time.monotonic() + ANSWER
+        while not self._client.is_connected() and time.monotonic() < until:
+            if self._refused is not None:
+                raise InputError(
+                    f"the broker refuses the connection: {self._refused}",
+                    self._parts._replace(path="").geturl(),
+                    "check user and password",
+                )
+            time.sleep(AGAIN / 100)
+        return self._client.is_connected()
+
+    def _send_from_the_first(self) -> None:
+        """Send what is not acknowledged, in order, as soon as the service answers to the first."""
+        while self._open and self._client.is_connected() and not self._answered.is_set():
+            with self._lock:
+                first = next(iter(self._open.values()), None)
+            if first is not None:
+                self._client.publish(self._topic, first[0], qos=1)
+            self._answered.wait(AGAIN)
+        now = time.monotonic()
+        with self._lock:
+            for number, (payload, _) in self._open.items():
+                self._open[number] = payload, now
+            payloads = [payload for payload, _ in self._open.values()]
+        for payload in payloads:
+            self._client.publish(self._topic, payload, qos=1)
+
     def _send_again(self) -> None:
+        self._stay_connected()
         now = time.monotonic()
         with self._lock:
             late = [
@@ -150,6 +206,10 @@ class BrokerSender:
         for _, payload in late:
             self._client.publish(self._topic, payload, qos=1)
 
+    def _connected(self, client: Client, _: object, __: object, reason: Any, *___: object) -> None:
+        self._refused = str(reason) if reason.is_failure else None
+        client.subscribe(self._acknowledged, 1)
+
     def _told(self, _client: Client, _data: object, message: MQTTMessage) -> None:
         told = json.loads(message.payload)
         missing = [range(first, last + 1) for first, last in told["missing"]]
@@ -158,6 +218,7 @@ class BrokerSender:
                 here = number.stream == told["stream"] and number.sequence < told["next"]
                 if here and not any(number.sequence in one for one in missing):
                     del self._open[number]
+        self._answered.set()
 
 
 class FolderSender:
