@@ -1,0 +1,77 @@
+"""A logger that sends through a broker: what the broker loses comes again, in order."""
+
+import json
+import time
+from concurrent.futures import ThreadPoolExecutor
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+import pytest
+from paho.mqtt.client import Client, MQTTv5
+from paho.mqtt.enums import CallbackAPIVersion
+
+from rga.errors import InputError
+from rga.operation.feeding.senders import BrokerSender
+from rga.operation.packets.packet import Number
+from rga_bench.operation.broker import Mosquitto
+from served.brokers import mosquitto
+
+__all__ = ["mosquitto"]
+
+TOPIC, ACK = "rga/v1/east/data/logger", "rga/v1/east/ack/mqtt"
+
+
+class Listener:
+    """Stands for a service: it says what it has."""
+
+    def __init__(self, port: int) -> None:
+        self.came: list[int] = []
+        self._client = Client(CallbackAPIVersion.VERSION2, protocol=MQTTv5)
+        self._client.on_message = self._take
+        self._client.connect("127.0.0.1", port)
+        self._client.subscribe(TOPIC, 1)
+        self._client.loop_start()
+
+    def stop(self) -> None:
+        self._client.disconnect()
+        self._client.loop_stop()
+
+    def _take(self, client: Client, _: Any, message: Any) -> None:
+        self.came.append(int(message.payload))
+        next_ = max(self.came) + 1
+        missing = [(k, k) for k in range(next_) if k not in self.came]
+        said = {"stream": "s", "next": next_, "missing": missing}
+        client.publish(ACK, json.dumps(said), qos=1)
+
+
+def test_what_a_broker_had_taken_and_lost_comes_before_anything_later(
+    mosquitto: Mosquitto,
+) -> None:
+    sender = BrokerSender(f"{mosquitto.url}/{TOPIC}")
+    # Nobody listens: the broker takes these, and keeps none.
+    for k in range(10):
+        sender.send(str(k).encode(), Number("s", k))
+    mosquitto.kill()
+    mosquitto.start()
+    with ThreadPoolExecutor() as pool:
+        # It is connected before anybody listens.
+        sending = pool.submit(sender.send, b"10", Number("s", 10))
+        time.sleep(1.5)
+        listener = Listener(mosquitto.port)
+        sending.result()
+    sender.finish()
+    listener.stop()
+    assert set(listener.came) == set(range(11))
+    highest = accumulate(listener.came, max, initial=-1)
+    assert all(number <= before + 1 for before, number in zip(highest, listener.came, strict=False))
+
+
+def test_a_broker_that_refuses_is_told(mosquitto: Mosquitto, tmp_path: Path) -> None:
+    mosquitto.kill()
+    configuration = tmp_path / "broker" / "mosquitto.conf"
+    text = configuration.read_text("utf-8")
+    configuration.write_text(text.replace("allow_anonymous true", "allow_anonymous false"), "utf-8")
+    mosquitto.start()
+    with pytest.raises(InputError, match="refuses the connection"):
+        BrokerSender(f"{mosquitto.url}/{TOPIC}").send(b"0", None)
