@@ -45,8 +45,9 @@ class Listener:
         client.publish(ACK, json.dumps(said), qos=1)
 
 
+@pytest.mark.parametrize("later", [0.0, 1.5], ids=["before the logger", "after it"])
 def test_what_a_broker_had_taken_and_lost_comes_before_anything_later(
-    mosquitto: Mosquitto,
+    mosquitto: Mosquitto, later: float
 ) -> None:
     sender = BrokerSender(f"{mosquitto.url}/{TOPIC}")
     # Nobody listens: the broker takes these, and keeps none.
@@ -55,9 +56,8 @@ def test_what_a_broker_had_taken_and_lost_comes_before_anything_later(
     mosquitto.kill()
     mosquitto.start()
     with ThreadPoolExecutor() as pool:
-        # It is connected before anybody listens.
         sending = pool.submit(sender.send, b"10", Number("s", 10))
-        time.sleep(1.5)
+        time.sleep(later)
         listener = Listener(mosquitto.port)
         sending.result()
     sender.finish()
