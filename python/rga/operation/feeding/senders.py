@@ -5,7 +5,7 @@ import ssl
 import time
 from collections import OrderedDict
 from pathlib import Path
-from threading import Event, Lock
+from threading import Lock
 from typing import Any, Protocol
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit
@@ -19,10 +19,11 @@ from rga.operation.packets.packet import Number
 
 #: how long a logger waits for an answer, and before it tries again [s]
 ANSWER, AGAIN = 30.0, 1.0
-#: how long it waits for a packet to be acknowledged end to end before it sends it again [s]
+#: how long it waits for any packet to be acknowledged end to end before it sends them again [s]
 UNACKNOWLEDGED = 5.0
-#: packets that are on their way at most
-MOST_OPEN = 2_000
+#: packets that are on their way at most: mosquitto as it comes drops what waits beyond a thousand,
+#: and each of these may wait there twice
+MOST_OPEN = 500
 
 
 class Sender(Protocol):
@@ -79,9 +80,9 @@ class HttpSender:
 class BrokerSender:
     """Sends through a broker, and again what the service does not acknowledge.
 
-    A broker that was killed has forgotten messages that it had taken. So after each break all that
-    is not acknowledged is sent again, in order, and before that only the first of it until the
-    service answers: what a broker gets while nobody listens would come too late.
+    A broker that was killed has forgotten messages that it had taken, and what is sent again behind
+    later packets comes too late for its row. So after each break, and where nothing is acknowledged
+    any more, the first packet is sent until the service has it, then all that come after it.
 
     Args:
         url: of the broker and the topic, mqtt://host:port/rga/v1/twin/data/logger.
@@ -103,8 +104,8 @@ class BrokerSender:
                 "the topic names no twin", url, "write mqtt://host:1883/rga/v1/TWIN/data/LOGGER"
             )
         self._acknowledged = f"rga/v1/{twin[0]}/ack/{source}"
-        self._open: OrderedDict[Number, tuple[bytes, float]] = OrderedDict()
-        self._lock, self._answered = Lock(), Event()
+        self._open: OrderedDict[Number, bytes] = OrderedDict()
+        self._lock, self._heard = Lock(), time.monotonic()
         self._refused: str | None = None
         self._client = self._new_client()
 
@@ -114,15 +115,15 @@ class BrokerSender:
         Raises:
             InputError: the broker refuses the connection.
         """
-        self._stay_connected()
+        self._stay_in_touch()
         if number is not None:
             with self._lock:
-                self._open[number] = payload, time.monotonic()
+                self._heard = self._heard if self._open else time.monotonic()
+                self._open[number] = payload
         self._client.publish(self._topic, payload, qos=1)
-        self._send_again()
         while len(self._open) >= MOST_OPEN:
             time.sleep(AGAIN / 10)
-            self._send_again()
+            self._stay_in_touch()
 
     def finish(self) -> None:
         """Wait until everything is acknowledged.
@@ -132,7 +133,7 @@ class BrokerSender:
         """
         while self._open:
             time.sleep(AGAIN / 10)
-            self._send_again()
+            self._stay_in_touch()
         self._client.disconnect()
         self._client.loop_stop()
 
@@ -145,17 +146,18 @@ class BrokerSender:
         client.on_connect, client.on_message = self._connected, self._told
         return client
 
-    def _stay_connected(self) -> None:
-        """Connect anew, as often as it takes, if the connection has broken."""
+    def _stay_in_touch(self) -> None:
+        """Connect anew, as often as it takes, if the connection has broken; send again."""
         while not self._client.is_connected():
             # What the client itself has not sent yet would come before what the broker has lost.
             self._client.loop_stop()
             self._client = self._new_client()
-            self._answered.clear()
             if self._connects():
                 self._send_from_the_first()
             else:
                 time.sleep(AGAIN / 10)
+        if self._open and time.monotonic() - self._heard > UNACKNOWLEDGED:
+            self._send_from_the_first()
 
     def _connects(self) -> bool:
         """Whether the broker takes a connection."""
@@ -177,33 +179,17 @@ class BrokerSender:
         return self._client.is_connected()
 
     def _send_from_the_first(self) -> None:
-        """Send what is not acknowledged, in order, as soon as the service answers to the first."""
-        while self._open and self._client.is_connected() and not self._answered.is_set():
-            with self._lock:
-                first = next(iter(self._open.values()), None)
-            if first is not None:
-                self._client.publish(self._topic, first[0], qos=1)
-            self._answered.wait(AGAIN)
-        now = time.monotonic()
+        """Send what is not acknowledged, in order: the first until it is, then all others."""
         with self._lock:
-            for number, (payload, _) in self._open.items():
-                self._open[number] = payload, now
-            payloads = [payload for payload, _ in self._open.values()]
+            first = next(iter(self._open.items()), None)
+        while first is not None and first[0] in self._open and self._client.is_connected():
+            self._client.publish(self._topic, first[1], qos=1)
+            until = time.monotonic() + AGAIN
+            while first[0] in self._open and time.monotonic() < until:
+                time.sleep(AGAIN / 100)
+        with self._lock:
+            payloads, self._heard = list(self._open.values()), time.monotonic()
         for payload in payloads:
-            self._client.publish(self._topic, payload, qos=1)
-
-    def _send_again(self) -> None:
-        self._stay_connected()
-        now = time.monotonic()
-        with self._lock:
-            late = [
-                (number, payload)
-                for number, (payload, sent) in self._open.items()
-                if now - sent > UNACKNOWLEDGED
-            ]
-            for number, payload in late:
-                self._open[number] = payload, now
-        for _, payload in late:
             self._client.publish(self._topic, payload, qos=1)
 
     def _connected(self, client: Client, _: object, __: object, reason: Any, *___: object) -> None:
@@ -218,7 +204,7 @@ class BrokerSender:
                 here = number.stream == told["stream"] and number.sequence < told["next"]
                 if here and not any(number.sequence in one for one in missing):
                     del self._open[number]
-        self._answered.set()
+                    self._heard = time.monotonic()
 
 
 class FolderSender:
