@@ -35,6 +35,7 @@ class Worker:
         directories: of the twins (`rga.live`).
         kinds: of steps that are taken here.
         repository: URL of a PostgreSQL database, if they are kept there.
+        has_room: whether the disk has room for a long step; while it has none, they wait.
 
     Attributes:
         failed: why a twin cannot be played, by directory; after three times it is left alone,
@@ -48,9 +49,11 @@ class Worker:
         directories: Sequence[str | Path],
         kinds: Collection[Kind] = ("watch", "heavy"),
         repository: str | None = None,
+        has_room: Callable[[], bool] = lambda: True,
     ) -> None:
         self._directories = [as_path(one, "directories") for one in directories]
         self._kinds, self._repository = frozenset(kinds), repository
+        self._has_room = has_room
         self._failures: Counter[Path] = Counter()
         self._idle: dict[Path, tuple[float, list[int]]] = {}
         self.failed: dict[Path, str] = {}
@@ -99,7 +102,9 @@ class Worker:
         return happened
 
     def _takes(self, running: Running) -> bool:
-        return ("watch" if running.is_short else "heavy") in self._kinds
+        if running.is_short:
+            return "watch" in self._kinds
+        return "heavy" in self._kinds and self._has_room()
 
 
 def _written(directory: Path) -> list[int]:

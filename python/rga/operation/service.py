@@ -11,6 +11,7 @@ from rga.operation.alarms.service_watch import ServiceWatch
 from rga.operation.alarms.supervision import ALARMS, SERVICE, Supervision
 from rga.operation.alarms.twin_watch import Troubles, TwinWatch
 from rga.operation.configuration import Configuration
+from rga.operation.disk.room import DiskRoom
 from rga.operation.inbox.packets import NEVER
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.notices.outbox import Outbox
@@ -53,6 +54,7 @@ class Service:
         outbox: notices of alarms.
         faults: what keeps a source or the rows of a twin from going on, in words, by twin and
             source.
+        room: on the disk of the twins.
         workers: play the twins.
     """
 
@@ -64,7 +66,8 @@ class Service:
             for one in configuration.twin
         }
         places = [one.directory for one in self.twins.values()]
-        self.workers = Workers(places, service.repository)
+        self.room = DiskRoom(service.data, configuration.alarms.disk)
+        self.workers = Workers(places, service.repository, self.room.is_enough)
         self.faults: dict[tuple[str, str], str] = {}
         self._sources: dict[tuple[str, str], DataSource] = {
             (twin.name, name): source
@@ -124,7 +127,7 @@ class Service:
             )
             for one in self.configuration.twin
         ]
-        watch = ServiceWatch(service.data, settings.disk, self.outbox.failing, clock)
+        watch = ServiceWatch(self.room, self.outbox.failing, clock)
         return Supervision(self.alarms, twins, watch, self._troubles, self.faults, clock)
 
     def _troubles(self) -> dict[str, Troubles]:
@@ -171,7 +174,7 @@ class Service:
         """Put away what is old."""
         now = microseconds(self._clock.now())
         for twin in self.twins.values():
-            twin.archive.tidy(now)
+            twin.archive.tidy(now, self.room.is_enough)
 
     def _seal(self) -> None:
         """Make rows, and tell what is wrong, until the end."""

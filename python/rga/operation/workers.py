@@ -2,7 +2,7 @@
 
 import multiprocessing
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from ctypes import c_int
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -28,10 +28,13 @@ class Workers:
     Args:
         places: directories of the twins.
         repository: URL of a PostgreSQL database, or None.
+        has_room: whether the disk has room for long steps, asked by processes to which it is sent.
     """
 
-    def __init__(self, places: Sequence[Path], repository: str | None) -> None:
-        self._places, self._repository = list(places), repository
+    def __init__(
+        self, places: Sequence[Path], repository: str | None, has_room: Callable[[], bool]
+    ) -> None:
+        self._places, self._repository, self._has_room = list(places), repository, has_room
         self._spawn = multiprocessing.get_context("spawn")
         #: when workers ended at each twin [s, monotonic]
         self._ended: dict[Path, list[float]] = {}
@@ -78,7 +81,7 @@ class Workers:
             at = self._spawn.RawValue("i", NONE)
             self._at[kind] = places, at
             here, there = self._spawn.Pipe(duplex=False)
-            work = (places, kind, self._repository, at, there)
+            work = (places, kind, self._repository, self._has_room, at, there)
             process = self._spawn.Process(target=_play, args=work, name=kind, daemon=True)
             process.start()
             there.close()
@@ -115,11 +118,12 @@ def _play(
     places: Sequence[Path],
     kind: Kind,
     repository: str | None,
+    has_room: Callable[[], bool],
     at: c_int,
     told: "Connection[object, object]",
 ) -> None:
     """What a worker does until it is ended, or the service is gone."""
-    worker, before = Worker(places, [kind], repository), dict[Path, str]()
+    worker, before = Worker(places, [kind], repository, has_room), dict[Path, str]()
     service = multiprocessing.parent_process()
 
     def looks(directory: Path | None) -> None:

@@ -18,6 +18,7 @@ import rga
 from live_streams import SETTINGS, history, kinds, sinking
 from rga.jobs.run import FILE
 from rga.model import read_model
+from rga.operation.disk.room import DiskRoom
 from rga.operation.workers import Workers
 from rga.records import Record
 from served.made_service import waited_for
@@ -57,7 +58,7 @@ def check(folder: Path, content: dict[str, Any], measured: Any, bridges: int) ->
             twin.feed(sunk if place == places[0] else calm.rows(slice(ROWS)))
             # What is left of the first is its diagnosis.
             twin.play(lambda running: running.stage != "diagnose")
-    workers = Workers(places, None)
+    workers = Workers(places, None, DiskRoom(folder, 0.0).is_enough)
     workers.start()
     (heavy,) = waited_for(
         lambda: [one for one in multiprocessing.active_children() if one.name == "heavy"]

@@ -14,8 +14,8 @@ import rga
 from live_streams import SETTINGS, SINKS_AT, sinking
 from rga.errors import InputError
 from rga.model import read_model
-from rga.operation.alarms import service_watch
 from rga.operation.configuration import read_configuration
+from rga.operation.disk import room as disk_room
 from rga.operation.inbox.account import Account
 from rga.operation.packets.native import write_packet
 from rga.operation.packets.packet import Number, SensorPacket
@@ -367,7 +367,7 @@ def test_a_disk_that_is_nearly_full_is_told_of(
     usage = namedtuple("usage", "total used free")
     room = [20]
     monkeypatch.setattr(
-        service_watch.shutil, "disk_usage", lambda _: usage(100, 100 - room[0], room[0])
+        disk_room.shutil, "disk_usage", lambda _: usage(100, 100 - room[0], room[0])
     )
     calm.send(10)
     assert calm.changes == []

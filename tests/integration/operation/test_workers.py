@@ -38,12 +38,20 @@ def begun(
 
 
 @pytest.fixture
-def playing() -> Iterator[Callable[[list[Path]], Workers]]:
+def room(tmp_path: Path) -> Path:
+    """A file that is there as long as workers are to find room on the disk."""
+    found = tmp_path / "room"
+    found.touch()
+    return found
+
+
+@pytest.fixture
+def playing(room: Path) -> Iterator[Callable[[list[Path]], Workers]]:
     """Workers that play, until the test ends."""
     begun: list[Workers] = []
 
     def play(places: list[Path]) -> Workers:
-        begun.append(Workers(places, None))
+        begun.append(Workers(places, None, room.exists))
         begun[-1].start()
         return begun[-1]
 
@@ -55,6 +63,11 @@ def playing() -> Iterator[Callable[[list[Path]], Workers]]:
 def is_played(place: Path) -> bool:
     with rga.LiveTwin(place) as twin:
         return twin.waiting == (0, 0) and twin.twin.status().stage == "watch"
+
+
+def stage_of(place: Path) -> str:
+    with rga.LiveTwin(place) as twin:
+        return twin.twin.status().stage
 
 
 def kill(kind: str) -> None:
@@ -79,6 +92,27 @@ def test_workers_that_are_killed_are_followed_by_others(
     assert workers.failed == {}
     with rga.LiveTwin(place) as twin:
         assert_same(history(twin), expected)
+
+
+def test_long_steps_wait_for_room_and_go_on_by_themselves(
+    begun: Callable[[str], Path], playing: Callable[[list[Path]], Workers], room: Path
+) -> None:
+    place, alone = begun("place"), begun("alone")
+    with rga.LiveTwin(place) as twin:
+        twin.play(lambda running: running.stage == "initialise")
+    room.unlink()
+    workers = playing([place])
+    # Short steps go on up to the first long one.
+    waited_for(lambda: stage_of(place) == "calibrate")
+    waited_for(lambda: workers.at.get("heavy") == place)
+    waited_for(lambda: "heavy" not in workers.at)
+    assert stage_of(place) == "calibrate"
+    assert workers.failed == {}
+    room.touch()
+    waited_for(lambda: is_played(place))
+    with rga.LiveTwin(place) as twin, rga.LiveTwin(alone) as other:
+        other.play()
+        assert_same(history(twin), history(other))
 
 
 @pytest.mark.thorough

@@ -1,32 +1,31 @@
 """What can be wrong with the service itself: its disk, its notices."""
 
-import shutil
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 from rga.operation.alarms.condition import Condition, ConditionKey, Observation
+from rga.operation.disk.room import DiskRoom
 from rga.operation.service_clock import ServiceClock
+
+#: what a disk with little room keeps from going on
+WAITS = "calibrations, diagnoses and the archive of packets wait"
 
 
 class ServiceWatch:
     """Looks at the service.
 
     Args:
-        data: folder of the twins.
-        disk: share of their disk below which there is too little room.
+        room: on the disk of the twins.
         undelivered: why notices do not arrive, by whom they are for.
         clock: of the service.
     """
 
     def __init__(
         self,
-        data: Path,
-        disk: float,
+        room: DiskRoom,
         undelivered: Callable[[], Mapping[str, str]],
         clock: ServiceClock,
     ) -> None:
-        self._data, self._disk = data, disk
-        self._undelivered, self._clock = undelivered, clock
+        self._room, self._undelivered, self._clock = room, undelivered, clock
 
     def look(self, restarted: bool) -> Observation:
         """What there is to see now.
@@ -35,17 +34,14 @@ class ServiceWatch:
             restarted: the service is up for too short to tell.
 
         Raises:
-            InputError: the file of the service cannot be read.
-            OSError: its disk cannot be looked at.
+            InputError: the file of the service cannot be read, or its disk not be looked at.
         """
         if restarted:
             return Observation((), frozenset())
         found = []
-        room = shutil.disk_usage(self._data)
-        if room.free < self._disk * room.total:
-            found.append(
-                self._wrong("disk", "data", f"less than {self._disk:.0%} of the disk is free")
-            )
+        if not self._room.is_enough():
+            words = f"less than {self._room.least:.0%} of the disk is free: {WAITS} for room"
+            found.append(self._wrong("disk", "data", words))
         found += [
             self._wrong("undelivered", name, f"notices of {name} do not arrive: {why}")
             for name, why in self._undelivered().items()

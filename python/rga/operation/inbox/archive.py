@@ -1,7 +1,7 @@
 """Packets of long ago: out of the inbox into files, a day at a time, and away when they are old."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -40,11 +40,13 @@ class PacketArchive:
     def __init__(self, inbox: Inbox, directory: Path, retention: float | None) -> None:
         self._inbox, self._folder, self._retention = inbox, directory / FOLDER, retention
 
-    def tidy(self, now: int) -> list[Path]:
+    def tidy(self, now: int, has_room: Callable[[], bool]) -> list[Path]:
         """Archive what is old, and remove what is older than is kept.
 
         Args:
             now: microseconds since 1970 (UTC).
+            has_room: whether the disk has room for files; while it has none, days stay in the
+                inbox.
 
         Returns:
             Files that were written.
@@ -52,16 +54,24 @@ class PacketArchive:
         Raises:
             InputError: nothing can be written or removed; it is done another time.
         """
+        # What is removed makes room for what is written.
+        self._remove_before(now)
         written = []
         for day in self._days(now - KEPT_DAYS * DAY):
             for table in (tables.packet, tables.refused):
+                if not has_room():
+                    return written
                 written += self._archived(table, day)
-        if self._retention is not None:
-            oldest = _date(now) - timedelta(days=self._retention)
-            for file in self._folder.glob("*.parquet"):
-                if date.fromisoformat("-".join(file.stem.split("-")[1:4])) < oldest:
-                    file.unlink()
         return written
+
+    def _remove_before(self, now: int) -> None:
+        """Remove files that are older than is kept."""
+        if self._retention is None:
+            return
+        oldest = _date(now) - timedelta(days=self._retention)
+        for file in self._folder.glob("*.parquet"):
+            if date.fromisoformat("-".join(file.stem.split("-")[1:4])) < oldest:
+                file.unlink()
 
     def _days(self, before: int) -> list[int]:
         """Begins of days that ended before a moment, and of whose packets none waits [µs]."""

@@ -1,7 +1,6 @@
 """What would go wrong if a service began, in the order of its file."""
 
 import os
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,6 +9,7 @@ from rga.checking.finding import Finding, refused
 from rga.errors import InputError
 from rga.jobs.run import FILE
 from rga.operation.configuration import Configuration, ServiceSettings
+from rga.operation.disk.room import DiskRoom
 from rga.operation.service_clock import ServiceClock, microseconds
 from rga.operation.sources.settings import AnySource, source_name
 from rga.operation.sources.source import attempt
@@ -103,9 +103,9 @@ def _disk(service: ServiceSettings, least: float) -> Iterator[Finding]:
     if not place.is_dir() or not os.access(place, os.W_OK | os.X_OK):
         what = f"{place} cannot be written by this user"
         yield Finding("error", where, what, "let the user of the service write there")
-    room = shutil.disk_usage(place)
-    if room.free < least * room.total:
-        what = f"{room.free / room.total:.0%} of the disk is free, and {least:.0%} has to be"
+    room = DiskRoom(place, least)
+    if not room.is_enough():
+        what = f"{room.free_share:.0%} of the disk is free, and {least:.0%} has to be"
         yield Finding("error", where, what, "make room, or lower [alarms] disk")
 
 
