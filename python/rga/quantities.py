@@ -144,6 +144,15 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}{'s' if count != 1 else ''}"
 
 
+def bytes_in_words(size: float) -> str:
+    """A number of bytes in the unit in which it is read best.
+
+    >>> bytes_in_words(2.5e9), bytes_in_words(12e6)
+    ('2.5 GB', '12 MB')
+    """
+    return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
+
+
 def duration(seconds: float) -> tuple[float, str]:
     """Seconds in the unit that suits a length of time, and the unit.
 

@@ -1,10 +1,12 @@
 """What the API and the pages see of a service."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 
 from rga.operation.alarms.alarm_book import AlarmBook
+from rga.operation.disk.forecast import DiskForecast
 from rga.operation.reading.twin_now import TwinNow
 from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.served_twin import ServedTwin
@@ -24,6 +26,7 @@ class SeenTwin:
         patience: after which a silent source is waited for no longer [s].
         faults: what keeps its sources or its rows from going on, in words, by what it concerns.
         alarms: of the service, of this twin among others.
+        forecast: how long the disk of the service has room.
     """
 
     name: str
@@ -32,6 +35,7 @@ class SeenTwin:
     patience: float
     faults: Mapping[str, str]
     alarms: AlarmBook
+    forecast: Callable[[], DiskForecast]
 
     def waiting(self) -> list[AnyCommand]:
         """What people have asked for, and nothing has carried out yet."""
@@ -84,6 +88,7 @@ class Surroundings:
             self._patience[name],
             faults,
             self.alarms,
+            partial(self._service.forecast, name),
         )
 
     @staticmethod

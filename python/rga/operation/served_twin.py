@@ -10,8 +10,10 @@ from rga.errors import InputError
 from rga.jobs.live import live
 from rga.model import load_model
 from rga.operation.configuration import TwinSettings
+from rga.operation.disk.forecast import YearlyGrowth, yearly_growth
 from rga.operation.inbox.archive import PacketArchive
 from rga.operation.inbox.arrival import Arrival
+from rga.operation.inbox.flow import bytes_a_second
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Packets
 from rga.operation.packets.formats import PayloadFormat
@@ -57,10 +59,11 @@ class ServedTwin:
     ) -> None:
         self.name, self.directory, self._clock = settings.name, directory, clock
         self.model = model = load_model(settings.model)
+        run = live_settings(settings.settings, settings.arl0)
         live(
             model,
             directory,
-            settings=live_settings(settings.settings, settings.arl0),
+            settings=run,
             name=settings.name,
             seed=settings.seed,
             repository=repository,
@@ -82,7 +85,7 @@ class ServedTwin:
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
         days = None if settings.retention.raw is None else settings.retention.raw / 86_400
         self.archive = PacketArchive(self.inbox, directory, days)
-        self._patience = settings.rows.patience
+        self._settings, self._packet = settings, run.pace(None).packet
         self._heard = dict.fromkeys(self._sources, clock.monotonic())
         # Sources that were silent when rows were last made of all that had come.
         self._sealed_for: set[str] | None = None
@@ -200,9 +203,19 @@ class ServedTwin:
         """How long a source has sent nothing that can be used [s]."""
         return self._clock.monotonic() - self._heard[source]
 
+    def yearly_growth(self) -> YearlyGrowth:
+        """What it takes of the disk in a year, as its sources send now.
+
+        Raises:
+            InputError: the inbox cannot be read.
+        """
+        values = len(self.model.sensors) + len(self.model.context)
+        return yearly_growth(self._settings, values, self._packet, bytes_a_second(self.inbox))
+
     def seal(self) -> int:
         """Make rows of what is final; how many are new."""
-        silent = {name for name in self._sources if self.silence(name) > self._patience}
+        patience = self._settings.rows.patience
+        silent = {name for name in self._sources if self.silence(name) > patience}
         with self._lock:
             if silent == self._sealed_for:
                 return 0

@@ -11,6 +11,7 @@ from rga.operation.alarms.service_watch import ServiceWatch
 from rga.operation.alarms.supervision import ALARMS, SERVICE, Supervision
 from rga.operation.alarms.twin_watch import Troubles, TwinWatch
 from rga.operation.configuration import Configuration
+from rga.operation.disk.forecast import DiskForecast, disk_forecast
 from rga.operation.disk.room import DiskRoom
 from rga.operation.inbox.packets import NEVER
 from rga.operation.notices.notify_settings import NotifySettings
@@ -116,6 +117,16 @@ class Service:
         for twin in self.twins.values():
             twin.close()
         self._file.close()
+
+    def forecast(self, twin: str) -> DiskForecast:
+        """How long the disk has room, as one twin sees it.
+
+        Raises:
+            InputError: its disk cannot be looked at, or the inbox of a twin not be read.
+        """
+        grown = {name: one.yearly_growth() for name, one in self.twins.items()}
+        own = grown.pop(twin)
+        return disk_forecast(self.room.free, self.room.free_share, own, grown.values())
 
     def _supervision(self) -> Supervision:
         """What looks at the twins and at the service."""

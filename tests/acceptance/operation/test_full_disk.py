@@ -5,6 +5,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from datetime import timedelta
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -24,6 +25,7 @@ from rga.operation.feeding import senders
 from rga.operation.feeding.faults import Faults
 from rga.operation.feeding.player import play
 from rga.operation.feeding.senders import BrokerSender
+from rga.operation.inbox.archive import FOLDER, KEPT_DAYS
 from rga.operation.service import Service
 from rga.operation.service_file import FILE_NAME
 from rga.operation.sources import mqtt
@@ -64,8 +66,10 @@ def served(measured_bridge: dict[str, Any], tmp_path: Path) -> Iterator[Callable
     """Makes a service; nothing of it runs by itself."""
     begun: list[Service] = []
 
-    def make(**changed: Any) -> Service:
+    def make(alarms: str = "", **changed: Any) -> Service:
         write_service(tmp_path, measured_bridge, **changed)
+        path = tmp_path / "serve.toml"
+        path.write_text(alarms + path.read_text("utf-8"), "utf-8")
         begun.append(Service(read_configuration(tmp_path / "serve.toml"), SetClock()))
         return begun[-1]
 
@@ -146,6 +150,37 @@ def test_a_broker_holds_what_cannot_be_kept(
     feeding.join(60)
     waited_for(lambda: broker.fault is None)
     assert_kept(service, record)
+
+
+@pytest.mark.parametrize("has_room", [False, True])
+def test_what_can_wait_waits_where_little_is_free(
+    served: Callable[..., Service], record: Record, has_room: bool
+) -> None:
+    # All of a disk is never free.
+    service = served(alarms=f"[alarms]\ndisk = {0.0 if has_room else 1.0}\n")
+    twin = service.twins["east"]
+    twin.receive("http", [("http", one) for one in packets_of(record, NOON)])
+    twin.seal()
+    service.workers.start()
+    waited_for(lambda: service.workers.at.get("heavy") == twin.directory)
+    waited_for(lambda: "heavy" not in service.workers.at)
+    with rga.LiveTwin(twin.directory) as live:
+        if has_room:
+            waited_for(lambda: live.waiting[0] < twin.inbox.rows)
+        # A run begins with a long step.
+        assert (live.waiting[0] < twin.inbox.rows) == has_room
+    clock = service._clock
+    assert isinstance(clock, SetClock)
+    clock.pass_by((KEPT_DAYS + 2) * 86_400)
+    # A later packet makes the rows of all others final.
+    later = packets_of(record.rows(slice(1)), NOON + timedelta(days=KEPT_DAYS + 2), "later")
+    twin.receive("http", [("http", one) for one in later])
+    twin.seal()
+    service._tidy()
+    # Packets are taken in and rows are made all the same.
+    assert twin.inbox.rows > ROWS - 5
+    assert (twin.directory / FOLDER).exists() == has_room
+    assert service.workers.failed == {}
 
 
 @pytest.fixture

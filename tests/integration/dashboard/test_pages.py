@@ -1,6 +1,7 @@
 """Pages as a browser gets them, without a browser."""
 
 import re
+from collections import namedtuple
 from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path
@@ -15,6 +16,7 @@ from rga.dashboard.app import app_of
 from rga.jobs.run import FILE
 from rga.model import read_model
 from rga.operation.configuration import read_configuration
+from rga.operation.disk import room as disk_room
 from rga.operation.service import Service
 from rga.records import Record
 from served.bridges import HOSTILE, configured, lived, long_bridge, packets_of, played
@@ -178,6 +180,31 @@ def test_data_tells_of_gaps_refusals_and_of_loss_that_cannot_be_told(
     assert "3 missing</b>: 3 to 4, 9" in html
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
     assert "<script>alert" not in html
+
+
+def test_data_tells_what_a_year_takes_and_that_there_is_no_room_for_it(
+    service: Service, client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    twin = service.twins["east"]
+    sizes = [len(one.payload) for one in twin.packets.between(0, 2**62, 2**40)[0]]
+    # A packet every ten minutes, and 52 596 in a year; 616 bytes a row, and 400 of its step.
+    packets, rows = sum(sizes[1:]) / (len(sizes) - 1) * 52_596, 53_437_536
+    free = 2 * 53_437_536 + round(packets)
+    usage = namedtuple("usage", "total used free")
+    for lacking, told in ((-2, False), (2, True)):
+        found = usage(10 * free, 9 * free, free - lacking)
+        monkeypatch.setattr(disk_room.shutil, "disk_usage", lambda _, found=found: found)
+        answer = client.get("/api/v1/twins/east/disk").json()
+        assert answer["year"]["rows"] == rows
+        assert answer["year"]["packets"] == pytest.approx(packets, rel=1e-9)
+        # The other twin has no packets yet.
+        assert answer["year_of_all"] == pytest.approx(2 * rows + packets, rel=1e-9)
+        assert answer["free_share"] == pytest.approx(0.1, rel=1e-6)
+        html = page(client, "/twins/east/data")
+        assert f'53.4 MB <span class="soft">for rows</span> + {packets / 1e6:.3g} MB' in html
+        assert ("There is no room for a year" in html) == told
+        assert ("lasts for 365 days" in html) == told
+        assert "packets beside them" in page(client, "/twins/west/data")
 
 
 def test_a_damaged_repository_is_told_and_the_rest_goes_on(

@@ -4,6 +4,7 @@ import json
 import socket
 import sqlite3
 import time
+from collections import namedtuple
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
@@ -20,6 +21,7 @@ from typer.testing import CliRunner
 from rga.cli.app import app
 from rga.model import Model, load_model
 from rga.operation.configuration import read_configuration
+from rga.operation.disk import room as disk_room
 from rga.operation.service import Service
 from rga.twin.repository import Repository
 from rga.twin.repository.migrations import VERSIONS
@@ -100,6 +102,27 @@ def test_a_sound_service_is_well_and_untouched(model: Model, tmp_path: Path) -> 
     assert (code, said.count("\n")) == (0, 2), said
     assert "a year takes about" in said
     assert said.endswith("It can be served.\n")
+
+
+def test_a_year_of_two_twins_that_does_not_fit_is_told(
+    model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_logger(tmp_path, model)
+    path = tmp_path / "serve.toml"
+    text = path.read_text("utf-8")
+    twin = text[text.index("[[twin]]") :]
+    path.write_text(text + "\n" + twin.replace('"east"', '"west"'), "utf-8")
+    # Of each 52 596 rows: 44 bytes of every sensor and context, and 400 of a tenth of a step.
+    rows = 52_596 * (44 * len(channels(model)) + 400)
+    usage = namedtuple("usage", "total used free")
+    found = usage(10_000 * rows, 0, round(1.9 * rows))
+    monkeypatch.setattr(disk_room.shutil, "disk_usage", lambda _: found)
+    path.write_text("[alarms]\ndisk = 0.0\n" + path.read_text("utf-8"), "utf-8")
+    code, said = checked(tmp_path)
+    assert code == 2
+    assert said.count(f"a year takes about {rows / 1e6:.3g} MB for rows and ") == 2
+    assert "a year of all twins takes about " in said
+    assert f"and {1.9 * rows / 1e6:.3g} MB are free" in said
 
 
 def test_names_that_only_one_side_has_are_told(model: Model, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from rga.dashboard.api.readings import begun_twin
 from rga.dashboard.api.served import OF_A_TWIN, TheTwin
 from rga.dashboard.surroundings import SeenTwin
 from rga.findings.phrases import effect_words
+from rga.operation.disk.forecast import DiskForecast
 from rga.operation.inbox.account import Account
 from rga.operation.reading.twin_now import moment
 from rga.twin.commands.proposals import decision
@@ -226,6 +227,12 @@ def account(seen: TheTwin) -> dict[str, AccountAnswer]:
         )
         for name, one in sources.items()
     }
+
+
+@router.get("/twins/{twin}/disk")
+def disk(seen: TheTwin) -> DiskForecast:
+    """What a year takes of the disk of the service, and for how long there is room."""
+    return seen.forecast()
 
 
 def _view(seen: SeenTwin) -> RunView:

@@ -1,6 +1,5 @@
 """Data: what became of every packet, what is missing, refused or late, disk and lag."""
 
-import shutil
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
@@ -8,16 +7,16 @@ from typing import Any
 from rga.dashboard.pages.heading import heading, heading_of_damaged
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.errors import InputError
+from rga.operation.disk.forecast import MAKE_ROOM, DiskForecast
 from rga.operation.inbox.account import Account
 from rga.operation.inbox.refused import refused_packets
 from rga.operation.packets.packet import EPOCH
-from rga.quantities import fixed, percent
+from rga.quantities import bytes_in_words, counted, percent
 
 #: gaps in numbers of a stream, and refused packets, that are listed
 GAPS, REFUSED = 20, 20
 #: letters of a refused packet that are shown
 SAMPLE = 120
-GIGABYTE = 1e9
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ def data_page(seen: SeenTwin) -> dict[str, Any]:
         top = heading(seen, now)
     except InputError as error:
         top = heading_of_damaged(seen, error)
-    disk = shutil.disk_usage(seen.served.directory)
+    forecast = seen.forecast()
     return {
         "heading": top,
         "tab": "/data",
@@ -81,11 +80,24 @@ def data_page(seen: SeenTwin) -> dict[str, Any]:
         ],
         "lag": seen.lag(now),
         "rows": seen.served.inbox.rows,
-        "disk_free": f"{fixed(disk.free / GIGABYTE, 1)} GB",
-        "disk_share": percent(100 * disk.free / disk.total, sign=False),
-        "disk_used": f"{fixed(_size(seen) / 1e6, 1)} MB",
+        "disk_free": bytes_in_words(forecast.free),
+        "disk_share": percent(100 * forecast.free_share, sign=False),
+        "disk_used": bytes_in_words(_size(seen)),
+        "year_rows": bytes_in_words(forecast.year.rows),
+        "year_packets": bytes_in_words(forecast.year.packets) if forecast.year.packets else "",
+        "year_of_all": bytes_in_words(forecast.year_of_all),
+        "no_room": "" if forecast.lasts_a_year else _no_room(forecast),
         "faults": {name: words for name, words in seen.faults.items() if name == "rows"},
     }
+
+
+def _no_room(forecast: DiskForecast) -> str:
+    """That there is no room for a year, and for how long there is."""
+    return (
+        f"There is no room for a year: all twins take about "
+        f"{bytes_in_words(forecast.year_of_all)} in one, and what is free lasts for "
+        f"{counted(int(forecast.days), 'day')}. What helps: {MAKE_ROOM}."
+    )
 
 
 def time_of(microseconds: int) -> datetime:

@@ -56,7 +56,7 @@ class PacketArchive:
         """
         # What is removed makes room for what is written.
         self._remove_before(now)
-        written = []
+        written: list[Path] = []
         for day in self._days(now - KEPT_DAYS * DAY):
             for table in (tables.packet, tables.refused):
                 if not has_room():

@@ -1,19 +1,21 @@
 """What rows will be like: how many days tell what is usual, how they scatter, what a year takes."""
 
-import shutil
 from collections.abc import Iterator, Sequence
 from math import ceil
-from pathlib import Path
 
 import numpy as np
 
 from rga.checking.finding import Finding, named
 from rga.model import Model
 from rga.operation.configuration import TwinSettings
+from rga.operation.disk.forecast import MAKE_ROOM, YearlyGrowth, yearly_growth
+from rga.operation.disk.room import DiskRoom
 from rga.operation.packets.packet import MICROSECONDS
 from rga.operation.rows.cells import cells_of
 from rga.operation.sources.clock import DAY, in_words
+from rga.operation.trial.twin_files import TwinFiles
 from rga.operation.trial.what_came import WhatCame
+from rga.quantities import bytes_in_words
 
 #: rows that tell how much they scatter
 ENOUGH = 20
@@ -21,11 +23,8 @@ ENOUGH = 20
 QUIETER = 0.5
 #: median of the absolute value of the difference of two rows, in standard deviations of one
 _MEDIAN = 0.6745 * 2**0.5
-YEAR = 365.25 * DAY
 #: of a calibration that has seen what days differ by [s]
 LEAST_CALIBRATED = 3 * DAY
-#: bytes of a reading, what is simulated for it and its gap; and of a step beside its rows
-READING, STEP = 24, 4_000
 
 
 def calibration_findings(
@@ -73,37 +72,35 @@ def noise_findings(
         yield Finding("warning", where, what, remedy)
 
 
-def growth_findings(
-    where: str,
-    model: Model,
-    twin: TwinSettings,
-    packet: int,
-    came: Sequence[WhatCame],
-    data: Path,
-) -> Iterator[Finding]:
-    """What a year takes of the disk.
+def growth_of(files: TwinFiles, came: Sequence[WhatCame]) -> YearlyGrowth:
+    """What a twin takes of the disk in a year.
 
     Args:
-        where: of which twin it is.
-        model: of the twin.
-        twin: its settings.
-        packet: rows of a step.
+        files: of the twin.
         came: what its sources have brought.
-        data: a folder on the disk of the twins.
     """
-    rows = YEAR / twin.rows.every
-    stored = rows * (READING * len(model.sensors) + STEP / packet)
-    kept = min(YEAR, twin.retention.raw or YEAR)
-    packets = sum(map(_bytes_a_second, came)) * kept
-    free = shutil.disk_usage(data).free
-    told = f"a year takes about {_in_words(stored)} for rows"
-    told += f" and {_in_words(packets)} for packets" if packets else ", and packets beside them"
-    if stored + packets > free:
-        what = f"{told}, and {_in_words(free)} are free"
-        remedy = "make room, make fewer rows (rows.every), or keep packets shorter (retention.raw)"
-        yield Finding("error", where, what, remedy)
+    values = len(files.model.sensors) + len(files.model.context)
+    packet = files.run.pace(None).packet
+    return yearly_growth(files.settings, values, packet, sum(map(_bytes_a_second, came)))
+
+
+def growth_note(where: str, growth: YearlyGrowth, free: int) -> Finding:
+    """What a twin takes of the disk in a year, in words."""
+    told = f"a year takes about {bytes_in_words(growth.rows)} for rows"
+    if growth.packets:
+        told += f" and {bytes_in_words(growth.packets)} for packets"
     else:
-        yield Finding("note", where, told, f"{_in_words(free)} are free")
+        told += ", and packets beside them"
+    return Finding("note", where, told, f"{bytes_in_words(free)} are free")
+
+
+def room_findings(growths: Sequence[YearlyGrowth], room: DiskRoom) -> Iterator[Finding]:
+    """Whether there is room for a year of all twins."""
+    total, free = sum(one.total for one in growths), room.free
+    if total > free:
+        what = f"a year of all twins takes about {bytes_in_words(total)}"
+        what += f", and {bytes_in_words(free)} are free"
+        yield Finding("error", f"[service] data = {str(room.data)!r}", what, MAKE_ROOM)
 
 
 def _bytes_a_second(came: WhatCame) -> float:
@@ -111,12 +108,3 @@ def _bytes_a_second(came: WhatCame) -> float:
     if came.first is None or came.last is None or came.last <= came.first:
         return 0.0
     return came.size * MICROSECONDS / (came.last - came.first)
-
-
-def _in_words(size: float) -> str:
-    """A number of bytes in the unit in which it is read best.
-
-    >>> _in_words(2.5e9), _in_words(12e6)
-    ('2.5 GB', '12 MB')
-    """
-    return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"

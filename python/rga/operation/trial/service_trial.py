@@ -9,14 +9,17 @@ from rga.checking.finding import Finding, refused
 from rga.errors import InputError
 from rga.jobs.run import FILE
 from rga.operation.configuration import Configuration, ServiceSettings
+from rga.operation.disk.forecast import YearlyGrowth
 from rga.operation.disk.room import DiskRoom
 from rga.operation.service_clock import ServiceClock, microseconds
 from rga.operation.sources.settings import AnySource, source_name
 from rga.operation.sources.source import attempt
 from rga.operation.trial.expected_rows import (
     calibration_findings,
-    growth_findings,
+    growth_note,
+    growth_of,
     noise_findings,
+    room_findings,
 )
 from rga.operation.trial.listening import Heard, listened_to
 from rga.operation.trial.twin_files import TwinFiles, repository_findings
@@ -56,44 +59,50 @@ def service_findings(configuration: Configuration, wait: float) -> list[Finding]
             found += _repository(f"twin {twin.name!r}", directory / FILE)
     if service.repository is not None:
         found += _repository("[service] repository", service.repository)
-    return found + _heard(files, _existing(service.data), wait)
+    return found + _heard(files, DiskRoom(_existing(service.data), configuration.alarms.disk), wait)
 
 
-def _heard(files: Sequence[TwinFiles], data: Path, wait: float) -> list[Finding]:
-    """What is wrong with sources and with what they bring."""
+def _heard(files: Sequence[TwinFiles], room: DiskRoom, wait: float) -> list[Finding]:
+    """What is wrong with sources and with what they bring, and what a year of it takes."""
     sources = [
         (one.settings.name, source, one.mappings[source_name(source)])
         for one in files
         for source in one.settings.source
     ]
     heard = iter(listened_to(sources, wait))
+    now = microseconds(ServiceClock().now())
     found: list[Finding] = []
+    growths: list[YearlyGrowth] = []
     for one in files:
         own = [(source, next(heard)) for source in one.settings.source]
-        found += _of_twin(one, own, data, wait)
-    return found
+        came = [what_came(to.inlet, one.readers[source_name(source)], now) for source, to in own]
+        found += _of_twin(one, own, came, now, wait)
+        growths.append(growth_of(one, came))
+        found.append(growth_note(f"twin {one.settings.name!r}", growths[-1], room.free))
+    return [*found, *room_findings(growths, room)]
 
 
 def _of_twin(
-    files: TwinFiles, heard: Sequence[tuple[AnySource, Heard]], data: Path, wait: float
+    files: TwinFiles,
+    heard: Sequence[tuple[AnySource, Heard]],
+    came: Sequence[WhatCame],
+    now: int,
+    wait: float,
 ) -> Iterator[Finding]:
-    twin, model, now = files.settings, files.model, microseconds(ServiceClock().now())
-    came: list[WhatCame] = []
-    for source, one in heard:
+    twin, model = files.settings, files.model
+    for (source, one), brought in zip(heard, came, strict=True):
         name = source_name(source)
         where, reader = f"twin {twin.name!r}, {name}", files.readers[name]
-        came.append(what_came(one.inlet, reader, now))
         if one.error is not None:
             yield from refused(one.error)
             continue
-        yield from source_findings(where, source, one, came[-1], reader, wait)
-        yield from clock_findings(where, source, came[-1], now)
+        yield from source_findings(where, source, one, brought, reader, wait)
+        yield from clock_findings(where, source, brought, now)
     where = f"twin {twin.name!r}"
     yield from silent_findings(where, model, twin.source, came, list(files.readers.values()))
     yield from noise_findings(where, model, twin, came)
-    pace = files.run.pace(None)
-    yield from calibration_findings(where, model, twin, pace.calibration_rows)
-    yield from growth_findings(where, model, twin, pace.packet, came, data)
+    calibrated = files.run.pace(None).calibration_rows
+    yield from calibration_findings(where, model, twin, calibrated)
 
 
 def _disk(service: ServiceSettings, least: float) -> Iterator[Finding]:
