@@ -22,8 +22,7 @@ from rga.dashboard.api.served import (
 from rga.dashboard.surroundings import Surroundings
 from rga.errors import InputError
 from rga.operation.alarms.alarm_book import MOST_LETTERS, AlarmBook
-from rga.operation.alarms.alarm_summary import AlarmSummary
-from rga.operation.alarms.operator_alarm import AlarmTransition
+from rga.operation.alarms.operator_alarm import AlarmTransition, OperatorAlarm
 from rga.operation.settings_types import Duration
 from rga.twin.repository.faults import RepositoryFault
 
@@ -41,7 +40,7 @@ Why = Annotated[str, Field(max_length=MOST_LETTERS)]
 class AlarmLife:
     """An alarm as it stands, and all that has become of it."""
 
-    alarm: AlarmSummary
+    alarm: OperatorAlarm
     life: tuple[AlarmTransition, ...]
 
 
@@ -120,44 +119,42 @@ def alarms(
     who: Annotated[Who, Depends(may_see_some)],
     known: Annotated[Surroundings, Depends(surroundings_of)],
     closed: Closed = 0,
-) -> list[AlarmSummary]:
+) -> list[OperatorAlarm]:
     """Open alarms of the service and of every twin that whoever calls may see, the newest first."""
     book = known.alarms
     newest = [one for one in book.all(10 * closed) if one.state == "closed"]
     found, others = (
         [one for one in some if who.may("viewer", one.twin)] for some in (book.open(), newest)
     )
-    every = sorted([*found, *others[:closed]], key=lambda one: one.id, reverse=True)
-    return [AlarmSummary.of(one) for one in every]
+    return sorted([*found, *others[:closed]], key=lambda one: one.id, reverse=True)
 
 
 @router.get("/twins/{twin}/alarms", responses=OF_A_TWIN, dependencies=[Depends(may("viewer"))])
-def alarms_of_twin(seen: TheTwin, closed: Closed = 0) -> list[AlarmSummary]:
+def alarms_of_twin(seen: TheTwin, closed: Closed = 0) -> list[OperatorAlarm]:
     """Open alarms of a twin: first those that nobody has acknowledged, the newest of each."""
-    return [AlarmSummary.of(one) for one in alarms_of(seen.alarms, seen.name, closed)]
+    return alarms_of(seen.alarms, seen.name, closed)
 
 
 @router.get("/alarms/{number}", responses=OF_A_TWIN)
 def alarm(called: Seen) -> AlarmLife:
     """An alarm, and all that has become of it, who did it and why."""
-    summary = AlarmSummary.of(called.book.of(called.id))
-    return AlarmLife(summary, called.book.life(called.id))
+    return AlarmLife(called.book.of(called.id), called.book.life(called.id))
 
 
 @router.post("/alarms/{number}/ack", responses=OF_A_TWIN | answering(413))
-def acknowledge(called: Handled, reason: Annotated[Reason, Body()] = UNSAID) -> AlarmSummary:
+def acknowledge(called: Handled, reason: Annotated[Reason, Body()] = UNSAID) -> OperatorAlarm:
     """Somebody has seen an alarm."""
-    return AlarmSummary.of(called.book.acknowledge(called.id, called.who, reason.why))
+    return called.book.acknowledge(called.id, called.who, reason.why)
 
 
 @router.post("/alarms/{number}/shelve", responses=OF_A_TWIN | answering(413))
-def shelve(called: Handled, shelving: Shelving) -> AlarmSummary:
+def shelve(called: Handled, shelving: Shelving) -> OperatorAlarm:
     """Hear nothing of an alarm for a while, 30 days at the most."""
     until = shelving.end(Surroundings.now())
-    return AlarmSummary.of(called.book.shelve(called.id, until, called.who, shelving.why))
+    return called.book.shelve(called.id, until, called.who, shelving.why)
 
 
 @router.post("/alarms/{number}/unshelve", responses=OF_A_TWIN | answering(413))
-def unshelve(called: Handled, reason: Annotated[Reason, Body()] = UNSAID) -> AlarmSummary:
+def unshelve(called: Handled, reason: Annotated[Reason, Body()] = UNSAID) -> OperatorAlarm:
     """Hear of an alarm again: it comes back unacknowledged."""
-    return AlarmSummary.of(called.book.unshelve(called.id, called.who, reason.why))
+    return called.book.unshelve(called.id, called.who, reason.why)

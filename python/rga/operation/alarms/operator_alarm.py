@@ -4,6 +4,9 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import Literal, Self
 
+from pydantic import computed_field
+from pydantic import dataclasses as told
+
 from rga.errors import InputError
 from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey
 from rga.operation.service_clock import in_minutes
@@ -16,7 +19,7 @@ AlarmState = Literal["raised", "acknowledged", "shelved", "cleared", "closed"]
 LONGEST_SHELF = timedelta(days=30)
 
 
-@dataclass(frozen=True)
+@told.dataclass(frozen=True)
 class OperatorAlarm:
     """An alarm, from when it is raised until it is cleared and acknowledged.
 
@@ -28,13 +31,14 @@ class OperatorAlarm:
         subject: what it is wrong with.
         words: what is wrong, in a sentence.
         sensors: that show it.
-        size: of what is wrong, where it has one.
+        size: of what is wrong, such as packets that are missing; 0: it has none.
         since: when it began to be wrong (UTC).
         raised_at: when the alarm was raised, the last time if more than once (UTC).
         cleared_at: when it was well again; None: it is not.
         acknowledged_at, acknowledged_by: when and by whom; None: it is not.
         shelved_until, shelved_by: until when nothing is told of it, and who wants that; None: it
             is not shelved.
+        state: where it stands.
     """
 
     id: int
@@ -81,9 +85,9 @@ class OperatorAlarm:
         """Whether nobody wants to hear of it for now."""
         return self.shelved_until is not None
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def state(self) -> AlarmState:
-        """Where it stands."""
         if self.is_shelved:
             return "shelved"
         if self.is_active:

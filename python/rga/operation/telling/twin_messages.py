@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rga.operation.alarms.alarm_book import AlarmBook
-from rga.operation.alarms.alarm_summary import AlarmSummary
 from rga.operation.alarms.operator_alarm import OperatorAlarm
 from rga.operation.reading.twin_now import TwinNow, moment
 from rga.operation.reading.twin_reading import TwinReading
@@ -168,8 +167,7 @@ def _is_open(view: RunView, proposal: Proposal) -> bool:
 
 
 def _of_alarm(alarm: OperatorAlarm) -> list[TwinMessage]:
-    summary = AlarmSummary.of(alarm)
-    return _while_it_lasts(f"alarm/{alarm.id}", summary, lasts=alarm.state != "closed")
+    return _while_it_lasts(f"alarm/{alarm.id}", alarm, lasts=alarm.state != "closed")
 
 
 def _of_proposal(view: RunView, proposal: Proposal) -> list[TwinMessage]:
