@@ -1,10 +1,11 @@
 """Commands of people that are asked for once, however often they are sent."""
 
-from sqlalchemy import Column, Integer, MetaData, Table, Text, insert, select
+from sqlalchemy import MetaData, Table, insert, select
 
 from rga.errors import InputError
 from rga.twin.hardware.inbox import Inbox
-from rga.twin.repository.checksum import COLUMN, with_checksum
+from rga.twin.repository.checksum import with_checksum
+from rga.twin.repository.columns import checksum, large_number, text
 from rga.twin.repository.table_file import values_of
 
 metadata = MetaData()
@@ -12,10 +13,10 @@ metadata = MetaData()
 _request = Table(
     "request",
     metadata,
-    Column("key", Text, primary_key=True),
-    Column("number", Integer, nullable=False),
-    Column("command", Text, nullable=False),
-    Column(COLUMN, Integer, nullable=False),
+    text("key", key=True),
+    large_number("number"),
+    text("command"),
+    checksum(),
 )
 
 

@@ -5,21 +5,15 @@ from sqlalchemy import (
     Column,
     Index,
     Integer,
-    LargeBinary,
     MetaData,
     Table,
     Text,
     UniqueConstraint,
 )
 
-from rga.twin.repository.checksum import COLUMN
+from rga.twin.repository.columns import blob, checksum, large_number, text
 
 metadata = MetaData()
-
-
-def _number(name: str, key: bool = False) -> "Column[int]":
-    return Column(name, BigInteger, nullable=False, primary_key=key, autoincrement=False)
-
 
 # What waits for the rows that it is of, was used, or came too late for them. Moments are
 # microseconds since 1970 (UTC); those of its samples before `late_before` came too late.
@@ -27,19 +21,19 @@ packet = Table(
     "packet",
     metadata,
     Column("id", Integer, primary_key=True),
-    Column("source", Text, nullable=False),
+    text("source"),
     Column("stream", Text),
     Column("sequence", BigInteger),
     Column("sha256", Text),
-    Column("kind", Text, nullable=False),
-    Column("place", Text, nullable=False),
-    _number("first"),
-    _number("last"),
+    text("kind"),
+    text("place"),
+    large_number("first"),
+    large_number("last"),
     Column("late_before", BigInteger),
-    _number("arrived"),
-    Column("fate", Text, nullable=False),
-    Column("payload", LargeBinary, nullable=False),
-    _number(COLUMN),
+    large_number("arrived"),
+    text("fate"),
+    blob("payload"),
+    checksum(),
     UniqueConstraint("source", "stream", "sequence"),
     Index("packet_in_time", "fate", "last"),
     Index("packet_by_content", "sha256"),
@@ -49,64 +43,64 @@ refused = Table(
     "refused",
     metadata,
     Column("id", Integer, primary_key=True),
-    Column("source", Text, nullable=False),
-    _number("arrived"),
-    Column("reason", Text, nullable=False),
-    Column("payload", LargeBinary, nullable=False),
-    _number(COLUMN),
+    text("source"),
+    large_number("arrived"),
+    text("reason"),
+    blob("payload"),
+    checksum(),
 )
 # The numbers of a stream that have come: those below the next, but for the gaps (JSON).
 stream = Table(
     "stream",
     metadata,
-    Column("source", Text, primary_key=True),
-    Column("stream", Text, primary_key=True),
-    _number("next"),
-    Column("gaps", Text, nullable=False),
-    _number(COLUMN),
+    text("source", key=True),
+    text("stream", key=True),
+    large_number("next"),
+    text("gaps"),
+    checksum(),
 )
 # Packets of a source by the hour of their arrival, counted as their fate is decided.
 account = Table(
     "account",
     metadata,
-    Column("source", Text, primary_key=True),
-    _number("hour", key=True),
-    _number("received"),
-    _number("used"),
-    _number("duplicate"),
-    _number("late"),
-    _number("partly_late"),
-    _number("refused"),
-    _number(COLUMN),
+    text("source", key=True),
+    large_number("hour", key=True),
+    large_number("received"),
+    large_number("used"),
+    large_number("duplicate"),
+    large_number("late"),
+    large_number("partly_late"),
+    large_number("refused"),
+    checksum(),
 )
 # How far a source has come: the latest moment that it has sent.
 source = Table(
     "source",
     metadata,
-    Column("name", Text, primary_key=True),
+    text("name", key=True),
     Column("latest", BigInteger),
-    _number(COLUMN),
+    checksum(),
 )
 # Where a source reads on, by the part of it, such as a file of a folder (JSON).
 cursor = Table(
     "cursor",
     metadata,
-    Column("source", Text, primary_key=True),
-    Column("part", Text, primary_key=True),
-    Column("state", Text, nullable=False),
-    _number(COLUMN),
+    text("source", key=True),
+    text("part", key=True),
+    text("state"),
+    checksum(),
 )
 # One line: rows before this moment are final.
-sealed = Table("sealed", metadata, _number("until"), _number(COLUMN))
+sealed = Table("sealed", metadata, large_number("until"), checksum())
 # What lies beside the mean of a row: the samples of a cell, by channel and context.
 cell = Table(
     "cell",
     metadata,
-    _number("begin", key=True),
-    Column("count", LargeBinary, nullable=False),
-    Column("deviation", LargeBinary, nullable=False),
-    Column("least", LargeBinary, nullable=False),
-    Column("most", LargeBinary, nullable=False),
-    Column("conflicts", LargeBinary, nullable=False),
-    _number(COLUMN),
+    large_number("begin", key=True),
+    blob("count"),
+    blob("deviation"),
+    blob("least"),
+    blob("most"),
+    blob("conflicts"),
+    checksum(),
 )

@@ -2,9 +2,10 @@
 
 from dataclasses import asdict, dataclass
 
-from sqlalchemy import BigInteger, Column, MetaData, Table, Text, delete, insert, select
+from sqlalchemy import MetaData, Table, delete, insert, select
 
-from rga.twin.repository.checksum import COLUMN, with_checksum
+from rga.twin.repository.checksum import with_checksum
+from rga.twin.repository.columns import checksum, large_number, text
 from rga.twin.repository.table_file import TableFile, values_of
 
 #: of a twin that has not begun
@@ -14,13 +15,13 @@ metadata = MetaData()
 told = Table(
     "told",
     metadata,
-    Column("twin", Text, primary_key=True),
-    Column("source", Text, primary_key=True),
-    Column("run", Text, nullable=False),
-    Column("step", BigInteger, nullable=False),
-    Column("rows", BigInteger, nullable=False),
-    Column("change", BigInteger, nullable=False),
-    Column(COLUMN, BigInteger, nullable=False),
+    text("twin", key=True),
+    text("source", key=True),
+    text("run"),
+    large_number("step"),
+    large_number("rows"),
+    large_number("change"),
+    checksum(),
 )
 
 

@@ -10,16 +10,13 @@ from typing import Any
 
 import numpy as np
 from sqlalchemy import (
-    BigInteger,
     Boolean,
     Column,
     Connection,
     Float,
     Integer,
-    LargeBinary,
     MetaData,
     Table,
-    Text,
     delete,
     func,
     insert,
@@ -29,7 +26,8 @@ from sqlalchemy import (
 
 from rga.arrays import FloatArray
 from rga.twin.hardware.interface import Packet, Station
-from rga.twin.repository.checksum import COLUMN, is_whole, with_checksum
+from rga.twin.repository.checksum import is_whole, with_checksum
+from rga.twin.repository.columns import blob, checksum, large_number, text
 from rga.twin.repository.faults import named, whole
 from rga.twin.repository.proof import Proof, entries_of
 from rga.twin.repository.table_file import TableFile, only_entry, values_of
@@ -44,37 +42,37 @@ _metadata = MetaData()
 _twin = Table(
     "twin",
     _metadata,
-    Column("name", Text, nullable=False),
-    Column("model", Text, nullable=False),
-    Column("model_sha256", Text, nullable=False),
-    Column("settings", Text, nullable=False),
-    Column("seed", BigInteger, nullable=False),
-    Column(COLUMN, BigInteger, nullable=False),
+    text("name"),
+    text("model"),
+    text("model_sha256"),
+    text("settings"),
+    large_number("seed"),
+    checksum(),
 )
 # One line: what is mounted, rows that have ever arrived, the time of the last, and whether it is.
 _station = Table(
     "station",
     _metadata,
-    Column("station", Text, nullable=False),
+    text("station"),
     Column("rows", Integer, nullable=False),
     Column("last", Float(53), nullable=False),
     Column("ended", Boolean, nullable=False),
-    Column(COLUMN, BigInteger, nullable=False),
+    checksum(),
 )
 _row = Table(
     "row",
     _metadata,
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("time", Float(53), nullable=False),
-    Column("values", LargeBinary, nullable=False),
-    Column(COLUMN, BigInteger, nullable=False),
+    blob("values"),
+    checksum(),
 )
 _command = Table(
     "command",
     _metadata,
     Column("number", Integer, primary_key=True, autoincrement=False),
-    Column("command", Text, nullable=False),
-    Column(COLUMN, BigInteger, nullable=False),
+    text("command"),
+    checksum(),
 )
 
 

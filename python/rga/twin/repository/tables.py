@@ -13,14 +13,13 @@ from sqlalchemy import (
     ForeignKeyConstraint,
     Index,
     Integer,
-    LargeBinary,
     MetaData,
     String,
     Table,
     Text,
 )
 
-from rga.twin.repository.checksum import COLUMN
+from rga.twin.repository.columns import blob, checksum, text
 
 metadata = MetaData(
     naming_convention={
@@ -51,7 +50,7 @@ step = Table(
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("row", Integer, nullable=False),
     Column("written_at", String(40), nullable=False),
-    Column(COLUMN, BigInteger, nullable=False),
+    checksum(),
 )
 
 
@@ -64,7 +63,7 @@ def _stored(name: str, *columns: Column[Any] | Index) -> Table:
         Column("step", Integer, primary_key=True, autoincrement=False),
         Column("ordinal", Integer, primary_key=True, autoincrement=False),
         *columns,
-        Column(COLUMN, BigInteger, nullable=False),
+        checksum(),
         ForeignKeyConstraint(["run_id", "step"], ["step.run_id", "step.number"]),
     )
 
@@ -73,20 +72,12 @@ def _number(name: str) -> Column[Any]:
     return Column(name, Integer, nullable=False)
 
 
-def _text(name: str) -> Column[Any]:
-    return Column(name, Text, nullable=False)
-
-
-def _blob(name: str) -> Column[Any]:
-    return Column(name, LargeBinary, nullable=False)
-
-
 message = _stored(
     "message",
-    _text("kind"),
+    text("kind"),
     _number("row"),
     Column("time", Text),
-    _text("body"),
+    text("body"),
     Column("written_at", String(40), nullable=False),
     Index(None, "run_id", "kind", "step"),
 )
@@ -97,29 +88,29 @@ measured = _stored(
     _number("first_row"),
     _number("length"),
     Column("first_time", Float(53), nullable=False),
-    _blob("time"),
-    _blob("readings"),
-    _blob("contexts"),
+    blob("time"),
+    blob("readings"),
+    blob("contexts"),
     Index(None, "run_id", "first_row"),
     Index(None, "run_id", "first_time"),
 )
 simulated = _stored(
     "simulated",
     _number("version"),
-    _text("origin"),
+    text("origin"),
     _number("row"),
     _number("length"),
-    _blob("contexts"),
-    _blob("readings"),
-    _blob("falling"),
+    blob("contexts"),
+    blob("readings"),
+    blob("falling"),
 )
 inferred = _stored(
     "inferred",
     _number("version"),
     _number("first_row"),
     _number("length"),
-    _blob("contexts"),
-    _blob("spread"),
+    blob("contexts"),
+    blob("spread"),
     Index(None, "run_id", "first_row"),
 )
 gap = _stored(
@@ -127,8 +118,8 @@ gap = _stored(
     _number("version"),
     _number("first_row"),
     _number("length"),
-    _blob("simulated"),
-    _blob("gaps"),
+    blob("simulated"),
+    blob("gaps"),
     Index(None, "run_id", "first_row"),
 )
 
@@ -136,32 +127,32 @@ version = _stored(
     "version",
     _number("number"),
     _number("row"),
-    _text("model"),
+    text("model"),
     Column("model_sha256", String(64), nullable=False),
-    _text("causes"),
+    text("causes"),
     Column("gain", Float(53)),
     Column("gain_low", Float(53)),
     Column("gain_high", Float(53)),
-    _text("status"),
+    text("status"),
     Index(None, "run_id", "number", unique=True),
 )
 in_force = _stored("in_force", _number("version"), _number("row"))
-findings = _stored("findings", _number("row"), _text("findings"))
+findings = _stored("findings", _number("row"), text("findings"))
 event = _stored(
     "event",
-    _text("kind"),
+    text("kind"),
     _number("row"),
-    _text("time"),
-    _text("words"),
-    _text("sensors"),
+    text("time"),
+    text("words"),
+    text("sensors"),
     Column("gap_before", Float(53)),
     Column("gap_after", Float(53)),
 )
 kept = _stored(
     "kept",
-    _text("name"),
+    text("name"),
     _number("row"),
-    _blob("data"),
+    blob("data"),
     Index(None, "run_id", "name", "step"),
 )
 
@@ -170,8 +161,8 @@ proposal = _stored(
     "proposal",
     _number("number"),
     _number("row"),
-    _text("words"),
-    _text("effects"),
+    text("words"),
+    text("effects"),
     Column("gain", Float(53)),
     Column("gain_low", Float(53)),
     Column("gain_high", Float(53)),
@@ -181,12 +172,12 @@ proposal = _stored(
 command = _stored(
     "command",
     _number("row"),
-    _text("kind"),
-    _text("body"),
-    _text("who"),
-    _text("why"),
+    text("kind"),
+    text("body"),
+    text("who"),
+    text("why"),
     Column("given_at", String(40), nullable=False),
-    _text("outcome"),
+    text("outcome"),
 )
 
 # What only a run that goes on needs, as its last step left it: pages of one size.
@@ -196,8 +187,8 @@ state_page = Table(
     Column("run_id", Integer, ForeignKey("run.id"), primary_key=True, autoincrement=False),
     Column("name", String(40), primary_key=True),
     Column("page", Integer, primary_key=True, autoincrement=False),
-    _blob("data"),
-    Column(COLUMN, BigInteger, nullable=False),
+    blob("data"),
+    checksum(),
 )
 
 #: tables of what belongs to a run, with a checksum for every entry
