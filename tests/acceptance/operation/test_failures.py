@@ -17,6 +17,8 @@ FAILURES: dict[str, tuple[tuple[str, str], ...]] = {
     "service killed": (
         (f"{_SERVICE}/test_kills.py", "test_all_is_there_once"),
         (f"{_DOOR}/test_running_service.py", "test_decisions_at_once_and_a_kill_in_between"),
+        (f"{_DOOR}/test_two_operators.py", "test_a_proposal_is_decided_once"),
+        (f"{_DOOR}/test_two_operators.py", "test_of_two_that_roll_back_one_wins"),
     ),
     "worker killed, out of memory": (
         (f"{_SERVICE}/test_workers.py", "test_workers_that_are_killed_are_followed_by_others"),

@@ -18,7 +18,7 @@ from rga.twin import Twin
 from served.running_service import EAST, Running
 
 #: `RGA_TEST_KILLS=200` kills more often
-KILLS = int(os.environ.get("RGA_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
 #: within what time after both were asked for it is killed [s]
 LATEST = 2.0
 OPERATORS = ("Ada", "Eve")
