@@ -21,8 +21,9 @@ from rga.operation.packets.packet import Number
 ANSWER, AGAIN = 30.0, 1.0
 #: how long it waits for a packet to be acknowledged end to end before it sends it again [s]
 UNACKNOWLEDGED = 5.0
-#: packets that are on their way at most
-MOST_OPEN = 2_000
+#: packets that are on their way at most: mosquitto as it comes drops what waits beyond a thousand,
+#: and what is sent again comes behind the others, too late for its row
+MOST_OPEN = 1_000
 
 
 class Sender(Protocol):
