@@ -1,4 +1,4 @@
-"""Live operation: what is lost where something is killed, and what a packet costs."""
+"""Live operation: what is lost, what a packet costs, and how soon a row is seen."""
 
 import json
 from collections.abc import Sequence
@@ -11,17 +11,22 @@ from rga_bench.endless.stream import Progress, Stream, settings
 from rga_bench.experiment import Execution, Experiment
 from rga_bench.machine import machine, versions
 from rga_bench.operation.kills import Killed, Losses, losses
+from rga_bench.operation.pages import PageCost, page_cost
 from rga_bench.operation.rates import DENSE, Rate, rate
+from rga_bench.operation.tables import loss_table, page_parts, rate_table, unreadable_table
+from rga_bench.operation.unreadable import Unreadable, unreadable
 from rga_bench.page import MarkdownPage
-from rga_bench.text_table import TextTable
 
 #: sensors and panels of the bridge, and packets of one reading and of a dense second
 SENSORS, PANELS = 84, 10
 SMALL, LARGE = 20_000, 600
 #: kills of each sort, and packets that are sent between two of them
 KILLS, BETWEEN = 200, 20
-#: readings a second of a dense bridge
-READINGS = DENSE[0] * DENSE[1]
+#: packets among which some payloads cannot be read
+READABLE = 5_000
+#: sensors and panels of bridges whose pages are looked at, rows for each measure, and viewers
+BRIDGES = ((84, PANELS), (500, 50))
+ROWS, VIEWERS = 100, 50
 ABOUT = (
     "{}. A service (`rga serve`) with one twin on SQLite; mosquitto is between it and the logger "
     "where a broker is named. The logger numbers its packets, reads what is acknowledged end to "
@@ -31,6 +36,11 @@ HOW = (
     "Rates: packets wait in the broker, and are taken out on one core, by a subscriber that keeps "
     "none, and by a twin that keeps each on the disk before it is acknowledged, and makes rows."
 )
+SEEN = (
+    "Pages: rows are sent one at a time, each when the one before is seen. Times are those that "
+    "95 % of the rows keep, from sending what makes a row final until it is seen. A viewer follows "
+    "the stream of the bridge, and loads its page again at every row."
+)
 
 
 @dataclass(frozen=True)
@@ -39,15 +49,20 @@ class Operation:
 
     rates: Sequence[Rate]
     losses: Sequence[Losses]
+    unreadable: Unreadable
+    pages: Sequence[PageCost]
 
 
 @dataclass(frozen=True)
 class OperationExperiment(Experiment[Operation]):
-    """Rates, and kills of each sort.
+    """Rates, kills of each sort, what cannot be read, and pages.
 
     Attributes:
         small, large: packets of one reading, and of a dense second.
         kills: of each sort.
+        readable: packets among which some payloads cannot be read.
+        bridges: sensors and panels of those whose pages are looked at.
+        rows, viewers: that are sent for each measure of a page, and who look at once.
         seed: of what is drawn.
     """
 
@@ -56,12 +71,18 @@ class OperationExperiment(Experiment[Operation]):
     small: int
     large: int
     kills: int
+    readable: int
+    bridges: Sequence[tuple[int, int]]
+    rows: int
+    viewers: int
     seed: int
 
     @classmethod
     def of(cls, seed: int, *, quick: bool) -> Self:
         """That of a command line."""
-        return cls(500, 20, 1, seed) if quick else cls(SMALL, LARGE, KILLS, seed)
+        if quick:
+            return cls(500, 20, 1, 100, BRIDGES[:1], 5, 5, seed)
+        return cls(SMALL, LARGE, KILLS, READABLE, BRIDGES, ROWS, VIEWERS, seed)
 
     def measure(self, execution: Execution) -> Operation:
         """One after the other."""
@@ -75,12 +96,17 @@ class OperationExperiment(Experiment[Operation]):
         rows, found = max(100, BETWEEN * self.kills), []
         every = get_args(Killed)
         for number, killed in enumerate(every):
-            share = partial(_within, execution.progress, 0.1 + 0.9 * number / len(every))
+            share = partial(_within, execution.progress, 0.1 + 0.6 * number / len(every))
             record = stream.rows(0, rows)
             found.append(
                 losses(killed, self.kills, model, stream.settings, record, self.seed, share)
             )
-        return Operation(rates, found)
+        unread = unreadable(self.readable, stream, self.seed)
+        pages = []
+        for number, size in enumerate(self.bridges):
+            execution.progress(0.75 + 0.25 * number / len(self.bridges))
+            pages.append(page_cost(*size, self.rows, self.viewers, self.seed))
+        return Operation(rates, found, unread, pages)
 
     def page(self, result: Operation, command: str) -> MarkdownPage:
         """The tables."""
@@ -88,8 +114,13 @@ class OperationExperiment(Experiment[Operation]):
             file="operation.md",
             title="Live operation",
             origin=f"`{command}`",
-            about=[ABOUT.format(machine()["processor"]), HOW],
-            parts=[_rates(result.rates), _losses(result.losses)],
+            about=[ABOUT.format(machine()["processor"]), HOW, SEEN],
+            parts=[
+                rate_table(result.rates),
+                loss_table(result.losses),
+                unreadable_table(result.unreadable),
+                *page_parts(result.pages),
+            ],
         )
 
     def write_figures(self, result: Operation, folder: Any) -> None:
@@ -103,42 +134,10 @@ class OperationExperiment(Experiment[Operation]):
             "versions": versions(),
             "rates": [asdict(one) | {"ratio": one.ratio} for one in result.rates],
             "losses": [asdict(one) for one in result.losses],
+            "unreadable": asdict(result.unreadable),
+            "pages": [asdict(one) for one in result.pages],
         }
 
 
-def _rates(found: Sequence[Rate]) -> TextTable:
-    rows = [
-        [
-            f"{one.packets:,}",
-            f"{one.size:,}",
-            f"{one.values:,}",
-            f"{one.bare:,.0f}",
-            f"{one.durable:,.0f}",
-            f"{one.ratio:.2f}",
-            f"{one.durable * one.values:,.0f}",
-            f"{100 * READINGS / (one.durable * one.values):.2g}",
-        ]
-        for one in found
-    ]
-    headings = ["packets", "bytes", "readings in each", "bare [1/s]", "durable [1/s]", "ratio"]
-    headings += ["readings [1/s]", "of a core for 84 x 250 Hz [%]"]
-    return TextTable("What a packet costs", headings, rows, numbers=True)
-
-
-def _losses(found: Sequence[Losses]) -> TextTable:
-    rows = [
-        [one.killed]
-        + [
-            f"{number:,}"
-            for number in (
-                one.times, one.packets, one.lost, one.doubled, one.unaccounted, one.differing,
-            )
-        ]
-        for one in found
-    ]  # fmt: skip
-    headings = ["killed", "times", "packets", "lost", "doubled", "unaccounted", "rows that differ"]
-    return TextTable("What is lost", headings, rows, numbers=True)
-
-
 def _within(progress: Progress, begun: float, share: float) -> None:
-    progress(begun + 0.3 * share)
+    progress(begun + 0.2 * share)

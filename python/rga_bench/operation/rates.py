@@ -1,12 +1,10 @@
 """What a packet costs: a service that keeps each on the disk, beside one that only listens."""
 
-import os
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
@@ -27,6 +25,7 @@ from rga.operation.service_clock import ServiceClock
 from rga.operation.sources.mqtt import RECEIVE_MAXIMUM, SESSION
 from rga.twin import Settings
 from rga_bench.operation.broker import Mosquitto
+from rga_bench.operation.one_core import one_core
 from rga_bench.operation.service_folder import MIDNIGHT, TOPIC, by_broker, write_service
 
 #: channels and samples of a packet of a dense bridge, a second of it
@@ -100,7 +99,7 @@ def rate(
         broker = Mosquitto(folder, "max_queued_messages 0")
         broker.start()
         try:
-            with _one_core():
+            with one_core():
                 bare = packets / _bare(broker, folder, packets)
                 durable = packets / _durable(broker, folder, packets, model, settings)
         finally:
@@ -117,20 +116,6 @@ def _payloads(packets: int, names: list[str], samples: int) -> Iterator[bytes]:
         moments = times + number * samples * step
         packet = SensorPacket(Number("s", number), tuple(names), moments, values)
         yield write_packet(packet, binary=samples > 1, single=samples > 1)
-
-
-@contextmanager
-def _one_core() -> Iterator[None]:
-    """Only one core for this process, where the system allows that."""
-    if not hasattr(os, "sched_setaffinity"):
-        yield
-        return
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {min(before)})
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, before)
 
 
 def _publish(broker: Mosquitto, topic: str, folder: Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from urllib.request import urlopen
 
 from rga.errors import InputError
+from rga_bench.operation.process_usage import Usage, usage_of
 
 #: how long an answer is waited for [s]
 ANSWER = 30.0
@@ -56,6 +57,17 @@ class ServiceProcess:
                 time.sleep(0.05)
         said = (self.folder / "service.log").read_text("utf-8", "replace")
         raise InputError(f"the service ended: {said[-500:]}", str(self.folder), "mend what it says")
+
+    @property
+    def usage(self) -> Usage:
+        """What it and its workers take of the machine since it was started.
+
+        Raises:
+            InputError: it was not started, or the system does not tell.
+        """
+        if self._process is None:
+            raise InputError("the service was not started", str(self.folder), "start it")
+        return usage_of(self._process.pid)
 
     def get(self, path: str) -> Any:
         """What it answers."""
