@@ -52,6 +52,19 @@ def test_short_and_long_steps_are_left_to_workers_of_their_own(
         assert twin.twin.status().rows == len(sound[1])
 
 
+def test_a_twin_of_which_nothing_is_due_is_not_looked_at_for_a_while(
+    sound: Given, tmp_path: Path
+) -> None:
+    place = fed(sound, tmp_path / "sound")
+    # The inbox is open as in a service, or the last to close it would tidy up.
+    with LiveTwin(place):
+        worker, looked = Worker([place]), list[Path | None]()
+        while worker.round():
+            pass
+        worker.round(looked.append)
+        assert looked == [None]
+
+
 def test_a_twin_that_another_plays_is_left_to_it(sound: Given, tmp_path: Path) -> None:
     place = fed(sound, tmp_path / "sound")
     with LiveTwin(place) as twin:

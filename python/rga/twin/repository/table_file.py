@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 
-from sqlalchemy import Connection, MetaData, Row, Table, select
+from sqlalchemy import Connection, MetaData, Row, Table, inspect, select
 
 from rga.twin.repository.checksum import COLUMN
 from rga.twin.repository.faults import as_input_errors, whole
@@ -26,7 +26,7 @@ class TableFile:
 
     def __init__(self, path: Path, metadata: MetaData, *, read_only: bool = False) -> None:
         self._database = SQLite(path, read_only)
-        if not read_only:
+        if not read_only and not self._has(metadata):
             with self.writing() as connection:
                 metadata.create_all(connection)
 
@@ -35,6 +35,11 @@ class TableFile:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def _has(self, metadata: MetaData) -> bool:
+        # Whoever waits for something to be written is not to be told that a file was opened.
+        with self.reading() as connection:
+            return metadata.tables.keys() <= set(inspect(connection).get_table_names())
 
     def close(self) -> None:
         """Close the file; it opens again where it is asked more."""
