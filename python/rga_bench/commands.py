@@ -249,7 +249,7 @@ def endless(quick: Short = False, seed: Seed = 0) -> Experiment[Any]:
 
 @_experiment(WRITTEN)
 def operation(quick: Once = False, seed: Seed = 0) -> Experiment[Any]:
-    """What a service loses where it or its broker is killed, and what a packet costs it."""
+    """What a service loses where something is killed, what a packet costs, how a row is seen."""
     from rga_bench.operation.experiment import OperationExperiment
 
     return OperationExperiment.of(seed, quick=quick)
