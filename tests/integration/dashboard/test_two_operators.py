@@ -18,7 +18,7 @@ from rga.twin import Twin
 from served.running_service import EAST, Running
 
 #: `RGA_TEST_KILLS=200` kills more often
-KILLS = int(os.environ.get("RGA_TEST_KILLS", "2"))
+KILLS = int(os.environ.get("RGA_TEST_KILLS", "1"))
 #: within what time after both were asked for it is killed [s]
 LATEST = 2.0
 OPERATORS = ("Ada", "Eve")
@@ -73,7 +73,7 @@ def decided_at_once(
     return found
 
 
-@pytest.mark.parametrize("second", ["rollback", "reject"])
+@pytest.mark.parametrize("second", ["rollback", pytest.param("reject", marks=pytest.mark.thorough)])
 def test_a_proposal_is_decided_once(running: Running, tokens: list[str], second: str) -> None:
     commands = [{"kind": "accept"}, {"kind": second}]
     if second == "rollback":
