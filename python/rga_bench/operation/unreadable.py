@@ -62,8 +62,9 @@ def unreadable(packets: int, stream: Stream, seed: int) -> Unreadable:
         broker.start()
         try:
             source = by_broker(broker.url)
-            grid = {"every": every, "lateness": every}
-            address = write_service(folder, model, stream.settings, source=source, **grid)
+            address = write_service(
+                folder, model, stream.settings, source=source, every=every, lateness=every
+            )
             with ServiceProcess(folder, address) as service:
                 sender = BrokerSender(f"{broker.url}/{TOPIC}")
                 record = sent_of(stream.rows(0, packets))
