@@ -51,8 +51,9 @@ class LongService:
     def __init__(self, folder: Path, broker: Mosquitto, stream: Stream, every: int) -> None:
         model: dict[str, Any] = json.loads(written(stream.model)[0])
         source = by_broker(broker.url)
-        grid = {"every": every, "lateness": every}
-        address = write_service(folder, model, stream.settings, source=source, **grid)
+        address = write_service(
+            folder, model, stream.settings, source=source, every=every, lateness=every
+        )
         self._data, self._process = folder / "data", ServiceProcess(folder, address)
         self._sender, self._packet = BrokerSender(f"{broker.url}/{TOPIC}"), stream.settings.packet
         self.sent = 0
