@@ -12,8 +12,9 @@ from rga.model import load_model
 from rga.operation.configuration import TwinSettings
 from rga.operation.disk.forecast import YearlyGrowth, yearly_growth
 from rga.operation.inbox.archive import PacketArchive
-from rga.operation.inbox.arrival import Arrival
+from rga.operation.inbox.arrival import Arrival, Outcome
 from rga.operation.inbox.flow import bytes_a_second
+from rga.operation.inbox.known_packets import COUNTED_AGAIN
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Packets
 from rga.operation.packets.formats import PayloadFormat
@@ -24,7 +25,7 @@ from rga.operation.sources.arrivals import arrival_of, arrivals_of_lines
 from rga.operation.sources.clock import ClockWatch
 from rga.operation.sources.opened import opened
 from rga.operation.sources.settings import AnySource, source_name
-from rga.operation.sources.source import DataSource, Outcome, Placed
+from rga.operation.sources.source import DataSource, Placed
 from rga.records.mapping import RecordMapping, read_mapping
 from rga.settings_files import read_table, validated
 from rga.twin.hardware.inbox import Inbox
@@ -87,6 +88,7 @@ class ServedTwin:
         self.archive = PacketArchive(self.inbox, directory, days)
         self._settings, self._packet = settings, run.pace(None).packet
         self._heard = dict.fromkeys(self._sources, clock.monotonic())
+        self._counted_again: dict[str, float] = {}
         # Sources that were silent when rows were last made of all that had come.
         self._sealed_for: set[str] | None = None
         self._lock = Lock()
@@ -118,6 +120,11 @@ class ServedTwin:
         """What is wrong with the clocks of a source, in words; None: nothing."""
         clock = self._clocks.get(source)
         return None if clock is None else clock.fault
+
+    def counts_again(self, source: str) -> bool:
+        """Whether a logger of a source has lately begun to count again under the same stream."""
+        last = self._counted_again.get(source)
+        return last is not None and self._clock.monotonic() - last < self._settings.rows.patience
 
     def refused_channels(self, source: str) -> dict[str, str]:
         """Channels of a source that are not used, and why."""
@@ -182,7 +189,7 @@ class ServedTwin:
     ) -> list[Outcome]:
         clock = self._clocks.get(source)
         try:
-            fates = self.packets.receive(source, arrivals, cursor)
+            outcomes = self.packets.receive(source, arrivals, cursor)
         except BaseException:
             if clock is not None:
                 clock.undo()
@@ -190,10 +197,12 @@ class ServedTwin:
         if clock is not None:
             clock.keep()
         # What cannot be used moves no row on, and is waited for no longer than silence.
-        if any(fate in ("waiting", "late") for fate in fates):
+        if any(fate in ("waiting", "late") for fate, _ in outcomes):
             self._heard[source] = self._clock.monotonic()
+        if any(why == COUNTED_AGAIN for _, why in outcomes):
+            self._counted_again[source] = self._clock.monotonic()
         self._sealed_for = None
-        return [(fate, one.refused) for fate, one in zip(fates, arrivals, strict=True)]
+        return outcomes
 
     def numbers(self, source: str) -> dict[str, Numbers]:
         """The numbers that have come of each stream of a source."""

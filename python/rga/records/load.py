@@ -36,7 +36,8 @@ def load_record(
             whose `import.toml` names its files; or a data frame of polars or pandas.
         model: names the sensors and contexts and states their units; or its file.
         mapping: the mapping, or its file; left out, `import.toml` beside the record, else beside
-            the model, else none: the columns are named and measured as the model says.
+            the model, else none: the columns are named and measured as the model says. One that was
+            not named, and says that the time stands elsewhere, is not of what `Record.write` wrote.
 
     Raises:
         InputError: a file, or what it holds, cannot be used as it stands, or this is no record.
@@ -52,7 +53,8 @@ def load_record(
             chosen = read_mapping(mapping)
         main = measured(table_of_frame(source), chosen, model)
     else:
-        paths, chosen = find_sources(named_files(source), model.path, mapping)
+        names = {*model.sensors, *model.context}
+        paths, chosen = find_sources(named_files(source), model.path, mapping, names)
         main = _logger(paths, chosen, model)
     noises = {name for name, one in model.sensors.items() if one.noise is not None}
     noises |= {name for name, one in model.context.items() if one.noise is not None}

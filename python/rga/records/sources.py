@@ -1,6 +1,7 @@
 """What a user names as a record: a file, several, a folder, a mapping."""
 
-from collections.abc import Sequence
+import csv
+from collections.abc import Collection, Sequence
 from glob import has_magic
 from os.path import normpath
 from pathlib import Path
@@ -8,6 +9,9 @@ from typing import Any
 
 from rga.errors import InputError, kind_of
 from rga.records.mapping import MAPPING_NAME, RecordMapping, find_mapping, read_mapping
+
+#: letters of a header
+MOST_HEADER = 1_000_000
 
 
 def named_files(given: object) -> list[Path]:
@@ -31,6 +35,7 @@ def find_sources(
     places: Sequence[Path],
     model: Path | None,
     mapping: str | Path | RecordMapping | None,
+    names: Collection[str] = (),
 ) -> tuple[list[Path], RecordMapping]:
     """The files of a record, and its mapping.
 
@@ -39,6 +44,7 @@ def find_sources(
             `import.toml` that names its files, or an `import.toml`.
         model: file of the model, beside which a mapping may stand.
         mapping: the mapping, or its file; None: beside the record, else beside the model, if any.
+        names: of sensors and contexts of the model, by which its own records are known.
 
     Raises:
         InputError: a file or the mapping is missing, or a folder does not say what its files are.
@@ -52,7 +58,9 @@ def find_sources(
     if not isinstance(mapping, RecordMapping):
         inside = first / MAPPING_NAME if first.is_dir() else first
         found = mapping or find_mapping(inside, model)
-        mapping = read_mapping(found) if found else RecordMapping()
+        stated = read_mapping(found) if found else RecordMapping()
+        is_beside = mapping is None and not whole
+        mapping = RecordMapping() if is_beside and _is_of_others(stated, places, names) else stated
     if not whole:
         return [path for place in places for path in _matching(place)], mapping
     folder = mapping.folder if mapping.folder != Path() or not first.is_dir() else first
@@ -65,6 +73,28 @@ def find_sources(
             f'state files = ["..."] in {MAPPING_NAME} there; the folder holds {shown or "none"}',
         )
     return files_in(folder, mapping.files), mapping
+
+
+def _is_of_others(mapping: RecordMapping, places: Sequence[Path], names: Collection[str]) -> bool:
+    """Whether a mapping is of a logger's files, and these are records that rga wrote."""
+    if "time" in mapping.time.columns:
+        return False
+    return all(_is_own_record(path, names) for place in places for path in _matching(place))
+
+
+def _is_own_record(path: Path, names: Collection[str]) -> bool:
+    """Whether a file looks as `Record.write` leaves it: `time`, then sensors and contexts."""
+    import polars as pl
+
+    try:
+        if path.suffix.lower() == ".parquet":
+            columns = list(pl.read_parquet_schema(path))
+        else:
+            with path.open(encoding="utf-8", newline="") as file:
+                columns = next(csv.reader([file.readline(MOST_HEADER)]), [])
+    except (OSError, UnicodeDecodeError, csv.Error, pl.exceptions.PolarsError):
+        return False
+    return columns[:1] == ["time"] and len(columns) > 1 and set(columns[1:]) <= set(names)
 
 
 def files_in(folder: Path, names: Sequence[str]) -> list[Path]:

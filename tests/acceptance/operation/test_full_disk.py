@@ -25,7 +25,7 @@ from rga.operation.feeding import senders
 from rga.operation.feeding.faults import Faults
 from rga.operation.feeding.player import play
 from rga.operation.feeding.senders import BrokerSender
-from rga.operation.inbox.archive import FOLDER, KEPT_DAYS
+from rga.operation.inbox.archive import FOLDER
 from rga.operation.service import Service
 from rga.operation.service_file import FILE_NAME
 from rga.operation.sources import mqtt
@@ -171,9 +171,9 @@ def test_what_can_wait_waits_where_little_is_free(
         assert (live.waiting[0] < twin.inbox.rows) == has_room
     clock = service._clock
     assert isinstance(clock, SetClock)
-    clock.pass_by((KEPT_DAYS + 2) * 86_400)
+    clock.pass_by(9 * 86_400)
     # A later packet makes the rows of all others final.
-    later = packets_of(record.rows(slice(1)), NOON + timedelta(days=KEPT_DAYS + 2), "later")
+    later = packets_of(record.rows(slice(1)), NOON + timedelta(days=9), "later")
     twin.receive("http", [("http", one) for one in later])
     twin.seal()
     service._tidy()

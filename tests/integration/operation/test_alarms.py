@@ -287,6 +287,14 @@ def test_a_clock_that_is_ahead_is_told_of(calm: Bridge) -> None:
     assert calm.changes == [("source", "clock", "raised"), ("source", "clock", "cleared")]
 
 
+def test_a_logger_that_counts_anew_is_told_of(calm: Bridge) -> None:
+    calm.send(8)
+    calm.receive(8, known=Number("s", 0))
+    calm.send(1)
+    assert calm.changes == [("source", "numbers", "raised")]
+    assert "counts anew" in calm.service.alarms.open()[0].words
+
+
 def test_a_sensor_that_is_silent_is_named(calm: Bridge) -> None:
     calm.send(20)
 

@@ -8,8 +8,9 @@ import pytest
 
 from rga.operation.inbox import archive
 from rga.operation.inbox.account import Account
-from rga.operation.inbox.archive import DAY, KEPT_DAYS, PacketArchive
+from rga.operation.inbox.archive import DAY, PacketArchive
 from rga.operation.inbox.arrival import Arrival
+from rga.operation.inbox.known_packets import IN_INBOX
 from rga.operation.inbox.packets import HOUR, Packets
 from rga.operation.packets.packet import Number
 from rga.operation.rows.grid import Grid
@@ -17,7 +18,7 @@ from rga.twin.hardware.inbox import Inbox
 
 #: 2026-11-23T00:00:00Z, a Monday
 MONDAY = 1_795_392_000_000_000
-NEXT_WEEK = MONDAY + (KEPT_DAYS + 1) * DAY
+NEXT_WEEK = MONDAY + IN_INBOX + DAY
 
 
 @pytest.fixture
@@ -30,9 +31,17 @@ def packets(inbox: Inbox) -> Packets:
     return Packets(inbox, Grid(every=HOUR, lateness=100 * DAY), ["logger"])
 
 
-def arrive(packets: Packets, sequence: int, moment: int, refused: str | None = None) -> None:
+def arrive(
+    packets: Packets,
+    sequence: int,
+    moment: int,
+    refused: str | None = None,
+    arrived: int | None = None,
+) -> None:
     number, payload = Number("s", sequence), b"packet %d" % sequence
-    one = Arrival(payload, "packet", moment, moment, moment, number=number, refused=refused)
+    one = Arrival(
+        payload, "packet", arrived or moment, moment, moment, number=number, refused=refused
+    )
     packets.receive("logger", [one])
 
 
@@ -67,7 +76,7 @@ def test_a_day_leaves_when_it_is_a_week_old(packets: Packets, inbox: Inbox, tmp_
     assert [one.payload for one in kept] == [b"packet %d" % k for k in range(24, 48)]
     # What is known of them stays.
     assert total(packets) == before
-    arrive(packets, 3, MONDAY + 3 * HOUR)
+    arrive(packets, 3, MONDAY + 3 * HOUR, arrived=NEXT_WEEK)
     assert total(packets).duplicate == 1
     assert tidy(NEXT_WEEK) == []
 

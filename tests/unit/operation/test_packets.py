@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rga.operation.inbox.account import Account
+from rga.operation.inbox.archive import PacketArchive
 from rga.operation.inbox.arrival import Arrival
-from rga.operation.inbox.known_packets import REMEMBERED
+from rga.operation.inbox.known_packets import IN_INBOX, REMEMBERED
 from rga.operation.inbox.packets import HOUR, NEVER, Packets
 from rga.operation.packets.packet import Number
 from rga.operation.rows.grid import Grid
@@ -38,16 +39,20 @@ def plain(content: str, arrived: int = NOON) -> Arrival:
     return Arrival(content.encode(), "file", arrived, NOON, NOON, sha256=content)
 
 
+def fates(packets: Packets, source: str, arrivals: list[Arrival]) -> list[str]:
+    return [fate for fate, _ in packets.receive(source, arrivals)]
+
+
 def total(packets: Packets) -> Account:
     return sum(packets.account().values(), Account())
 
 
 def test_a_packet_is_kept_once(packets: Packets) -> None:
-    assert packets.receive("east", [numbered(0), numbered(2), numbered(0)]) == [
+    assert fates(packets, "east", [numbered(0), numbered(2), numbered(0)]) == [
         "waiting", "waiting", "duplicate",
     ]  # fmt: skip
-    assert packets.receive("east", [numbered(2), numbered(1)]) == ["duplicate", "waiting"]
-    assert packets.receive("west", [numbered(2)]) == ["waiting"]
+    assert fates(packets, "east", [numbered(2), numbered(1)]) == ["duplicate", "waiting"]
+    assert fates(packets, "west", [numbered(2)]) == ["waiting"]
     assert packets.numbers("east")["a"].gaps == []
     assert packets.numbers("west")["a"].gaps == [(0, 1)]
     assert total(packets) == Account(received=6, duplicate=2, waiting=4)
@@ -56,19 +61,41 @@ def test_a_packet_is_kept_once(packets: Packets) -> None:
     assert end == NOON + 1
 
 
+def test_a_number_that_comes_again_with_other_times_is_refused(tmp_path: Path) -> None:
+    packets = Packets(Inbox(tmp_path), PATIENT, SOURCES)
+    assert fates(packets, "east", [numbered(0), numbered(1)]) == ["waiting", "waiting"]
+    again = [numbered(0, NOON + HOUR), numbered(0), numbered(2), numbered(2, NOON + 1)]
+    assert fates(packets, "east", again) == ["refused", "duplicate", "waiting", "refused"]
+    (_, why), _ = packets.receive("east", [numbered(1, NOON + HOUR), numbered(1)])
+    assert why is not None
+    assert "its number came before with other times" in why
+    assert total(packets) == Account(received=8, waiting=3, duplicate=2, refused=3)
+
+
+def test_what_went_to_the_archive_is_told_from_another_by_its_age(tmp_path: Path) -> None:
+    inbox = Inbox(tmp_path)
+    packets = Packets(inbox, PATIENT, SOURCES)
+    packets.receive("east", [numbered(0)])
+    packets.seal(NOON + HOUR, None, [])
+    later = NOON + 2 * IN_INBOX
+    assert PacketArchive(inbox, tmp_path, None).tidy(later, lambda: True)
+    assert fates(packets, "east", [numbered(0, arrived=later)]) == ["duplicate"]
+    assert fates(packets, "east", [numbered(0, later, arrived=later)]) == ["refused"]
+
+
 def test_what_has_no_number_is_known_by_its_content_for_a_day(packets: Packets) -> None:
     later = NOON + REMEMBERED
-    assert packets.receive("east", [plain("x"), plain("x"), plain("y")]) == [
+    assert fates(packets, "east", [plain("x"), plain("x"), plain("y")]) == [
         "waiting", "duplicate", "waiting",
     ]  # fmt: skip
-    assert packets.receive("east", [plain("x", later)]) == ["duplicate"]
-    assert packets.receive("east", [plain("x", later + 1)]) == ["waiting"]
-    assert packets.receive("west", [plain("x")]) == ["waiting"]
+    assert fates(packets, "east", [plain("x", later)]) == ["duplicate"]
+    assert fates(packets, "east", [plain("x", later + 1)]) == ["waiting"]
+    assert fates(packets, "west", [plain("x")]) == ["waiting"]
 
 
 def test_what_cannot_be_used_is_kept_aside_and_its_number_has_come(packets: Packets) -> None:
     refused = numbered(0, refused="its clock is 2 h ahead")
-    assert packets.receive("east", [refused, refused]) == ["refused", "duplicate"]
+    assert fates(packets, "east", [refused, refused]) == ["refused", "duplicate"]
     assert packets.numbers("east")["a"].whole == 1
     assert packets.between(NEVER, NOON + 1, 2**30)[0] == []
     assert total(packets) == Account(received=2, refused=1, duplicate=1)
@@ -76,8 +103,8 @@ def test_what_cannot_be_used_is_kept_aside_and_its_number_has_come(packets: Pack
 
 def test_numbers_that_leave_too_many_gaps_are_refused(packets: Packets) -> None:
     packets.receive("east", [numbered(2 * one + 1) for one in range(10_000)])
-    assert packets.receive("east", [numbered(30_000)]) == ["refused"]
-    assert packets.receive("east", [numbered(4)]) == ["waiting"]
+    assert fates(packets, "east", [numbered(30_000)]) == ["refused"]
+    assert fates(packets, "east", [numbered(4)]) == ["waiting"]
 
 
 def test_what_is_late_hangs_on_what_came_before_it_alone(tmp_path: Path) -> None:
@@ -86,7 +113,7 @@ def test_what_is_late_hangs_on_what_came_before_it_alone(tmp_path: Path) -> None
     def send(source: str, hours: float) -> str:
         one = plain(f"{source} {hours}")
         moment = NOON + round(hours * HOUR)
-        return packets.receive(source, [replace(one, first=moment, last=moment)])[0]
+        return fates(packets, source, [replace(one, first=moment, last=moment)])[0]
 
     assert send("east", 0.1) == "waiting"
     assert send("east", 3.4) == "waiting"
@@ -139,7 +166,7 @@ def test_the_account_balances(
     packets = Packets(Inbox(tmp_path_factory.mktemp("inbox")), PATIENT, SOURCES)
     draw, until = random.Random(seed), NEVER
     expected: Counter[str] = Counter()
-    known: set[object] = set()
+    known: dict[object, int | None] = {}
     moments: list[int] = []
     for source, name, hours, has_number, refused in sent:
         moment = NOON + hours * HOUR
@@ -147,17 +174,18 @@ def test_the_account_balances(
         one = numbered(name, moment, arrived=NOON + draw.randrange(3) * HOUR, refused=reason)
         if not has_number:
             one = Arrival(b"x", "file", one.arrived, moment, moment, None, str(name), reason)
-        fate = packets.receive(source, [one])[0]
+        fate = fates(packets, source, [one])[0]
         key = (source, has_number, name)
         if key in known and (has_number or not refused):
-            assert fate == "duplicate"
+            is_another = has_number and not refused and known[key] != moment
+            assert fate == ("refused" if is_another else "duplicate")
         elif refused:
             assert fate == "refused"
         else:
             assert fate == ("late" if moment < until else "waiting")
             moments += [moment] if fate == "waiting" else []
         if has_number or not refused:
-            known.add(key)
+            known.setdefault(key, None if refused else moment)
         expected.update(["received"] if fate == "waiting" else ["received", fate])
         if draw.random() < 0.2:
             until = max(until, NOON + draw.randrange(-3, 3) * HOUR)

@@ -66,7 +66,7 @@ class Twin:
         clock: ClockWatch | None = None,
     ) -> str:
         one = arrival_of(payload, arrived, where, self.readers[source], clock)
-        return self.packets.receive(source, [one])[0]
+        return self.packets.receive(source, [one])[0][0]
 
     def rows(self) -> np.ndarray:
         station = self.inbox.station
@@ -345,7 +345,7 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused is not None
         assert words in one.refused
-        assert twin.packets.receive("logger", [one]) == ["refused"]
+        assert twin.packets.receive("logger", [one])[0][0] == "refused"
     sent = payloads(readings())[0]
     for arrived, words in (
         (MIDNIGHT - 3600 * MICROSECONDS, "its clock is 60.5 min ahead"),

@@ -139,6 +139,23 @@ def test_mapping_is_looked_up_beside_the_record_then_beside_the_model(
     assert first("record", tmp_path / "given" / "import.toml") == -10
 
 
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_the_mapping_of_a_logger_is_not_for_what_rga_wrote(
+    tmp_path: Path, model: Model, suffix: str
+) -> None:
+    text = '[time]\ncolumns = ["Date"]\n[channels]\nD1 = { unit = "cm" }\nS1 = { unit = "m/m" }\n'
+    mapping = write(tmp_path / "import.toml", text)
+    logger = load_record(write(tmp_path / "logger.csv", "Date,D1,S1\n0,1,2e-6\n1,3,4e-6\n"), model)
+    written = tmp_path / f"written.{suffix}"
+    logger.write(written)
+    np.testing.assert_allclose(logger.readings, [[10, 2], [30, 4]])
+    np.testing.assert_array_equal(load_record(written, model).readings, logger.readings)
+    with pytest.raises(InputError, match="no time column 'Date'"):
+        load_record(written, model, mapping)
+    with pytest.raises(InputError, match="no time column 'Date'"):
+        load_record(write(tmp_path / "other.csv", "time,D1,X\n0,1,2\n"), model)
+
+
 @pytest.mark.parametrize(
     "chosen",
     [np.array([3]), np.array([True]), slice(None, None, -1), np.array([1, 0]), slice(0, 3, 0)],

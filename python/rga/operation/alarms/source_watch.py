@@ -63,6 +63,10 @@ class SourceWatch:
             if missing:
                 words = f"source {name}: {counted(missing, 'packet')} never came"
                 found.append(Condition(self._key("missing", name), words, now, size=missing))
+            if self._twin.counts_again(name):
+                words = f"source {name}: a logger counts anew under a stream that it had before"
+                words += ": its packets are refused"
+                found.append(Condition(self._key("numbers", name), words, now))
             clock = self._twin.clock_fault(name)
             if clock is not None:
                 found.append(Condition(self._key("clock", name), f"source {name}: {clock}", now))

@@ -11,14 +11,13 @@ from sqlalchemy import ColumnElement, Row, Table, delete, func, select
 
 from rga.files import write_table
 from rga.operation.inbox import tables
+from rga.operation.inbox.known_packets import IN_INBOX
 from rga.operation.inbox.packets import HOUR
 from rga.operation.packets.packet import MICROSECONDS
 from rga.twin.hardware.inbox import Inbox
 from rga.twin.repository.faults import whole
 
 DAY = 24 * HOUR
-#: days that the inbox itself keeps
-KEPT_DAYS = 7
 #: bytes of payload in one file
 MOST_BYTES = 64 * 2**20
 #: name of the folder beside the inbox
@@ -57,7 +56,7 @@ class PacketArchive:
         # What is removed makes room for what is written.
         self._remove_before(now)
         written: list[Path] = []
-        for day in self._days(now - KEPT_DAYS * DAY):
+        for day in self._days(now - IN_INBOX):
             for table in (tables.packet, tables.refused):
                 if not has_room():
                     return written

@@ -7,6 +7,8 @@ from rga.operation.packets.formats import PayloadFormat
 from rga.operation.packets.packet import Number
 
 Fate = Literal["waiting", "late", "duplicate", "refused"]
+#: what becomes of a packet, and why if it is refused
+Outcome = tuple[Fate, str | None]
 
 
 @dataclass(frozen=True)

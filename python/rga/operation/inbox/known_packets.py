@@ -5,14 +5,18 @@ import json
 from sqlalchemy import Connection, delete, insert, select
 
 from rga.operation.inbox import tables
-from rga.operation.inbox.arrival import Arrival, Fate
+from rga.operation.inbox.arrival import Arrival, Outcome
 from rga.operation.inbox.numbers import Numbers
-from rga.operation.packets.packet import MICROSECONDS
+from rga.operation.packets.packet import MICROSECONDS, Number
 from rga.twin.repository.checksum import with_checksum
 from rga.twin.repository.table_file import values_of
 
 #: how long a packet without a number is known again [µs]
 REMEMBERED = 24 * 3600 * MICROSECONDS
+#: how long the inbox itself keeps packets, to tell them from others of the same number [µs]
+IN_INBOX = 7 * REMEMBERED
+#: why a packet is refused whose logger began to count again
+COUNTED_AGAIN = "its number came before with other times: a logger that counts anew needs a stream"
 
 
 class KnownPackets:
@@ -22,8 +26,9 @@ class KnownPackets:
         self._connection, self._source = connection, source
         self._streams: dict[str, Numbers] = {}
         self._contents: set[str] = set()
+        self._moments: dict[Number, tuple[int, int]] = {}
 
-    def fate_of(self, arrival: Arrival, until: int) -> tuple[Fate, str | None]:
+    def fate_of(self, arrival: Arrival, until: int) -> Outcome:
         """What becomes of a packet, and why if it is refused."""
         reason = arrival.refused
         if arrival.number is not None:
@@ -31,7 +36,11 @@ class KnownPackets:
             if not numbers.takes(arrival.number.sequence):
                 reason = "its number leaves more gaps than are kept of a stream"
             elif not numbers.take(arrival.number.sequence):
+                if reason is None and self._is_another(arrival, arrival.number):
+                    return "refused", COUNTED_AGAIN
                 return "duplicate", None
+            else:
+                self._moments[arrival.number] = arrival.first, arrival.last
         elif reason is None and arrival.sha256 is not None:
             if self._has_come(arrival.sha256, arrival.arrived):
                 return "duplicate", None
@@ -61,6 +70,20 @@ class KnownPackets:
                 known = Numbers(values["next"], map(tuple, json.loads(values["gaps"])))
             self._streams[stream] = known
         return self._streams[stream]
+
+    def _is_another(self, arrival: Arrival, number: Number) -> bool:
+        """Whether a packet is not the one that had its number before."""
+        moments = arrival.first, arrival.last
+        if number in self._moments:
+            return self._moments[number] != moments
+        c = tables.packet.c
+        same = (c.stream == number.stream) & (c.sequence == number.sequence)
+        chosen = select(c.first, c.last).where((c.source == self._source) & same)
+        found = self._connection.execute(chosen).one_or_none()
+        if found is not None:
+            return tuple(found) != moments
+        # The other one was refused, or has gone to the archive since.
+        return arrival.last > arrival.arrived - IN_INBOX
 
     def _has_come(self, sha256: str, arrived: int) -> bool:
         if sha256 in self._contents:

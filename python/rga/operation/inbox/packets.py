@@ -14,7 +14,7 @@ from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.operation.inbox import tables
 from rga.operation.inbox.account import Account
-from rga.operation.inbox.arrival import Arrival, Fate
+from rga.operation.inbox.arrival import Arrival, Fate, Outcome
 from rga.operation.inbox.known_packets import KnownPackets
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.packets.formats import PayloadFormat
@@ -76,7 +76,7 @@ class Packets:
 
     def receive(
         self, source: str, arrivals: Sequence[Arrival], cursor: Mapping[str, Any] | None = None
-    ) -> list[Fate]:
+    ) -> list[Outcome]:
         """Keep packets; they are on the disk when this returns, and may be acknowledged.
 
         Args:
@@ -86,7 +86,7 @@ class Packets:
                 say it.
 
         Returns:
-            What becomes of each.
+            What becomes of each, and why if it is refused.
 
         Raises:
             InputError: nothing of them is kept, for the disk is full or the file is damaged.
@@ -97,13 +97,13 @@ class Packets:
             entries: list[dict[str, Any]] = []
             aside: list[dict[str, Any]] = []
             number, refused = _last(connection, tables.packet), _last(connection, tables.refused)
-            fates: list[Fate] = []
+            outcomes: list[Outcome] = []
             counts: dict[int, Counter[str]] = {}
             for one in arrivals:
                 final = self._grid.final_until(latest)
                 until = sealed if final is None else max(sealed, final)
                 fate, reason = known.fate_of(one, until)
-                fates.append(fate)
+                outcomes.append((fate, reason))
                 late_before = until if fate == "waiting" and one.first < until else None
                 count = counts.setdefault(one.arrived - one.arrived % HOUR, Counter())
                 count.update(received=1, partly_late=int(late_before is not None))
@@ -125,7 +125,7 @@ class Packets:
                 _keep_cursor(connection, source, part, json.dumps(state))
             for hour, count in counts.items():
                 _count(connection, source, hour, count)
-        return fates
+        return outcomes
 
     @property
     def sealed(self) -> int:

@@ -5,13 +5,11 @@ from threading import Event, Thread
 from typing import Any, Protocol
 
 from rga.errors import InputError
-from rga.operation.inbox.arrival import Fate
+from rga.operation.inbox.arrival import Outcome
 from rga.operation.inbox.numbers import Numbers
 
 #: the place that a payload came from, and the payload
 Placed = tuple[str, bytes]
-#: what becomes of a payload, and why if it is refused
-Outcome = tuple[Fate, str | None]
 
 
 class DataSource(Protocol):

@@ -7,11 +7,12 @@ from threading import Event
 from typing import Any
 
 from rga.errors import InputError
+from rga.operation.inbox.arrival import Outcome
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.packets.packet import MOST_BYTES
 from rga.operation.sources.opened import opened
 from rga.operation.sources.settings import AnySource, FolderSource, MqttSource, SqlSource
-from rga.operation.sources.source import DataSource, Outcome, Placed
+from rga.operation.sources.source import DataSource, Placed
 from rga.records.mapping import FileMapping
 
 #: how often a source is looked at while it is listened to [s]
