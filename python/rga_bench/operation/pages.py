@@ -13,8 +13,8 @@ from urllib.request import urlopen
 from rga_bench.operation.row_by_row import TWIN, RowByRow, row_by_row
 from rga_bench.operation.viewers import LONGEST, viewers
 
-#: how often the newest readings are asked for
-ASKED = 20
+#: how often the newest readings are asked for, and of how many rows one is sent to all viewers
+ASKED, THINNED = 20, 5
 #: what a page loads besides
 _LOADED = re.compile(r'(?:href|src)="(/static/[^"]+)"')
 
@@ -70,7 +70,7 @@ def page_cost(sensors: int, panels: int, rows: int, many: int, seed: int) -> Pag
             told = _times(bridge, rows, one.wait_told)
             alone, _ = _cost(bridge, rows, one.wait_shown)
         with viewers(address, many) as all_of_them:
-            together, slow = _cost(bridge, rows, all_of_them.wait_shown)
+            together, slow = _cost(bridge, max(2, rows // THINNED), all_of_them.wait_shown)
         drawn, lacking = _drawn(bridge, rows)
         return PageCost(
             sensors=sensors,

@@ -83,6 +83,17 @@ class Source:
             found = connection.execute(statement.limit(number)).all()
             return [whole(table, entry) for entry in reversed(found)]
 
+    def last_of(self, table: Table, key: ColumnElement[bool]) -> Row[Any] | None:
+        """The entry that was stored last under a key, however many there are under others.
+
+        Args:
+            table: which is indexed by the key and the step.
+            key: the condition of it.
+        """
+        # By the order within a step the index would not be taken, and all entries be read.
+        step = self._select(table, func.max(table.c.step)).where(key).scalar_subquery()
+        return self.last(table, key, table.c.step == step)
+
     def last_chunk(self, table: Table) -> Row[Any] | None:
         """The chunk of the last rows, if any."""
         first = self._select(table, func.max(table.c.first_row)).scalar_subquery()

@@ -293,7 +293,7 @@ class RunView:
 
     def last_message(self, kind: str) -> StoredMessage | None:
         """The last message of a kind; None where there is none."""
-        entry = self._source.last(tables.message, tables.message.c.kind == kind)
+        entry = self._source.last_of(tables.message, tables.message.c.kind == kind)
         return None if entry is None else _message(entry)
 
     def story(self, first: int = 0, end: int | None = None) -> tuple[StoredMessage | Event, ...]:
@@ -308,7 +308,7 @@ class RunView:
 
     def kept(self, name: str) -> bytes | None:
         """What was kept last under a name; None where nothing was."""
-        entry = self._source.last(tables.kept, tables.kept.c.name == name)
+        entry = self._source.last_of(tables.kept, tables.kept.c.name == name)
         return None if entry is None else bytes(entry.data)
 
 
