@@ -45,18 +45,21 @@ class LongService:
         folder: of its files.
         broker: that it is behind.
         stream: of the model and the settings of its twin.
-        every: length of a row, by which samples may be late too [s].
+        every: length of a row [s].
+        late: rows by which samples may come after others of later times.
     """
 
-    def __init__(self, folder: Path, broker: Mosquitto, stream: Stream, every: int) -> None:
+    def __init__(
+        self, folder: Path, broker: Mosquitto, stream: Stream, every: int, late: int
+    ) -> None:
         model: dict[str, Any] = json.loads(written(stream.model)[0])
         source = by_broker(broker.url)
         address = write_service(
-            folder, model, stream.settings, source=source, every=every, lateness=every
+            folder, model, stream.settings, source=source, every=every, lateness=late * every
         )
         self._data, self._process = folder / "data", ServiceProcess(folder, address)
         self._sender, self._packet = BrokerSender(f"{broker.url}/{TOPIC}"), stream.settings.packet
-        self.sent = 0
+        self._late, self.sent = late, 0
         self.start()
 
     def start(self) -> None:
@@ -90,8 +93,8 @@ class LongService:
 
     def played(self) -> Mark:
         """What it took until all was played that was sent."""
-        # The last row waits for what may be late, and the twin for the others of its packet.
-        due = (self.sent - 2) // self._packet * self._packet
+        # The last rows wait for what may be late, and the twin for the others of its packet.
+        due = (self.sent - 1 - self._late) // self._packet * self._packet
         until = time.monotonic() + LONGEST
         while self.now["rows"] < due:
             assert time.monotonic() < until, "it does not come"
@@ -113,5 +116,5 @@ class LongService:
         file = self._data / "record.parquet"
         assert export("export", self._data / "east", "-o", file).code == 0
         rows = pl.read_parquet(file)
-        assert self.sent - 2 - self._packet < len(rows) <= account["used"]
+        assert self.sent - 1 - self._late - self._packet < len(rows) <= account["used"]
         return rows

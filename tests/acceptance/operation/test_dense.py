@@ -25,6 +25,8 @@ __all__ = ["mosquitto"]
 SECONDS = int(os.environ.get("RGA_TEST_DENSE_SECONDS", "450"))
 FEW = 50
 SPEED = 10
+#: rows by which samples may be late: nothing waits in the broker for long
+LATE = 5
 SENSORS, SAMPLES = DENSE
 #: by how much memory may grow from the first third to the end: of it, and what is freed and not
 #: given back to the system; were packets held, those of half an hour would be twice as much [B]
@@ -38,7 +40,7 @@ STREAM = Stream(SENSORS, 10, settings(10, calibration_rows=20), seed=6)
 
 @pytest.fixture
 def service(tmp_path: Path, mosquitto: Mosquitto) -> Iterator[LongService]:
-    found = LongService(tmp_path, mosquitto, STREAM, 1)
+    found = LongService(tmp_path, mosquitto, STREAM, every=1, late=LATE)
     yield found
     found.stop()
 

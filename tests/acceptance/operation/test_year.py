@@ -23,9 +23,12 @@ __all__ = ["mosquitto"]
 #: `RGA_TEST_YEAR_ROWS=525600` is what is promised
 ROWS = int(os.environ.get("RGA_TEST_YEAR_ROWS", "20000"))
 #: rows of the short form, and before those that are early ones
-FEW, BEFORE = 300, 400
+FEW, BEFORE = 400, 600
 #: rows that a twin takes in together, and length of one [s]
 PACKET, EVERY = 20, 60
+#: rows by which samples may be late: of what waits in mosquitto one packet may overtake as many as
+#: are on their way to the service at once
+LATE = 120
 #: what a row may cost late, as many times as early
 MOST = 1.2
 #: by how much a restart may cost more at the end than at the beginning: time of the processor [s],
@@ -36,7 +39,7 @@ STREAM = Stream(12, 10, settings(PACKET), seed=5)
 
 @pytest.fixture
 def service(tmp_path: Path, mosquitto: Mosquitto) -> Iterator[LongService]:
-    found = LongService(tmp_path, mosquitto, STREAM, EVERY)
+    found = LongService(tmp_path, mosquitto, STREAM, EVERY, LATE)
     yield found
     found.stop()
 
