@@ -33,6 +33,7 @@ def test_what_cannot_be_read_keeps_nothing_waiting() -> None:
     assert found == expected
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not Path("/proc/self/io").exists(), reason="the system does not tell of usage")
 def test_a_row_is_seen_by_all_who_look() -> None:
     found = page_cost(12, 10, rows=2, many=3, seed=0)
