@@ -102,6 +102,20 @@ def test_pages_fit_a_phone_and_load_little(opened: Callable[..., Page]) -> None:
         assert sum(loaded) < MOST_BYTES, path
 
 
+def test_the_account_can_be_read_on_a_phone(opened: Callable[..., Page]) -> None:
+    page = opened(viewport=PHONE)
+    page.goto("/twins/east/data")
+    for one in page.locator("table.account tbody").locator("th, td").all():
+        box = one.bounding_box()
+        # Each stands in one line, within the page.
+        assert box["height"] < 30
+        assert box["x"] + box["width"] <= PHONE["width"]
+    fates = page.locator("table.account tr:last-child td").evaluate_all(
+        "all => all.map((one) => getComputedStyle(one, '::before').content)"
+    )
+    assert fates[-3:] == ['"partly late"', '"refused"', '"unaccounted"']
+
+
 def _size_of(answer: Any) -> int:
     """Bytes of what was loaded; a stream goes on, and is none of the page."""
     kind = answer.headers.get("content-type", "")

@@ -68,6 +68,25 @@ def test_the_bridge_says_where_it_is_off(client: TestClient) -> None:
     assert 'class="foot marked"' in html
 
 
+@pytest.mark.parametrize("tab", ["", "/sensors"])
+def test_sensors_stand_by_the_number_that_is_shown(client: TestClient, tab: str) -> None:
+    html = page(client, f"/twins/east{tab}")
+    shown = re.findall(r'id="row-\d+".*?<td><span class="level.*?<b>([^<]+)</b>', html)
+    gaps = [float(re.sub(r"\s", "", one)) for one in shown]
+    assert len(gaps) == 11
+    assert gaps == sorted(gaps, reverse=True)
+    # By their classes and the order of the model it would be another one.
+    assert len(set(gaps)) > 5
+
+
+def test_contexts_that_are_inferred_have_an_interval(client: TestClient) -> None:
+    html = page(client, "/twins/east").split('id="contexts"')[1]
+    told = re.findall(r'<th scope="row">[^<]+</th><td class="n">([^<]+)</td>', html)
+    assert len(told) == 3
+    # The thermometer has noise, so that its temperature is inferred as well.
+    assert all("[" in words and "measured" not in words for words in told)
+
+
 def test_the_bridge_as_it_stood(client: TestClient) -> None:
     """Before the bearing sank all was as noise, and no alarm had come."""
     before = page(client, f"/twins/east?at={600 * 70}")
