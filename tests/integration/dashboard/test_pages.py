@@ -15,6 +15,7 @@ from live_streams import sinking
 from rga.dashboard.app import app_of
 from rga.jobs.run import FILE
 from rga.model import read_model
+from rga.operation.alarms.condition import Condition, ConditionKey, Observation
 from rga.operation.configuration import read_configuration
 from rga.operation.disk import room as disk_room
 from rga.operation.service import Service
@@ -51,6 +52,42 @@ def test_every_page_of_every_twin_opens(client: TestClient) -> None:
             assert "onclick" not in html
     page(client, "/twins/south", 404)
     page(client, "/twins/east/sensors?name=D9", 404)
+
+
+def test_twins_of_one_model_are_told_apart(client: TestClient) -> None:
+    cards = page(client, "/").split("<article")[1:]
+    assert [re.findall(r'<p class="name">(\w+)</p>', one) for one in cards] == [["east"], ["west"]]
+    for twin in ("east", "west"):
+        heading = page(client, f"/twins/{twin}").split("<h1>")[1].split("</h1>")[0]
+        assert heading.startswith(f'small bridge <span class="name">{twin}</span>')
+
+
+def test_the_fleet_counts_as_open_what_the_page_of_alarms_does(
+    service: Service, client: TestClient
+) -> None:
+    def told() -> tuple[str, str, int]:
+        fleet = page(client, "/")
+        heading = fleet.split("<h1>Fleet</h1>")[1].split("</p>")[0]
+        (card,) = [one for one in fleet.split("<article")[1:] if 'name">west<' in one]
+        counted = card.split("<dt>open alarms</dt>")[1].split("</div>")[0]
+        said = [re.sub(r"<[^>]+>", "", one).strip() for one in (heading, counted)]
+        shown = page(client, "/twins/west/alarms").split("<details>")[0]
+        return said[0], said[1], shown.count('<article class="panel alarm ')
+
+    there = Condition(ConditionKey("west", "gap", "alarm", "twin"), "out of step", START)
+    judged = frozenset({"gap"})
+    assert told() == ("2 bridges; 1 needs somebody to look; no open alarms.", "0", 0)
+    service.alarms.observe("west", Observation((there,), judged))
+    service.alarms.observe("west", Observation((), judged))
+    # Well again, it is open as long as nobody has seen it.
+    assert told() == ("2 bridges; 2 need somebody to look; 1 open alarm.", "1 1 to acknowledge", 1)
+    service.alarms.observe("west", Observation((there,), judged))
+    (alarm,) = service.alarms.open()
+    service.alarms.acknowledge(alarm.id, "Ada")
+    told_then = ("2 bridges; 1 needs somebody to look; 1 open alarm.", "1 none to acknowledge", 1)
+    assert told() == told_then
+    service.alarms.observe("west", Observation((), judged))
+    assert told() == ("2 bridges; 1 needs somebody to look; no open alarms.", "0", 0)
 
 
 def test_pages_may_load_from_their_server_alone(client: TestClient) -> None:
