@@ -80,11 +80,15 @@ def test_the_fleet_counts_as_open_what_the_page_of_alarms_does(
     service.alarms.observe("west", Observation((there,), judged))
     service.alarms.observe("west", Observation((), judged))
     # Well again, it is open as long as nobody has seen it.
-    assert told() == ("2 bridges; 2 need somebody to look; 1 open alarm.", "1 1 to acknowledge", 1)
+    assert told() == (
+        "2 bridges; 2 need somebody to look; 1 open alarm.",
+        "1 (1 to acknowledge)",
+        1,
+    )
     service.alarms.observe("west", Observation((there,), judged))
     (alarm,) = service.alarms.open()
     service.alarms.acknowledge(alarm.id, "Ada")
-    told_then = ("2 bridges; 1 needs somebody to look; 1 open alarm.", "1 none to acknowledge", 1)
+    told_then = ("2 bridges; 1 needs somebody to look; 1 open alarm.", "1 (none to acknowledge)", 1)
     assert told() == told_then
     service.alarms.observe("west", Observation((), judged))
     assert told() == ("2 bridges; 1 needs somebody to look; no open alarms.", "0", 0)
@@ -136,6 +140,38 @@ def test_the_bridge_as_it_stood(client: TestClient) -> None:
     assert 'class="mark alarm"' in page(client, mark)
     for odd in ("nan", "-5", "1e300", "soon", "0"):
         page(client, f"/twins/east?at={odd}")
+
+
+def test_the_past_is_told_from_the_present_and_keeps_its_span(client: TestClient) -> None:
+    now = page(client, "/twins/east?span=day")
+    assert "This page shows" not in now
+    before = page(client, f"/twins/east?at={600 * 70}&span=day")
+    heading = before.split("<h1>")[1].split("</h1>")[0]
+    assert "in step" in heading
+    said = before.split("This page shows")[1].split("</p>")[0]
+    assert "2026-11-23 11:40 UTC" in said
+    assert "</span> alarm</span>" in said
+    for html in (now, before):
+        assert '<input type="hidden" name="span" value="day">' in html
+        assert re.search(r'span=day" aria-current', html)
+    assert 'href="/twins/east?span=day">Back to now' in before
+    # Marks and what happened lead to the past over the same span.
+    hrefs = re.findall(r'href="(/twins/east[^"]*at=[^"]+)"', now)
+    assert hrefs
+    assert all("span=day" in one for one in hrefs)
+
+
+def test_a_page_that_there_is_not_is_told_of_as_a_page(
+    client: TestClient,
+) -> None:
+    for path in ("/nowhere", "/twins/south", "/twins/east/nowhere", "/twins/east/sensors?name=D9"):
+        html = page(client, path, 404)
+        assert "<h1>There is no such page</h1>" in html
+    assert "This cannot be shown" in page(client, "/twins/No%20Name!", 422)
+    # Programs are told in JSON.
+    for path, accept in (("/nowhere", "*/*"), ("/api/v1/twins/south", "text/html")):
+        answer = client.get(path, headers={"accept": accept})
+        assert (answer.status_code, list(answer.json())) == (404, ["detail"])
 
 
 def test_accepting_makes_a_version_and_the_gap_falls(

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from rga.dashboard.pages.happened import Past
-from rga.dashboard.pages.heading import heading
+from rga.dashboard.pages.heading import heading, heading_as_of
 from rga.dashboard.pages.in_force import in_force
 from rga.dashboard.pages.sensors_now import farthest_first, sensor_rows
 from rga.dashboard.pages.times import age_words, given_moment, of_event
-from rga.dashboard.pages.windows import SPANS, chosen_window
+from rga.dashboard.pages.windows import SPANS, asked_span, chosen_window
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.dashboard.svg.chart import POINTS, Column, TimeChart, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
@@ -66,6 +66,8 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
     newest = seen.reading.elapsed(latest.time)
     at = asked_time(query, start)
     now = latest if at is None else seen.reading.as_of(at)
+    if at is not None:
+        found["heading"] = heading_as_of(seen, now, latest)
     found |= {
         "slider": {
             "most": round(newest, 3),
@@ -74,6 +76,7 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
             "moment": None if at is None else Window(start, 0, 1).moment(min(at, newest)),
         },
         "past": at is not None,
+        "span": asked_span(query),
     }
     if now is None or now.time is None:
         return found | {"now": None}
@@ -82,7 +85,9 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
     series = seen.reading.series(window.begin, window.end, POINTS)
     assert series is not None  # it has begun
     events = [one for one in seen.reading.events() if of_event(one.time) <= now.time]
-    past = Past(seen.name, seen.reading.view(), events)
+    past = Past(
+        seen.name, seen.reading.view(), events, f"span={chosen.span}&" if chosen.span else ""
+    )
     rows = sensor_rows(twin.given, now)
     weights = {name: one.recent or 0.0 for name, one in now.sensors.items()}
     return found | {
