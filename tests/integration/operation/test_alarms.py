@@ -1,7 +1,6 @@
 """What a service raises alarms of, and what it does not: nothing of a calm stream or a restart."""
 
 import json
-import re
 import shutil
 from collections import Counter, namedtuple
 from collections.abc import Callable
@@ -219,16 +218,12 @@ def test_what_is_decided_is_no_alarm_any_more(sunk: Bridge) -> None:
         live.ask(Reject(who="Ada", why="the bearing was greased"))
         live.play()
     sunk.look(play=True)
-    assert sunk.changes == [
-        *said,
-        ("proposal", "proposal", "acknowledged"),
-        ("proposal", "proposal", "cleared"),
-    ]
+    ends = [("proposal", "proposal", one) for one in ("acknowledged", "cleared")]
+    assert sunk.changes == [*said, *ends]
     alarm = next(one for one in sunk.service.alarms.all(10) if one.kind == "proposal")
     assert (alarm.state, alarm.acknowledged_by) == ("closed", "Ada")
-    assert re.match(r"proposal \d+ was rejected by Ada: a model with ", alarm.words)
-    (seen,) = [one for one in sunk.service.alarms.life(alarm.id) if one.who is not None]
-    assert seen.why == "the bearing was greased"
+    assert " was rejected by Ada: a model with " in alarm.words
+    assert "the bearing was greased" in [one.why for one in sunk.service.alarms.life(alarm.id)]
 
 
 def _fails(*_: object) -> None:
