@@ -11,58 +11,11 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from rga.errors import InputError
-from rga.operation.alarms import tables
-from rga.operation.alarms.alarm_book import AlarmBook
 from rga.operation.alarms.condition import (
-    AlarmKind,
-    Condition,
     ConditionKey,
-    Ending,
     Observation,
 )
-from rga.operation.alarms.operator_alarm import AlarmTransition, OperatorAlarm
-from rga.operation.service_file import service_file
-from served.service_times import NOON, SetClock
-
-DELAYS: dict[AlarmKind, tuple[float, float]] = {
-    "gap": (0, 0), "quality": (60, 120), "source": (0, 60), "service": (30, 30), "proposal": (0, 0),
-}  # fmt: skip
-JUDGED = frozenset(DELAYS)
-GAP = ConditionKey("east", "gap", "alarm", "twin")
-SILENT = ConditionKey("east", "quality", "silent", "D1")
-
-
-def wrong(key: ConditionKey, size: int = 0) -> Condition:
-    return Condition(key, f"{key.subject} is {key.cause}", NOON, ("D1",), size)
-
-
-class Desk:
-    """A book of alarms, what it tells, and a clock that is set by hand."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.clock = folder, SetClock()
-        self.told: list[tuple[int, str]] = []
-        self.start()
-
-    def start(self) -> None:
-        self.file = service_file(self.folder, tables.metadata)
-        self.book = AlarmBook(self.file, DELAYS, self.clock, self._tell)
-
-    def restart(self) -> None:
-        self.file.close()
-        self.start()
-
-    def see(self, *conditions: Condition, after: float = 1.0, **more: object) -> None:
-        self.clock.pass_by(after)
-        observed: dict[str, object] = {"judged": JUDGED} | more
-        self.book.observe("east", Observation(conditions, **observed))  # type: ignore[arg-type]
-
-    def _tell(self, _: object, alarm: OperatorAlarm, transition: AlarmTransition) -> None:
-        self.told.append((alarm.id, transition.change))
-
-    @property
-    def states(self) -> list[tuple[int, str]]:
-        return [(one.id, one.state) for one in self.book.open()]
+from served.alarm_book import GAP, JUDGED, SILENT, Desk, wrong
 
 
 @pytest.fixture
@@ -179,79 +132,6 @@ def test_what_has_doubled_is_raised_anew(desk: Desk) -> None:
     assert desk.states == [(1, "raised")]
     desk.see(wrong(missing, size=3))
     assert len(desk.told) == 3
-
-
-PROPOSED = ConditionKey("east", "proposal", "proposal", "1")
-ACCEPTED = {PROPOSED: Ending("proposal 2 was accepted by Ada", "Ada", "surveyed")}
-
-
-def waits(number: int) -> Condition:
-    return Condition(PROPOSED, f"proposal {number} waits", NOON, is_renewed=True)
-
-
-def test_an_alarm_goes_on_with_newer_words_and_tells_nobody(desk: Desk) -> None:
-    desk.see(waits(1))
-    desk.book.acknowledge(1, "Bob")
-    desk.see(waits(2))
-    assert desk.states == [(1, "acknowledged")]
-    assert desk.book.of(1).words == "proposal 2 waits"
-    assert [one.change for one in desk.book.life(1)] == ["raised", "acknowledged", "renewed"]
-    assert desk.told == [(1, "raised"), (1, "acknowledged")]
-    desk.see(waits(2))
-    assert len(desk.book.life(1)) == 3
-
-
-def test_words_of_other_alarms_stay_as_they_were_raised(desk: Desk) -> None:
-    desk.see(wrong(GAP))
-    desk.see(Condition(GAP, "other words", NOON))
-    assert desk.book.of(1).words == wrong(GAP).words
-    assert [one.change for one in desk.book.life(1)] == ["raised"]
-
-
-def test_who_makes_an_end_of_it_has_acknowledged_it(desk: Desk) -> None:
-    desk.see(waits(2))
-    desk.see(endings=ACCEPTED)
-    assert desk.states == []
-    alarm = desk.book.of(1)
-    assert (alarm.state, alarm.acknowledged_by) == ("closed", "Ada")
-    assert alarm.words == "proposal 2 was accepted by Ada"
-    assert [(one.change, one.who, one.why) for one in desk.book.life(1)][1:] == [
-        ("acknowledged", "Ada", "surveyed"),
-        ("cleared", None, ""),
-    ]
-    # An end that is known of long ago raises and clears nothing.
-    desk.see(endings=ACCEPTED)
-    assert len(desk.told) == 3
-
-
-def test_who_acknowledged_it_before_stays_named(desk: Desk) -> None:
-    desk.see(waits(2))
-    desk.book.acknowledge(1, "Bob")
-    desk.see(endings=ACCEPTED)
-    alarm = desk.book.of(1)
-    assert (alarm.state, alarm.acknowledged_by) == ("closed", "Bob")
-    assert alarm.words == "proposal 2 was accepted by Ada"
-
-
-def test_what_was_decided_comes_back_from_no_shelf(desk: Desk) -> None:
-    desk.see(waits(2))
-    desk.book.shelve(1, desk.clock.now() + timedelta(hours=1), "Bob")
-    desk.see(endings=ACCEPTED)
-    assert desk.book.of(1).state == "closed"
-    desk.clock.pass_by(3600)
-    desk.book.end_shelves()
-    assert desk.states == []
-
-
-def test_what_ended_by_itself_waits_for_somebody_who_has_seen_it(desk: Desk) -> None:
-    desk.see(waits(1))
-    desk.see(endings={PROPOSED: Ending("proposal 1 is withdrawn")})
-    assert desk.states == [(1, "cleared")]
-    assert desk.book.of(1).words == "proposal 1 is withdrawn"
-    # Proposed again before anybody has, it is the same alarm.
-    desk.see(waits(2))
-    assert desk.states == [(1, "raised")]
-    assert desk.book.of(1).words == "proposal 2 waits"
 
 
 def test_of_what_nothing_is_known_nothing_changes(desk: Desk) -> None:
