@@ -9,6 +9,8 @@ from rga.operation.alarms.operator_alarm import OperatorAlarm
 
 #: how long an alarm may be put on the shelf, in words [h]
 SHELVES = {"1 h": 1, "8 h": 8, "1 day": 24, "7 days": 168, "30 days": 720}
+#: states of open alarms that nobody has acknowledged, or put on a shelf
+UNSEEN = ("raised", "cleared")
 
 
 def alarms_of(book: AlarmBook, twin: str | None, closed: int = 0) -> list[OperatorAlarm]:
@@ -17,7 +19,7 @@ def alarms_of(book: AlarmBook, twin: str | None, closed: int = 0) -> list[Operat
     Those that nobody has acknowledged come first, the newest of each.
     """
     found = [one for one in book.open() if one.twin == twin]
-    order = ("raised", "cleared", "acknowledged", "shelved")
+    order = (*UNSEEN, "acknowledged", "shelved")
     found.sort(key=lambda one: one.raised_at, reverse=True)
     found.sort(key=lambda one: order.index(one.state))
     known = {one.id for one in found}

@@ -5,6 +5,7 @@ from contextlib import asynccontextmanager
 
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
 from starlette.staticfiles import StaticFiles
 
@@ -32,6 +33,7 @@ from rga.dashboard.api.following import FollowedTwin
 from rga.dashboard.api.reports import Reports
 from rga.dashboard.api.served import PREFIX
 from rga.dashboard.bounded_body import BoundedBody
+from rga.dashboard.pages.refusals import told, told_of_refusal
 from rga.dashboard.pages.routes import router as pages
 from rga.dashboard.surroundings import Surroundings
 from rga.errors import InputError
@@ -76,6 +78,7 @@ def app_of(service: Service, is_ending: Callable[[], bool] = lambda: False) -> F
     app.add_middleware(BoundedBody)
     app.add_middleware(Guard, access=access)
     app.add_exception_handler(NotLoggedIn, to_login)
+    app.add_exception_handler(HTTPException, told_of_refusal)
     app.add_exception_handler(RequestValidationError, _told_of_mistake)
     app.add_exception_handler(InputError, _told_of_error)
     add_routes(app)
@@ -98,7 +101,7 @@ def _told_of_mistake(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     place = ".".join(str(one) for one in first["loc"])
-    return JSONResponse({"detail": f"{place}: {first['msg']}"}, 422)
+    return told(request, f"{place}: {first['msg']}", 422)
 
 
 def _told_of_error(request: Request, error: Exception) -> Response:

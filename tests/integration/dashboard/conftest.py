@@ -62,3 +62,11 @@ def client(service: Service) -> Iterator[TestClient]:
     """A program of this machine that calls it."""
     with TestClient(app_of(service), base_url=HERE, raise_server_exceptions=True) as found:
         yield found
+
+
+def page(client: TestClient, path: str, status: int = 200) -> str:
+    """A page as a browser gets it."""
+    answer = client.get(path, headers={"accept": "text/html"})
+    assert answer.status_code == status, answer.text
+    assert len(answer.content) < 400_000
+    return answer.text

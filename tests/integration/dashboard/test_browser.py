@@ -40,6 +40,9 @@ MOST_BYTES = 400_000
 #: of a phone
 PHONE = {"width": 390, "height": 844}
 Page = Any
+#: which sensor lies at a place, and of which it is the ground for a finger
+ELEMENT_AT = "([x, y]) => document.elementFromPoint(x, y).closest('a').id"
+REACH_AT = "([x, y]) => document.elementFromPoint(x, y).closest('a.reach')?.dataset.of"
 
 
 @pytest.fixture(scope="module")
@@ -100,6 +103,56 @@ def test_pages_fit_a_phone_and_load_little(opened: Callable[..., Page]) -> None:
         assert answer.status == 200, path
         assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"], path
         assert sum(loaded) < MOST_BYTES, path
+
+
+def test_the_account_can_be_read_on_a_phone(opened: Callable[..., Page]) -> None:
+    page = opened(viewport=PHONE)
+    page.goto("/twins/east/data")
+    for one in page.locator("table.account tbody").locator("th, td").all():
+        box = one.bounding_box()
+        # Each stands in one line, within the page.
+        assert box["height"] < 30
+        assert box["x"] + box["width"] <= PHONE["width"]
+    fates = page.locator("table.account tr:last-child td").evaluate_all(
+        "all => all.map((one) => getComputedStyle(one, '::before').content)"
+    )
+    assert fates[-3:] == ['"partly late"', '"refused"', '"unaccounted"']
+
+
+def test_a_finger_that_misses_a_sensor_finds_it(opened: Callable[..., Page]) -> None:
+    page = opened(viewport=PHONE, has_touch=True)
+    page.goto("/twins/east")
+    box = page.locator("#sensor-3").bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    assert page.evaluate(ELEMENT_AT, [*middle]) == "sensor-3"
+    # Beside the mark, and still within 12 px of its middle, where no other mark is.
+    around = [(middle[0] + x, middle[1] + y) for x in (0, 8, -8) for y in (11, -11, 8, -8)]
+    beside = [one for one in around if page.evaluate(REACH_AT, [*one]) == "sensor-3"]
+    page.touchscreen.tap(*beside[0])
+    page.wait_for_url("**/twins/east#row-3")
+    assert page.locator(".pointed").inner_text().startswith(page.locator("#row-3 a").inner_text())
+
+
+def test_fields_stay_in_their_panel_on_a_phone(opened: Callable[..., Page]) -> None:
+    page = opened(viewport=PHONE)
+    page.goto("/twins/east/queries")
+    panel = page.locator("form.controls").bounding_box()
+    for one in page.locator("form.controls select, form.controls input").all():
+        box = one.bounding_box()
+        assert box["x"] + box["width"] <= panel["x"] + panel["width"]
+
+
+def test_buttons_of_an_alarm_stand_beside_their_fields(
+    opened: Callable[..., Page], service: Service
+) -> None:
+    there = Condition(ConditionKey("east", "gap", "alarm", "twin"), "off", datetime.now(UTC))
+    service.alarms.observe("east", Observation((there,), frozenset({"gap"})))
+    page = opened(viewport={"width": 1280, "height": 900})
+    page.goto("/twins/east/alarms")
+    for form in page.locator(".alarm.raised form").all():
+        fields = form.locator("input:not([type=hidden]), select, button").all()
+        feet = [box["y"] + box["height"] for box in (one.bounding_box() for one in fields)]
+        assert max(feet) - min(feet) <= 2
 
 
 def _size_of(answer: Any) -> int:

@@ -21,17 +21,10 @@ from rga.operation.service import Service
 from rga.records import Record
 from served.bridges import HOSTILE, configured, lived, long_bridge, packets_of, played
 
-from .conftest import HERE, START
+from .conftest import HERE, START, page
 
 TABS = ("", "/sensors", "/alarms", "/causes", "/versions", "/queries", "/data")
 FORM = {"Origin": HERE}
-
-
-def page(client: TestClient, path: str, status: int = 200) -> str:
-    answer = client.get(path, headers={"accept": "text/html"})
-    assert answer.status_code == status, answer.text
-    assert len(answer.content) < 400_000
-    return answer.text
 
 
 def form_of(html: str, kind: str) -> dict[str, str]:

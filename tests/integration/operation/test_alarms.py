@@ -218,7 +218,12 @@ def test_what_is_decided_is_no_alarm_any_more(sunk: Bridge) -> None:
         live.ask(Reject(who="Ada", why="the bearing was greased"))
         live.play()
     sunk.look(play=True)
-    assert sunk.changes == [*said, ("proposal", "proposal", "cleared")]
+    ends = [("proposal", "proposal", one) for one in ("acknowledged", "cleared")]
+    assert sunk.changes == [*said, *ends]
+    alarm = next(one for one in sunk.service.alarms.all(10) if one.kind == "proposal")
+    assert (alarm.state, alarm.acknowledged_by) == ("closed", "Ada")
+    assert " was rejected by Ada: a model with " in alarm.words
+    assert "the bearing was greased" in [one.why for one in sunk.service.alarms.life(alarm.id)]
 
 
 def _fails(*_: object) -> None:

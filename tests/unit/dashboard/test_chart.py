@@ -3,6 +3,7 @@
 from datetime import UTC, datetime
 
 import numpy as np
+import pytest
 
 from rga.dashboard.svg.chart import HIGH, WIDE, ChartMark, Column, Window, chart
 
@@ -33,6 +34,22 @@ def test_a_factor_is_a_step_upwards() -> None:
     heights = [float(one.split()[1]) for one in path[1:].split("L")]
     assert np.isclose(heights[0] - heights[1], heights[1] - heights[2], atol=0.2)
     assert "nan" not in line([0.0, 1.0], logarithmic=True)
+
+
+@pytest.mark.parametrize(
+    ("values", "ticks"),
+    [
+        ([0.6, 3.0], ["1", "3", "10"]),
+        ([0.2, 40.0], ["0.3", "1", "3", "10", "30"]),
+        ([0.2, 2000.0], ["1", "10", "100", "1000"]),
+    ],
+)
+def test_a_scale_of_factors_has_three_ticks_at_least(values: list[float], ticks: list[str]) -> None:
+    time, column = np.array([0.0, 100.0]), np.array(values)
+    columns = [Column("a", "gap", column, column, column)]
+    drawn = chart("t", "", time, columns, WINDOW, logarithmic=True)
+    assert [one.words for one in drawn.up] == ticks
+    assert drawn.logarithmic
 
 
 def test_a_band_lies_around_blocks_of_rows_alone() -> None:

@@ -60,10 +60,15 @@ def log_out(request: Request, access: _Given) -> Response:
 def to_login(request: Request, error: Exception) -> Response:
     """What somebody who is not logged in gets: a browser the page to log in, others an error."""
     assert isinstance(error, NotLoggedIn)
-    path = request.url.path
-    if "text/html" in request.headers.get("accept", "") and not path.startswith("/api/"):
-        return RedirectResponse(f"/login?next={quote(path)}", 303)
+    if is_browser(request):
+        return RedirectResponse(f"/login?next={quote(request.url.path)}", 303)
     return JSONResponse({"detail": error.detail}, error.status_code, error.headers)
+
+
+def is_browser(request: Request) -> bool:
+    """Whether a page is wanted."""
+    asked = "text/html" in request.headers.get("accept", "")
+    return asked and not request.url.path.startswith("/api/")
 
 
 def _page(

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from rga.dashboard.pages.happened import Past
-from rga.dashboard.pages.heading import heading
+from rga.dashboard.pages.heading import heading, heading_as_of
 from rga.dashboard.pages.in_force import in_force
-from rga.dashboard.pages.sensors_now import sensor_rows
+from rga.dashboard.pages.sensors_now import farthest_first, sensor_rows
 from rga.dashboard.pages.times import age_words, given_moment, of_event
-from rga.dashboard.pages.windows import SPANS, chosen_window
+from rga.dashboard.pages.windows import SPANS, asked_span, chosen_window
 from rga.dashboard.surroundings import SeenTwin, Surroundings
 from rga.dashboard.svg.chart import POINTS, Column, TimeChart, Window, chart
 from rga.dashboard.svg.gap_level import LEVELS, gap_level
@@ -66,6 +66,8 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
     newest = seen.reading.elapsed(latest.time)
     at = asked_time(query, start)
     now = latest if at is None else seen.reading.as_of(at)
+    if at is not None:
+        found["heading"] = heading_as_of(seen, now, latest)
     found |= {
         "slider": {
             "most": round(newest, 3),
@@ -74,6 +76,7 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
             "moment": None if at is None else Window(start, 0, 1).moment(min(at, newest)),
         },
         "past": at is not None,
+        "span": asked_span(query),
     }
     if now is None or now.time is None:
         return found | {"now": None}
@@ -82,7 +85,9 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
     series = seen.reading.series(window.begin, window.end, POINTS)
     assert series is not None  # it has begun
     events = [one for one in seen.reading.events() if of_event(one.time) <= now.time]
-    past = Past(seen.name, seen.reading.view(), events)
+    past = Past(
+        seen.name, seen.reading.view(), events, f"span={chosen.span}&" if chosen.span else ""
+    )
     rows = sensor_rows(twin.given, now)
     weights = {name: one.recent or 0.0 for name, one in now.sensors.items()}
     return found | {
@@ -92,13 +97,13 @@ def bridge_page(seen: SeenTwin, query: Mapping[str, str]) -> dict[str, Any]:
         "age": age_words(now.time, Surroundings.now()),
         "rows": rows,
         "sensor_of": {one.number: one for one in rows},
-        "ranked": sorted(rows, key=lambda one: (-one.level.number, one.number)),
+        "ranked": farthest_first(rows),
         "levels": LEVELS,
         "drawings": elevations(twin.given, _marked(now, twin.given), weights),
         "marked": now.undecided is not None,
         "strip": _strip(seen.name, series, window, past.marks(events, window)),
         "versions": _versions(seen, window, now),
-        "contexts": _contexts(twin.given, now, series, window),
+        "contexts": _contexts(twin.given, now, series, window, twin.station.measured),
         "span": chosen.span,
         "spans_known": tuple(SPANS),
         "events": past.listed(events[-LISTED:]),
@@ -116,6 +121,20 @@ def asked_time(query: Mapping[str, str], start: datetime) -> float | None:
     except ValueError:
         return None
     return max(0.0, seconds) if np.isfinite(seconds) else None
+
+
+def context_words(value: float, spread: float, unit: str, measured: bool) -> str:
+    """A context with its interval; one that is taken as it was measured has none.
+
+    >>> context_words(21.3, 0.0, "", True), context_words(21.3, 0.0, "", False)
+    ('21.3, measured', '21.3 [21.3, 21.3]')
+    >>> context_words(21.3, 1.0, "", True)
+    '21.3 [19.7, 22.9]'
+    """
+    if measured and spread == 0.0:
+        return f"{quantity(value, unit)}, measured"
+    half = HALF_WIDTH * spread
+    return quantity(value, unit, (value - half, value + half))
 
 
 def _marked(now: TwinNow, model: Model) -> Named:
@@ -155,14 +174,14 @@ def _versions(seen: SeenTwin, window: Window, now: TwinNow) -> list[VersionStret
     return found
 
 
-def _contexts(model: Model, now: TwinNow, series: Series, window: Window) -> list[ContextRow]:
+def _contexts(
+    model: Model, now: TwinNow, series: Series, window: Window, measured: tuple[str, ...]
+) -> list[ContextRow]:
     found = []
     for place, name in enumerate(series.contexts):
         if name not in now.contexts:
             continue
-        value, spread = now.contexts[name]
-        half = HALF_WIDTH * spread
-        said = quantity(value, model.context[name].unit, (value - half, value + half))
+        said = context_words(*now.contexts[name], model.context[name].unit, name in measured)
         values = np.asarray(series.inferred.mean[:, place], dtype=float)
         line = Column(name, "context", values, values, values)
         path = chart(name, "", series.inferred.time, [line], window).lines[0].path

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rga.dashboard.alarm_desk import SHELVES, alarms_of
+from rga.dashboard.alarm_desk import SHELVES, UNSEEN, alarms_of
 from rga.dashboard.pages.heading import Heading, heading, heading_of_damaged
 from rga.dashboard.pages.times import DAY, age_words
 from rga.dashboard.surroundings import SeenTwin, Surroundings
@@ -14,9 +14,12 @@ from rga.dashboard.svg.chart import Window, sparkline
 from rga.dashboard.svg.gap_level import GapLevel, gap_level
 from rga.dashboard.svg.structure import Elevation, outline
 from rga.errors import InputError
+from rga.operation.alarms.operator_alarm import OperatorAlarm
 from rga.quantities import number
 from rga.report.figures.of_run.run_gap import mean
 
+#: need of attention from which on a bridge can be left alone
+CALM = 4
 #: what the small line of a card shows [s], and its entries
 SHOWN, ENTRIES = 30 * DAY, 120
 
@@ -31,7 +34,8 @@ class BridgeCard:
         gap, level: of the last rows, in words.
         line: path of the gap over 30 days.
         version: of the model that is in force; 0: none.
-        alarms: that are open.
+        alarms: that are open, as the page of alarms lists them.
+        unseen: those of them that nobody has acknowledged or put on a shelf.
         newest: time of the newest row.
         age: of it, in words.
     """
@@ -43,21 +47,32 @@ class BridgeCard:
     line: str
     version: int
     alarms: int
+    unseen: int
     newest: datetime | None
     age: str
+
+    @property
+    def needs_somebody(self) -> bool:
+        """Whether somebody has to look: for how the bridge is, or for an alarm."""
+        return self.heading.state.need < CALM or self.unseen > 0
 
 
 def fleet_page(surroundings: Surroundings) -> dict[str, Any]:
     """What the page of the fleet shows."""
     cards = [_card(surroundings.twin(name)) for name in surroundings.names]
-    cards.sort(key=lambda one: (one.heading.state.need, one.heading.structure.casefold()))
-    need = sum(one.heading.state.need < 4 for one in cards)
+    cards.sort(key=_place)
     return {
         "cards": cards,
-        "need": need,
+        "need": sum(one.needs_somebody for one in cards),
+        "open_alarms": sum(one.alarms for one in cards),
         "alarms": alarms_of(surroundings.alarms, None),
         "shelves": tuple(SHELVES),
     }
+
+
+def _place(card: BridgeCard) -> tuple[bool, int, str, str]:
+    top = card.heading
+    return not card.needs_somebody, top.state.need, top.structure.casefold(), top.twin
 
 
 def _card(seen: SeenTwin) -> BridgeCard:
@@ -80,6 +95,7 @@ def _readable(seen: SeenTwin) -> BridgeCard:
         gap = mean(np.asarray(series.gap.mean, dtype=float), axis=1)
         start = datetime.fromisoformat(str(twin.station.start))
         line = sparkline(series.gap.time, gap, Window(start, begin, last + 1.0))
+    alarms = alarms_of(seen.alarms, seen.name)
     return BridgeCard(
         heading=heading(seen, now),
         drawing=outline(seen.served.model),
@@ -87,14 +103,28 @@ def _readable(seen: SeenTwin) -> BridgeCard:
         level=gap_level(now.recent),
         line=line,
         version=now.version,
-        alarms=len(alarms_of(seen.alarms, seen.name)),
+        alarms=len(alarms),
+        unseen=_unseen(alarms),
         newest=now.time,
         age="" if now.time is None else age_words(now.time, Surroundings.now()),
     )
 
 
 def _empty(seen: SeenTwin, top: Heading) -> BridgeCard:
-    open_alarms = len(alarms_of(seen.alarms, seen.name))
+    alarms = alarms_of(seen.alarms, seen.name)
     return BridgeCard(
-        top, outline(seen.served.model), "", gap_level(None), "", 0, open_alarms, None, ""
+        heading=top,
+        drawing=outline(seen.served.model),
+        gap="",
+        level=gap_level(None),
+        line="",
+        version=0,
+        alarms=len(alarms),
+        unseen=_unseen(alarms),
+        newest=None,
+        age="",
     )
+
+
+def _unseen(alarms: list[OperatorAlarm]) -> int:
+    return sum(one.state in UNSEEN for one in alarms)

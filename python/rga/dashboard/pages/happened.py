@@ -57,10 +57,13 @@ class Past:
         twin: name of it.
         view: its run; None: nothing has happened to it.
         events: in the order in which they happened.
+        keeps: of the address of whoever looks, what its addresses keep, such as "span=day&".
     """
 
-    def __init__(self, twin: str, view: RunView | None, events: Sequence[Event]) -> None:
-        self._twin = twin
+    def __init__(
+        self, twin: str, view: RunView | None, events: Sequence[Event], keeps: str = ""
+    ) -> None:
+        self._twin, self._keeps = twin, keeps
         self._seen = {} if view is None else _seen_from(view, {one.row for one in events})
 
     def listed(self, events: Iterable[Event]) -> list[Happened]:
@@ -93,7 +96,7 @@ class Past:
         return found
 
     def _as_of(self, event: Event) -> str:
-        return f"/twins/{quote(self._twin)}?at={self._seen.get(event.row, 0.0):.3f}"
+        return f"/twins/{quote(self._twin)}?{self._keeps}at={self._seen.get(event.row, 0.0):.3f}"
 
 
 def _share(event: Event, window: Window) -> float:

@@ -1,6 +1,6 @@
 """What stands on top of every page of a twin."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rga.dashboard.pages.state import TwinHealth, damaged, state_of
 from rga.dashboard.surroundings import SeenTwin, Surroundings
@@ -29,12 +29,14 @@ class Heading:
         structure: name of the structure.
         state: how it is.
         waiting: what people have asked for and nothing has carried out yet, in words.
+        state_now: how it is now, where `state` is that of a time before; None: it is that of now.
     """
 
     twin: str
     structure: str
     state: TwinHealth
     waiting: tuple[str, ...]
+    state_now: TwinHealth | None = None
 
 
 def heading(seen: SeenTwin, now: TwinNow | None) -> Heading:
@@ -45,6 +47,15 @@ def heading(seen: SeenTwin, now: TwinNow | None) -> Heading:
         state_of(now, Surroundings.now(), seen.patience, seen.lag(now)),
         tuple(map(command_words, seen.waiting())),
     )
+
+
+def heading_as_of(seen: SeenTwin, then: TwinNow | None, latest: TwinNow) -> Heading:
+    """The heading of a twin as it stood at a time, beside how it is now."""
+    moment = Surroundings.now() if then is None or then.time is None else then.time
+    # What was late or silent then is not kept: the state is that of its rows.
+    state = state_of(then, moment, seen.patience, 0)
+    now = heading(seen, latest)
+    return replace(now, state=state, waiting=(), state_now=now.state)
 
 
 def heading_of_damaged(seen: SeenTwin, error: InputError) -> Heading:

@@ -10,7 +10,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.dashboard.pages.happened import Past
 from rga.dashboard.pages.heading import heading
-from rga.dashboard.pages.sensors_now import SensorRow, sensor_rows
+from rga.dashboard.pages.sensors_now import SensorRow, farthest_first, sensor_rows
 from rga.dashboard.pages.times import utc_words
 from rga.dashboard.pages.windows import SPANS, ChosenWindow, chosen_window
 from rga.dashboard.surroundings import SeenTwin
@@ -45,7 +45,7 @@ def sensors_page(seen: SeenTwin) -> dict[str, Any]:
     return {
         "heading": heading(seen, now),
         "tab": "/sensors",
-        "rows": sorted(rows, key=lambda one: (-one.level.number, one.number)),
+        "rows": farthest_first(rows),
     }
 
 

@@ -1,8 +1,9 @@
 """The sensors of a twin as a table says them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from rga.dashboard.svg.gap_level import GapLevel, gap_level
+from rga.dashboard.svg.gap_level import UNKNOWN, GapLevel, gap_level
 from rga.model.schema import Model
 from rga.operation.reading.twin_now import SensorNow, TwinNow
 from rga.quantities import DASH, number, scale, short
@@ -18,6 +19,7 @@ class SensorRow:
         place: where it sits, in words.
         measured, simulated, difference, noise: of the last row, in its unit.
         gap, level: over the last rows.
+        recent: the gap as a number [-]; None: it is not known.
         words: all this in a line.
     """
 
@@ -32,6 +34,7 @@ class SensorRow:
     noise: str
     gap: str
     level: GapLevel
+    recent: float | None
     words: str
 
 
@@ -42,6 +45,11 @@ def sensor_rows(model: Model, now: TwinNow) -> list[SensorRow]:
         for place, name in enumerate(model.sensors)
         if name in now.sensors
     ]
+
+
+def farthest_first(rows: Iterable[SensorRow]) -> list[SensorRow]:
+    """Sensors by their gap, the largest first; those of which none is known come last."""
+    return sorted(rows, key=lambda one: (one.recent is None, -(one.recent or 0.0), one.number))
 
 
 def place_words(model: Model, name: str) -> str:
@@ -63,12 +71,13 @@ def _row(place: int, name: str, model: Model, one: SensorNow) -> SensorRow:
         for value in (one.measured, one.simulated, apart, one.noise)
     )
     level = gap_level(one.recent)
-    gap = DASH if one.recent is None else number(one.recent, 2)
+    recent = None if level is UNKNOWN else one.recent
+    gap = DASH if recent is None else number(recent, 2)
     words = (
         f"{name}, {sensor.kind} {place_words(model, name)}: measured {measured}, simulated "
         f"{simulated} {unit}, noise {noise}; {level.words}, gap {gap}"
     )
     return SensorRow(
         place, name, sensor.kind, unit, place_words(model, name), measured, simulated, difference,
-        noise, gap, level, words,
+        noise, gap, level, recent, words,
     )  # fmt: skip

@@ -33,6 +33,16 @@ class ChosenWindow:
     span: str
 
 
+def asked_span(query: Mapping[str, str]) -> str:
+    """The name of the stretch that an address asks for.
+
+    >>> asked_span({"span": "day"}), asked_span({"span": "century"}), asked_span({})
+    ('day', 'week', 'week')
+    """
+    span = query.get("span", USUAL)
+    return span if span in SPANS else USUAL
+
+
 def chosen_window(query: Mapping[str, str], start: datetime, until: datetime) -> ChosenWindow:
     """The stretch that an address asks for: `span`, or `from` and `to`.
 
@@ -48,10 +58,8 @@ def chosen_window(query: Mapping[str, str], start: datetime, until: datetime) ->
         stop = last if end is None else (end - start).total_seconds()
         if stop > begin:
             return ChosenWindow(Window(start, begin, stop), "")
-    span = query.get("span", USUAL)
-    length = SPANS.get(span, SPANS[USUAL])
+    span = asked_span(query)
+    length = SPANS[span]
     begin = 0.0 if length is None else max(0.0, last - length)
     # A hair beyond the end: the last row is seen too.
-    return ChosenWindow(
-        Window(start, begin, last + (last - begin) / 200), span if span in SPANS else USUAL
-    )
+    return ChosenWindow(Window(start, begin, last + (last - begin) / 200), span)

@@ -26,6 +26,9 @@ MARGIN = 0.06
 LEAST_GAP = 0.1
 #: entries of a line, more than the eye tells apart
 POINTS = 500
+#: ticks of an axis at least, and what may stand at one between a power of ten and the next
+LEAST_TICKS = 3
+FACTORS = ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0))
 Look = Literal["measured", "simulated", "gap", "context", "residual"]
 
 
@@ -100,6 +103,7 @@ class TimeChart:
         date: what the ticks of time leave out.
         marks: what happened meanwhile.
         words: what the chart shows, for readers who do not see it.
+        logarithmic: a step upwards is a factor.
     """
 
     title: str
@@ -110,6 +114,7 @@ class TimeChart:
     up: tuple[Tick, ...]
     marks: tuple[ChartMark, ...]
     words: str
+    logarithmic: bool
 
 
 @dataclass(frozen=True)
@@ -190,6 +195,7 @@ def chart(
         ),
         tuple(one for one in marks if 0 <= one.at <= 100),
         f"{title}, at the end: {said}",
+        logarithmic,
     )
 
 
@@ -248,9 +254,19 @@ def _logarithm(values: Floats) -> FloatArray:
 
 def _steps(low: float, high: float, logarithmic: bool) -> list[float]:
     if logarithmic:
-        steps = LogLocator(numticks=5).tick_values(10.0**low, 10.0**high)
-        return [float(one) for one in steps if low <= np.log10(one) <= high]
+        return _factors(low, high)
     return [float(one) for one in MaxNLocator(4).tick_values(low, high) if low <= one <= high]
+
+
+def _factors(low: float, high: float) -> list[float]:
+    """Round numbers on a scale of factors: those of ten, and others where these are few."""
+    found: list[float] = []
+    for within_ten in FACTORS:
+        steps = LogLocator(subs=within_ten, numticks=5).tick_values(10.0**low, 10.0**high)
+        found = [float(one) for one in steps if low <= np.log10(one) <= high]
+        if len(found) >= LEAST_TICKS:
+            break
+    return found
 
 
 def _path(x: FloatArray, y: FloatArray) -> str:

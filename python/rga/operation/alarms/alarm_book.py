@@ -2,13 +2,20 @@
 
 from collections.abc import Callable, Collection, Mapping
 from datetime import datetime
+from textwrap import shorten
 from threading import RLock
 
 from sqlalchemy import Connection
 
 from rga.errors import InputError
 from rga.operation.alarms import alarm_store as store
-from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey, Observation
+from rga.operation.alarms.condition import (
+    AlarmKind,
+    Condition,
+    ConditionKey,
+    Ending,
+    Observation,
+)
 from rga.operation.alarms.delays import Delays, News
 from rga.operation.alarms.operator_alarm import AlarmTransition, Change, OperatorAlarm
 from rga.operation.service_clock import ServiceClock
@@ -27,6 +34,7 @@ class AlarmBook:
 
     An alarm is open from when it is raised until it is cleared and acknowledged, and longer where
     it is shelved. What is raised again meanwhile is the same alarm, to be acknowledged anew.
+    Somebody who made an end of what it is about has acknowledged it by that.
 
     Args:
         file: of the service, with the tables of alarms.
@@ -127,7 +135,12 @@ class AlarmBook:
             with self._file.reading() as connection:
                 alarms = {one.key: one for one in store.open_alarms_of(connection, twin)}
             ripe = self._ripe(twin, wrong, alarms, seen.judged)
-            if not ripe and not seen.occurred and seen.keep is None:
+            renewed = [
+                alarm.renewed(wrong[key].words)
+                for key, alarm in alarms.items()
+                if alarm.is_active and key in wrong and _is_news(alarm, wrong[key])
+            ]
+            if not (ripe or renewed or seen.occurred) and seen.keep is None:
                 return
             with self._file.writing() as connection:
                 for condition in seen.occurred:
@@ -136,9 +149,11 @@ class AlarmBook:
                 raised = {one.key for one in seen.occurred}
                 for key, is_wrong in ripe:
                     if not is_wrong:
-                        self._clear(connection, key, "")
+                        self._end(connection, key, seen.endings.get(key))
                     elif key not in raised:
                         self._raise(connection, wrong[key])
+                for alarm in renewed:
+                    self._write(connection, alarm, "renewed", None, "")
                 if seen.keep is not None:
                     seen.keep(connection)
 
@@ -201,6 +216,19 @@ class AlarmBook:
             alarm = known.raised_again(condition, now)
         self._write(connection, alarm, "raised", None, "")
 
+    def _end(self, connection: Connection, key: ConditionKey, ending: Ending | None) -> None:
+        """Clear the alarm of a condition; whoever has made an end of it has seen the alarm."""
+        known = store.open_alarm(connection, key)
+        if known is not None and known.is_active and ending is not None:
+            known = known.renewed(ending.words)
+            if ending.who is not None and (known.is_shelved or known.acknowledged_at is None):
+                known = known.decided(ending.who, self._clock.now())
+                why = shorten(ending.why, MOST_LETTERS, placeholder=" …")
+                self._write(connection, known, "acknowledged", ending.who, why)
+            else:
+                self._write(connection, known, "renewed", None, "")
+        self._clear(connection, key, "")
+
     def _clear(self, connection: Connection, key: ConditionKey, why: str) -> None:
         known = store.open_alarm(connection, key)
         if known is not None and known.is_active:
@@ -234,13 +262,18 @@ class AlarmBook:
     ) -> None:
         at = self._clock.now()
         transition = store.write_transition(connection, alarm, change, at, who, why)
-        # Of what goes on behind a shelf nobody wants to hear.
-        if self._tell is not None and not (alarm.is_shelved and change in ("raised", "cleared")):
+        # Of what goes on behind a shelf nobody wants to hear, and of what goes on as it did.
+        is_quiet = change == "renewed" or (alarm.is_shelved and change in ("raised", "cleared"))
+        if self._tell is not None and not is_quiet:
             self._tell(connection, alarm, transition)
 
 
 def _doubled(alarm: OperatorAlarm, condition: Condition) -> bool:
     return 0 < 2 * alarm.size <= condition.size
+
+
+def _is_news(alarm: OperatorAlarm, condition: Condition) -> bool:
+    return condition.is_renewed and condition.words != alarm.words
 
 
 def _there(connection: Connection, id: int) -> OperatorAlarm:

@@ -1,7 +1,7 @@
 """What is wrong, as it is observed."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal, NamedTuple
 
@@ -38,6 +38,7 @@ class Condition:
         sensors: that show it.
         size: that raises the alarm anew where it has doubled, as more packets are missing; 0: it
             has none.
+        is_renewed: its words change while it is there: its alarm says the newest of them.
     """
 
     key: ConditionKey
@@ -45,6 +46,22 @@ class Condition:
     since: datetime
     sensors: tuple[str, ...] = ()
     size: int = 0
+    is_renewed: bool = False
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a condition came to its end.
+
+    Attributes:
+        words: what came of it, in a sentence.
+        who: has ended it, and knows of its alarm by that; None: nobody did.
+        why: as they gave it.
+    """
+
+    words: str
+    who: str | None = None
+    why: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,6 +73,7 @@ class Observation:
         judged: classes of which all is known: what is not among the conditions is well.
         occurred: what began since the last observation, of which each raises an alarm, whether or
             not it is still there.
+        endings: of conditions that are not there any more, where more is known of them than that.
         keep: writes up to where it was looked, with the alarms or not at all; None: nothing is to
             be written.
     """
@@ -63,4 +81,5 @@ class Observation:
     conditions: tuple[Condition, ...]
     judged: frozenset[AlarmKind]
     occurred: tuple[Condition, ...] = ()
+    endings: Mapping[ConditionKey, Ending] = field(default_factory=dict)
     keep: Callable[[Connection], None] | None = None

@@ -12,7 +12,7 @@ from rga.operation.alarms.condition import AlarmKind, Condition, ConditionKey
 from rga.operation.service_clock import in_minutes
 
 #: what changes in the life of an alarm
-Change = Literal["raised", "cleared", "acknowledged", "shelved", "unshelved"]
+Change = Literal["raised", "renewed", "cleared", "acknowledged", "shelved", "unshelved"]
 #: where it stands: `cleared` is back to normal while nobody has acknowledged it
 AlarmState = Literal["raised", "acknowledged", "shelved", "cleared", "closed"]
 #: an alarm that nobody hears of for longer is one that nobody wants: mend it, or its cause
@@ -107,6 +107,17 @@ class OperatorAlarm:
             acknowledged_at=None,
             acknowledged_by=None,
         )
+
+    def renewed(self, words: str) -> Self:
+        """The same where other words say what is wrong now, or what came of it."""
+        return replace(self, words=words)
+
+    def decided(self, who: str, now: datetime) -> Self:
+        """The same where somebody has dealt with what it is about: it needs no shelf any more."""
+        known = self
+        if self.acknowledged_at is None:
+            known = replace(self, acknowledged_at=now, acknowledged_by=who)
+        return replace(known, shelved_until=None, shelved_by=None)
 
     def cleared(self, now: datetime) -> Self:
         """The same where it is well again."""

@@ -1,14 +1,16 @@
 """What a twin says of itself: it is out of sync, or proposes a cause."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 
-from rga.operation.alarms.condition import Condition, ConditionKey
+from rga.operation.alarms.condition import Condition, ConditionKey, Ending
+from rga.operation.alarms.proposal_watch import proposed
 from rga.operation.reading.twin_now import moment
 from rga.operation.reading.twin_reading import TwinReading
 from rga.operation.sources.clock import in_words
 from rga.quantities import counted
-from rga.twin.commands.proposals import decision
 from rga.twin.history import Event
 from rga.twin.repository import RunView
 from rga.twin.restore import standing_of, station_of
@@ -41,12 +43,14 @@ class SeenRun:
         occurred: alarms of the monitor since the last look.
         place: up to where it was looked.
         rows: that the twin has taken in.
+        endings: what came of its proposals.
     """
 
     conditions: tuple[Condition, ...]
     occurred: tuple[Condition, ...]
     place: RunPlace
     rows: int
+    endings: Mapping[ConditionKey, Ending] = field(default_factory=dict)
 
 
 class RepositoryWatch:
@@ -110,15 +114,10 @@ class RepositoryWatch:
         conditions = []
         if standing.alarm is not None or standing.doubted:
             conditions.append(occurred[-1] if occurred else self._lasting(view, standing))
-        proposals = view.proposals()
-        if proposals and decision(view, proposals[-1]) is None:
-            last = proposals[-1]
-            key = ConditionKey(self._name, "proposal", "proposal", str(last.number))
-            words = f"proposal {last.number} waits for a decision: {last.words}"
-            if last.gain is not None:
-                words += f" (gain {last.gain:.2g} on rows held out)"
-            conditions.append(Condition(key, words, _at(view, last.row)))
-        return SeenRun(tuple(conditions), occurred, here, view.rows)
+        waiting, endings = proposed(self._name, view, partial(_at, view))
+        if waiting is not None:
+            conditions.append(waiting)
+        return SeenRun(tuple(conditions), occurred, here, view.rows, endings)
 
     def _gap(self, view: RunView, event: Event) -> Condition:
         """What an alarm of the monitor says, in the run as it stood then."""

@@ -120,6 +120,7 @@ class TwinWatch:
             tuple(one for one in found if one.key.kind not in unknown),
             frozenset({"gap", "proposal", *SLOW} - unknown),
             () if seen is None else seen.occurred,
+            {} if seen is None else seen.endings,
             None if seen is None else self._to_keep(seen),
         )
 

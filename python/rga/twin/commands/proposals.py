@@ -4,12 +4,14 @@ from rga.errors import InputError
 from rga.findings.phrases import effect_words
 from rga.twin.archive import Archive
 from rga.twin.commands.command import PLACE, Reject
-from rga.twin.repository import Proposal, RunView
+from rga.twin.repository import Proposal, RunView, StoredCommand
 from rga.twin.versions import Effects
 
 DECISIONS = ("accept", "reject")
 #: in whose name a proposal is withdrawn that a later diagnosis does not make again
 WITHDRAWS = "rga"
+#: what comes of one that is withdrawn
+WITHDRAWN = "withdrawn"
 
 
 class Proposals:
@@ -43,8 +45,8 @@ class Proposals:
         if last is None or self._decided(last) is not None:
             return None
         why = "a later diagnosis does not propose it again"
-        command, outcome = Reject(who=WITHDRAWS, why=why, proposal=last.number), "withdrawn"
-        self._archive.keep_command(command, {"proposal": last.number}, row, outcome)
+        command = Reject(who=WITHDRAWS, why=why, proposal=last.number)
+        self._archive.keep_command(command, {"proposal": last.number}, row, WITHDRAWN)
         return f"proposal {last.number} is withdrawn: {why}"
 
     def open(self, number: int | None) -> Proposal:
@@ -77,7 +79,14 @@ class Proposals:
 
 def decision(run: RunView, proposal: Proposal) -> str | None:
     """What was decided about a proposal of a run, in words; None: nothing was."""
-    for one in run.commands():
-        if one.kind in DECISIONS and one.body == {"proposal": proposal.number}:
-            return f"decided by {one.who}: {one.kind}"
-    return None
+    found = decisions(run).get(proposal.number)
+    return None if found is None else f"decided by {found.who}: {found.kind}"
+
+
+def decisions(run: RunView) -> dict[int, StoredCommand]:
+    """What decided about each proposal of a run, by its number; of those that are open nothing."""
+    return {
+        one.body["proposal"]: one
+        for one in run.commands()
+        if one.kind in DECISIONS and list(one.body) == ["proposal"]
+    }

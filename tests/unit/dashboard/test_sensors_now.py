@@ -1,0 +1,31 @@
+"""Sensors as the tables of the pages say them."""
+
+from math import nan
+from typing import Any
+
+from rga.dashboard.pages.sensors_now import farthest_first, sensor_rows
+from rga.model import read_model
+from rga.operation.reading.twin_now import SensorNow, TwinNow
+
+
+class Shown:
+    """Where a twin stands, as far as a table of sensors looks at it."""
+
+    def __init__(self, gaps: dict[str, float | None]) -> None:
+        self.sensors = {name: sensor(gap) for name, gap in gaps.items()}
+
+
+def sensor(gap: float | None) -> SensorNow:
+    return SensorNow(measured=1e-3, simulated=2e-3, noise=1e-4, gap=gap, recent=gap)
+
+
+def test_the_largest_gap_comes_first_and_what_is_not_known_last(
+    measured_bridge: dict[str, Any],
+) -> None:
+    model = read_model(measured_bridge, "bridge")
+    gaps = [2.1, None, 4.9, 3.0, 150.0, nan, 0.4]
+    names = list(model.sensors)[: len(gaps)]
+    now: TwinNow = Shown(dict(zip(names, gaps, strict=True)))  # type: ignore[assignment]
+    found = farthest_first(sensor_rows(model, now))
+    assert [one.name for one in found] == [names[place] for place in (4, 2, 3, 0, 6, 1, 5)]
+    assert [one.gap for one in found][-2:] == ["–", "–"]
