@@ -1,8 +1,9 @@
 """Files of settings (JSON or TOML), read into frozen classes with one clear error."""
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
@@ -57,19 +58,57 @@ def validated(kind: type[T], content: dict[str, object], where: str, what: str) 
         first = error.errors(include_url=False)[0]
         keys = [str(part) for part in first["loc"]]
         place = f"{'.'.join(keys)}: " if keys else ""
-        message = first["msg"].removeprefix("Value error, ")
-        known = ", ".join(_table_of(kind, keys[:-1]).model_fields)
-        of = f" of {keys[0]}" if len(keys) > 1 else ""
-        raise InputError(f"{place}{message}", where, f"the {what}{of} are {known}") from None
+        if len(keys) > 1:
+            tables = [key for key in keys[:-1] if not key.isdecimal()]
+            what = f"keys of [{'.'.join(tables)}]"
+        elif what == "configuration":
+            what = "keys"
+        known = ", ".join(_table_of(kind, first["loc"][:-1]).model_fields)
+        raise InputError(f"{place}{in_words(first)}", where, f"the {what} are {known}") from None
 
 
-def _table_of(kind: type[BaseModel], keys: list[str]) -> type[BaseModel]:
+def in_words(mistake: Mapping[str, Any]) -> str:
+    """What pydantic finds wrong, in words that those understand who do not know it.
+
+    >>> in_words({"type": "value_error", "msg": "Value error, give one"})
+    'give one'
+    """
+    context = mistake.get("ctx", {})
+    if mistake["type"] == "union_tag_invalid":
+        key, expected = (
+            context[one].replace("'", "") for one in ("discriminator", "expected_tags")
+        )
+        return f"{key} is one of {expected}, and {context['tag']!r} is none"
+    if mistake["type"] == "union_tag_not_found":
+        return f"say its {context['discriminator'].replace(chr(39), '')}"
+    plain = {"extra_forbidden": "there is no such key", "missing": "it is missing"}
+    message: str = mistake["msg"]
+    return plain.get(mistake["type"], message.removeprefix("Value error, "))
+
+
+def _table_of(kind: type[BaseModel], keys: Sequence[str | int]) -> type[BaseModel]:
     """The class of the table that keys lead to, as far as they do."""
+    choices = [kind]
     for key in keys:
-        field = kind.model_fields.get(key)
-        if field is None or not isinstance(field.annotation, type):
+        if isinstance(key, int):
+            continue
+        # A key is a field, or says which of several kinds of tables it is.
+        tagged = [one for one in choices if _tag(one) == key]
+        fields = [one.model_fields[key] for one in choices if key in one.model_fields]
+        if not tagged and not fields:
             break
-        if not issubclass(field.annotation, BaseModel):
-            break
-        kind = field.annotation
-    return kind
+        choices = tagged or _tables(fields[0].annotation) or choices
+    return choices[0]
+
+
+def _tag(kind: type[BaseModel]) -> object:
+    """The word by which a table is told from others, if there is one."""
+    field = kind.model_fields.get("kind")
+    return None if field is None else next(iter(get_args(field.annotation)), None)
+
+
+def _tables(annotation: object) -> list[type[BaseModel]]:
+    """The classes of tables within the type of a field."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [found for one in get_args(annotation) for found in _tables(one)]

@@ -38,6 +38,7 @@ from rga.dashboard.pages.routes import router as pages
 from rga.dashboard.surroundings import Surroundings
 from rga.errors import InputError
 from rga.operation.service import Service
+from rga.settings_files import in_words
 from rga.twin.repository.faults import RepositoryFault
 
 #: name of the folder of reports, which is that of no twin
@@ -101,7 +102,7 @@ def _told_of_mistake(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     place = ".".join(str(one) for one in first["loc"])
-    return told(request, f"{place}: {first['msg']}", 422)
+    return told(request, f"{place}: {in_words(first)}", 422)
 
 
 def _told_of_error(request: Request, error: Exception) -> Response:

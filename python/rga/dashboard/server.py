@@ -67,7 +67,7 @@ def listening_socket(settings: ServiceSettings) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family)
-    except (OSError, OverflowError) as error:
+    except OSError as error:
         words = (getattr(error, "strerror", None) or str(error)).lower()
         where = f"[service] listen = {settings.listen!r}"
         remedy = "end what listens there, or state another address"

@@ -15,6 +15,9 @@ from rga.operation.settings_types import Duration, Name, Rarity, SettingsTable, 
 from rga.operation.sources.settings import AnySource, source_name
 from rga.settings_files import read_table, validated
 
+#: that a machine has
+LARGEST_PORT = 65_535
+
 
 def _address(given: Any) -> str:
     return str(ip_address(given))
@@ -146,6 +149,8 @@ class ServiceSettings(SettingsTable):
     def _complete(self) -> "ServiceSettings":
         if (self.certificate is None) != (self.key is None):
             raise ValueError("certificate and key come together")
+        if int(self.listen.rpartition(":")[2]) > LARGEST_PORT:
+            raise ValueError(f"listen: ports go up to {LARGEST_PORT}")
         if self.user_header is not None and not self.trusted_proxies:
             raise ValueError("user_header: anybody could send it; name a proxy in trusted_proxies")
         return self

@@ -14,6 +14,7 @@ from rga.operation.configuration import Configuration
 from rga.operation.disk.forecast import DiskForecast, disk_forecast
 from rga.operation.disk.room import DiskRoom
 from rga.operation.inbox.packets import NEVER
+from rga.operation.notices.fault_log import FaultLog
 from rga.operation.notices.notify_settings import NotifySettings
 from rga.operation.notices.outbox import Outbox
 from rga.operation.notices.words import all_is_well
@@ -47,6 +48,7 @@ class Service:
     Args:
         configuration: of it.
         clock: None: that of this machine.
+        said: takes lines of what keeps a source from going on, and of its end.
 
     Attributes:
         configuration: of it.
@@ -59,7 +61,12 @@ class Service:
         workers: play the twins.
     """
 
-    def __init__(self, configuration: Configuration, clock: ServiceClock | None = None) -> None:
+    def __init__(
+        self,
+        configuration: Configuration,
+        clock: ServiceClock | None = None,
+        said: Callable[[str], None] = lambda line: None,
+    ) -> None:
         service, clock = configuration.service, clock or ServiceClock()
         self.configuration, self._clock = configuration, clock
         self.twins = {
@@ -70,6 +77,7 @@ class Service:
         self.room = DiskRoom(service.data, configuration.alarms.disk)
         self.workers = Workers(places, service.repository, self.room.is_enough)
         self.faults: dict[tuple[str, str], str] = {}
+        self._fault_log = FaultLog(said)
         self._sources: dict[tuple[str, str], DataSource] = {
             (twin.name, name): source
             for twin in self.twins.values()
@@ -197,9 +205,9 @@ class Service:
                 for name in twin.source_names:
                     fault = self._fault(twin.name, name)
                     self._tell(twin.name, name, fault or twin.clock_fault(name))
-
             for (name, source), teller in self._tellers.items():
                 self._tell(name, f"{TELLING} {source}", teller.fault)
+            self._fault_log.observe(dict(self.faults))
 
     def _fault(self, twin: str, source: str) -> str | None:
         """What keeps a source from going on; None: nothing, or others send to this service."""

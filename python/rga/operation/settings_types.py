@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from typing import Annotated, Any
+from unicodedata import category
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
@@ -81,3 +82,12 @@ class SettingsTable(BaseModel):
     """A table of the file: a key that is not known is refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def is_readable(text: str) -> bool:
+    """Whether words have no character that nobody sees, such as NUL; they may have several lines.
+
+    >>> is_readable("first line\\nsecond"), is_readable("a\\0b")
+    (True, False)
+    """
+    return not any(category(one) in ("Cc", "Cs") and one not in "\t\n\r" for one in text)

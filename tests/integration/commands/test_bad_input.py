@@ -235,7 +235,7 @@ def test_settings(setting: str, model_file: Path, rga: Callable[..., Any]) -> No
 
 RUN_SETTINGS = {
     "no interval": ('{"policy": "event", "interval": 5}', "policy 'event' has no interval"),
-    "unknown": ('{"wind": 3}', "wind: Extra"),
+    "unknown": ('{"wind": 3}', "wind: there is no such key"),
     "inner": ('{"training": {"steps": 0}}', "training.steps: Input"),
 }
 

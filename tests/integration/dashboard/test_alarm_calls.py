@@ -62,7 +62,10 @@ def test_an_alarm_lives_by_calls(client: TestClient, raised: list[int]) -> None:
     assert timedelta(hours=7.9) < left <= timedelta(hours=8)
     assert client.post(f"{path}/unshelve").json()["state"] == "raised"
     until = (datetime.now(UTC) + timedelta(days=2)).isoformat()
-    assert client.post(f"{path}/shelve", json={"until": until}).json()["state"] == "shelved"
+    assert (
+        client.post(f"{path}/shelve", json={"until": until, "why": "more works"}).json()["state"]
+        == "shelved"
+    )
     life = client.get(path).json()["life"]
     assert [one["change"] for one in life] == [
         "raised", "acknowledged", "shelved", "unshelved", "shelved",
@@ -76,12 +79,15 @@ def test_an_alarm_lives_by_calls(client: TestClient, raised: list[int]) -> None:
     [
         {},
         {"for": "8 h", "until": "2030-01-01T00:00:00Z"},
-        {"for": "40 d"},
-        {"for": 8},
-        {"until": "2001-01-01T00:00:00Z"},
-        {"until": "2030-01-01T00:00:00"},
+        {"for": "8 h"},
+        {"for": "8 h", "why": " "},
+        {"for": "8 h", "why": "a\0b"},
+        {"for": "40 d", "why": "works"},
+        {"for": 8, "why": "works"},
+        {"until": "2001-01-01T00:00:00Z", "why": "works"},
+        {"until": "2030-01-01T00:00:00", "why": "works"},
         {"for": "8 h", "why": "x" * 1001},
-        {"for": "8 h", "who": "somebody else"},
+        {"for": "8 h", "why": "works", "who": "somebody else"},
     ],
 )
 def test_what_is_no_shelf_is_refused(
@@ -102,7 +108,7 @@ def test_who_may_not_is_refused(client: TestClient, raised: list[int]) -> None:
         assert client.post(f"{ALARMS}/{number}/ack", headers=operates).status_code == 403
     assert client.get("/api/v1/twins/west/alarms", headers=operates).status_code == 403
     for what in ("ack", "shelve", "unshelve"):
-        call = {"json": {"for": "1 h"} if what == "shelve" else {}}
+        call = {"json": {"for": "1 h", "why": "works"} if what == "shelve" else {}}
         assert client.post(f"{ALARMS}/{east}/{what}", headers=reads, **call).status_code == 403
     for path in (ALARMS, f"{ALARMS}/{east}"):
         assert client.get(path, headers=sends).status_code == 403

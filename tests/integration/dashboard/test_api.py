@@ -147,6 +147,8 @@ def test_what_if_is_that_of_the_twin(client: TestClient, service: Service) -> No
     for wrong in (
         {"settings": {"weather": 1.0}},
         {"settings": {"temperature": "hot"}},
+        {"settings": {"temperature": "5"}},
+        {"settings": {"temperature": True}},
         {"add": {"x": {"kind": "magic"}}},
         {"addition": {}},
     ):

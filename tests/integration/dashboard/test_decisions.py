@@ -7,6 +7,7 @@ from starlette.testclient import TestClient
 
 import rga
 from rga.operation.service import Service
+from rga.twin.commands.command import Accept, read_command
 
 EAST = "/api/v1/twins/east"
 ACCEPT = {"kind": "accept", "why": "seen on site"}
@@ -90,6 +91,57 @@ def test_what_is_no_command_is_refused(client: TestClient, wrong: Any) -> None:
     answer = client.post(f"{EAST}/commands", json=wrong)
     assert answer.status_code == 422
     assert isinstance(answer.json()["detail"], str)
+
+
+IN_ORDER = {"since": "2026-11-23T12:00:00Z", "until": "2026-11-23T10:00:00Z"}
+
+
+@pytest.mark.parametrize(
+    ("twin", "command", "told"),
+    [
+        ("west", {"kind": "accept"}, "nothing is proposed"),
+        ("west", {"kind": "reject", "proposal": 1}, "nothing is proposed"),
+        ("west", {"kind": "rollback", "version": 1}, "no version 1"),
+        ("east", {"kind": "accept", "proposal": 9}, "no proposal 9"),
+        ("east", {"kind": "rollback", "version": 9}, "no version 9"),
+        ("east", {"kind": "exclude", "sensor": "D77"}, "no sensor 'D77'"),
+        ("east", {"kind": "exclude", "sensor": "D1"} | IN_ORDER, "ends before it begins"),
+        ("west", {"kind": "exclude", "sensor": "D1"} | IN_ORDER, "ends before it begins"),
+        ("east", {"kind": "exclude", "sensor": "D1", "until": IN_ORDER["until"]}, "ends before"),
+        ("east", {"kind": "exclude", "sensor": "D1", "since": 5.0}, "with its zone"),
+        ("east", {"kind": "exclude", "sensor": "D1", "since": "2026-11-23T12:00"}, "its zone"),
+        ("east", {"kind": "note"}, "a note has words"),
+        ("east", {"kind": "accept", "why": ""}, "say why"),
+        ("east", {"kind": "accept", "why": "a\0b"}, "control character"),
+        ("east", {"kind": "accept", "why": "a\x1bb"}, "control character"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_at_once(
+    client: TestClient, service: Service, twin: str, command: dict[str, Any], told: str
+) -> None:
+    answer = client.post(f"/api/v1/twins/{twin}/commands", json=command)
+    assert answer.status_code == 422, answer.text
+    assert told in answer.json()["detail"]
+    assert list(service.twins[twin].inbox.commands(0)) == []
+
+
+def test_what_can_be_meant_is_kept(client: TestClient) -> None:
+    later = {"since": "2026-11-23T10:00:00Z", "until": "2030-11-23T12:00:00Z"}
+    asked(client, {"kind": "exclude", "sensor": "D1", "why": "two\nlines"} | later)
+    asked(client, {"kind": "exclude", "sensor": "D1", "until": later["until"]})
+
+
+def test_an_accept_that_waits_takes_no_later_proposal(client: TestClient, service: Service) -> None:
+    number = asked(client, {"kind": "accept"})
+    (_, waiting), *_ = service.twins["east"].inbox.commands(number - 1)
+    assert isinstance(kept := read_command(waiting), Accept)
+    assert kept.proposal == 1
+
+
+def test_what_was_done_is_answered_again(client: TestClient, service: Service) -> None:
+    number = asked(client, ACCEPT, key="k")
+    play(service)
+    assert asked(client, ACCEPT, key="k") == number
 
 
 def test_script_in_words_stays_words(client: TestClient, service: Service) -> None:

@@ -98,7 +98,7 @@ def test_users_tokens_and_secrets(
                 running.get(EAST, token)
         with pytest.raises(HTTPError, match="403"):
             running.ask({"kind": "note"}, tokens["east", "read"])
-        assert running.ask({"kind": "note"}, tokens["east", "operate"]) > 0
+        assert running.ask({"kind": "note", "why": "greased"}, tokens["east", "operate"]) > 0
         assert [one["name"] for one in running.get("/api/v1/twins", tokens["west", "read"])] == [
             "west"
         ]

@@ -8,6 +8,7 @@ import pytest
 
 from rga.dashboard.access import tables
 from rga.dashboard.access.roles import Who
+from rga.dashboard.access.sessions import Sessions
 from rga.dashboard.access.tokens import Tokens
 from rga.dashboard.access.users import Users
 from rga.operation.service_file import service_file
@@ -49,6 +50,32 @@ def test_a_token_is_shown_once(configuration: Path, rga: Callable[..., Any]) -> 
         assert Tokens(file).who_has(secret) is None
 
 
+def test_users_and_tokens_are_listed_without_secrets(
+    configuration: Path, rga: Callable[..., Any]
+) -> None:
+    assert "no users" in rga("user", configuration, "list").out
+    secret = ("--password-file", configuration.with_name("password"))
+    rga("user", configuration, "add", "Ada", "--role", "operator", *secret)
+    token = rga("user", configuration, "token", "logger", "--twin", "east").out.strip()
+    done = rga("user", configuration, "list")
+    assert done.code == 0
+    assert done.out.splitlines() == ["operator Ada", "ingest   logger, a token for twin east"]
+    assert token not in done.out
+
+
+def test_another_password_ends_the_sessions(configuration: Path, rga: Callable[..., Any]) -> None:
+    secret = configuration.with_name("password")
+    rga("user", configuration, "add", "Ada", "--password-file", secret)
+    with service_file(configuration.parent / "data", tables.metadata) as file:
+        session = Sessions(file).begin("Ada")
+        secret.write_text("five other words of mine", "utf-8")
+        done = rga("user", configuration, "password", "Ada", "--password-file", secret)
+        assert (done.code, done.err) == (0, "")
+        assert Users(file).knows("Ada", "five other words of mine")
+        assert not Users(file).knows("Ada", PASSWORD)
+        assert Sessions(file).user_of(session) is None
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -61,6 +88,10 @@ def test_a_token_is_shown_once(configuration: Path, rga: Callable[..., Any]) -> 
         ("add", "Ada"),
         ("remove", "nobody"),
         ("dismiss", "Ada"),
+        ("password", "nobody", "--password-file", "of no file"),
+        ("password", "Ada"),
+        ("list", "Ada"),
+        ("add",),
     ],
 )
 def test_what_cannot_be_done_is_told(

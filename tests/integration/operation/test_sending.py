@@ -12,6 +12,7 @@ from paho.mqtt.client import Client, MQTTv5
 from paho.mqtt.enums import CallbackAPIVersion
 
 from rga.errors import InputError
+from rga.operation.feeding import senders
 from rga.operation.feeding.senders import BrokerSender
 from rga.operation.packets.packet import Number
 from rga_bench.operation.broker import Mosquitto
@@ -82,3 +83,16 @@ def test_a_broker_that_refuses_is_told(mosquitto: Mosquitto, tmp_path: Path) -> 
     mosquitto.start()
     with pytest.raises(InputError, match="refuses the connection"):
         BrokerSender(f"{mosquitto.url}/{TOPIC}").send(b"0", None)
+
+
+def test_a_service_that_never_acknowledges_is_told_of_once(
+    mosquitto: Mosquitto, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(senders, "SILENT", 0.2)
+    told: list[str] = []
+    sender = BrokerSender(f"{mosquitto.url}/{TOPIC}", "logger", told=told.append)
+    for k in range(3):
+        time.sleep(0.3)
+        sender.send(str(k).encode(), Number("s", k))
+    assert len(told) == 1
+    assert "the source 'logger' of twin 'east' is waited for" in told[0]

@@ -12,12 +12,17 @@ import rga
 from live_streams import sinking
 from rga.model import read_model
 from rga.operation.configuration import read_configuration
+from rga.operation.notices import fault_log
 from rga.operation.packets.packet import EPOCH
 from rga.operation.service import Service
 from rga.records import Record
+from rga_bench.operation.broker import Mosquitto
 from rga_bench.operation.service_process import ServiceProcess
 from served.bridges import lived, packets_of
-from served.made_service import write_service
+from served.brokers import mosquitto
+from served.made_service import waited_for, write_service
+
+__all__ = ["mosquitto"]
 
 #: rows of the record, and those that had come when it was copied
 ROWS, COPIED = 90, 60
@@ -65,3 +70,24 @@ def test_a_copy_of_a_service_that_was_stopped_goes_on(
         assert other.twin.history().events == events
         # Rows that waited in the inbox as it was copied were played as well.
         assert max(one.row for one in events) > COPIED
+
+
+def test_a_dead_broker_and_its_end_stand_in_the_log(
+    measured_bridge: dict[str, Any],
+    mosquitto: Mosquitto,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(fault_log, "LASTS", 0.0)
+    mosquitto.kill()
+    source = f'kind = "mqtt"\nurl = "{mosquitto.url}"\ntopics = ["rga/v1/east/data/#"]'
+    write_service(tmp_path, measured_bridge, source=source)
+    lines: list[str] = []
+    service = Service(read_configuration(tmp_path / "serve.toml"), said=lines.append)
+    service.start()
+    dead = f"twin east, mqtt: nobody answers at 127.0.0.1:{mosquitto.port}"
+    waited_for(lambda: dead in lines)
+    mosquitto.start()
+    waited_for(lambda: lines[-1] == "twin east, mqtt: goes on")
+    service.stop()
+    assert lines.count(dead) == 1

@@ -120,6 +120,13 @@ def test_from_the_first_user_on_everybody_logs_in(access: Access) -> None:
     assert [one.outcome for one in access.logins.latest()] == ["out", "in", "refused"]
 
 
+def test_a_token_of_another_twin_is_told_its_own(access: Access) -> None:
+    secret = access.tokens.make("reader", "read", "west")
+    answer = client_of(access).get("/look/east", headers={"Authorization": f"Bearer {secret}"})
+    assert answer.status_code == 403
+    assert "is for twin west" in answer.text
+
+
 def test_a_viewer_looks_and_does_not_operate(access: Access) -> None:
     access.users.add("Eve", "viewer", PASSWORD)
     client = client_of(access)

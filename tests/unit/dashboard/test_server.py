@@ -96,7 +96,7 @@ def test_files_of_tls_that_are_none_are_told(tmp_path: Path, content: Any) -> No
         server_of(FastAPI(), ServiceSettings(**files))
 
 
-@pytest.mark.parametrize("listen", ["127.0.0.1:99999", "192.0.2.1:8471", "a.b.invalid:80"])
+@pytest.mark.parametrize("listen", ["192.0.2.1:8471", "a.b.invalid:80"])
 def test_an_address_that_is_none_is_told(listen: str) -> None:
     with pytest.raises(InputError, match="nothing can listen there") as refused:
         listening_socket(ServiceSettings(listen=listen))

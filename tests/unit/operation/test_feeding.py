@@ -1,15 +1,22 @@
 """A logger that plays a record: what it sends, and what goes wrong as it was drawn."""
 
 from collections import Counter
+from collections.abc import Callable, Iterator
 from datetime import datetime
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
+from socket import socket
+from threading import Thread
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rga.errors import InputError
+from rga.operation.feeding import senders
 from rga.operation.feeding.faults import Faults, garbage, script
 from rga.operation.feeding.player import play
+from rga.operation.feeding.senders import BrokerSender, HttpSender
 from rga.operation.feeding.sent_record import sent_record
 from rga.operation.packets.native import read_packet
 from rga.operation.packets.packet import Number
@@ -65,6 +72,96 @@ def test_a_file_without_a_zone_takes_a_start(tmp_path: Path) -> None:
     start = datetime.fromisoformat("2026-11-23T00:00:00+00:00")
     record = sent_record(path, RecordMapping(), start)
     assert record.times.tolist() == [1_795_392_000_000_000, 1_795_392_001_000_000]
+
+
+def test_what_is_missing_is_sent_as_missing(tmp_path: Path) -> None:
+    path = tmp_path / "record.csv"
+    path.write_text("time,D1,Gauge 2\n0,-9999,1\n1,2,-1\n2,Overrange,3\n", "utf-8")
+    channels = {"D2": {"column": "Gauge 2", "missing": [-1], "unit": "cm"}}
+    mapping = RecordMapping.model_validate({"missing": [-9999], "channels": channels})
+    start = datetime.fromisoformat("2026-11-23T00:00:00+00:00")
+    record = sent_record(path, mapping, start)
+    np.testing.assert_array_equal(record.values, [[np.nan, 1], [2, np.nan], [np.nan, 3]])
+    assert record.channels == ("D1", "Gauge 2")
+
+
+def test_a_mapping_beside_the_record_is_taken(tmp_path: Path, rga: Callable[..., Any]) -> None:
+    record, box = tmp_path / "record.csv", tmp_path / "box"
+    box.mkdir()
+    record.write_text("time,D1\n2026-11-23T00:00:00Z,-9999\n2026-11-23T00:01:00Z,2\n", "utf-8")
+    (tmp_path / "import.toml").write_text("missing = [-9999]", "utf-8")
+    done = rga("feed", record, "--to", box, "--stream", "s")
+    assert done.code == 0
+    assert done.out == "2 rows went out as stream s, in 2 packets.\n"
+    packets = [read_packet(one.read_bytes(), "a test") for one in sorted(box.iterdir())]
+    np.testing.assert_array_equal([one.values.item() for one in packets], [np.nan, 2])
+
+
+class _Answering(BaseHTTPRequestHandler):
+    """Answers what its server says, and 200 from the third call on."""
+
+    def do_POST(self) -> None:
+        self.server.calls += 1  # type: ignore[attr-defined]
+        again = self.server.code == 503 and self.server.calls > 2  # type: ignore[attr-defined]
+        self.send_response(200 if again else self.server.code)  # type: ignore[attr-defined]
+        self.end_headers()
+
+    def log_message(self, format: str, *args: Any) -> None:
+        pass
+
+
+@pytest.fixture
+def answering() -> Iterator[HTTPServer]:
+    with HTTPServer(("127.0.0.1", 0), _Answering) as server:
+        server.calls = 0  # type: ignore[attr-defined]
+        Thread(target=server.serve_forever).start()
+        yield server
+        server.shutdown()
+
+
+@pytest.mark.parametrize("code", [401, 403])
+def test_who_may_not_send_is_told_of_the_token(answering: HTTPServer, code: int) -> None:
+    answering.code = code  # type: ignore[attr-defined]
+    sender = HttpSender(f"http://127.0.0.1:{answering.server_port}/east")
+    with pytest.raises(InputError, match="RGA_TOKEN"):
+        sender.send(b"0", None)
+
+
+def test_a_service_that_takes_nothing_is_told_of_once(
+    answering: HTTPServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(senders, "SILENT", 0.0)
+    monkeypatch.setattr(senders, "AGAIN", 0.01)
+    answering.code, told = 503, []  # type: ignore[attr-defined]
+    place = f"http://127.0.0.1:{answering.server_port}/east"
+    sender = HttpSender(place, told=told.append)
+    sender.send(b"0", None)
+    assert len(told) == 1
+    assert place in told[0]
+    assert "503" in told[0]
+
+
+class _Heard(Exception):
+    """Ends a wait that has no end."""
+
+
+def _hear(words: str) -> None:
+    raise _Heard(words)
+
+
+@pytest.mark.parametrize("scheme", ["http", "mqtt"])
+def test_an_address_where_nobody_answers_is_told(
+    monkeypatch: pytest.MonkeyPatch, scheme: str
+) -> None:
+    monkeypatch.setattr(senders, "SILENT", 0.0)
+    with socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        place = f"127.0.0.1:{unused.getsockname()[1]}"
+        sender: senders.Sender = HttpSender(f"http://{place}/east", told=_hear)
+        if scheme == "mqtt":
+            sender = BrokerSender(f"mqtt://{place}/rga/v1/east/data/logger", told=_hear)
+        with pytest.raises(_Heard, match=f"nobody answers at {scheme}://{place}"):
+            sender.send(b"0", Number("s", 0))
 
 
 def test_faults_are_as_they_were_drawn() -> None:

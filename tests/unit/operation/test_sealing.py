@@ -341,6 +341,12 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         (b'{"v": 1}', "no packet"),
         (b"time,D1\n2026-11-23T00:00:00,1.5\n2026-11-23T00:01:00,2.5\n", "no zone"),
         (b"time,D1\n0,1.5\n1,2.5\n", "no time stamps"),
+        (b'{"t0": "2026-11-23T00:00:00Z", "chan', "this is no JSON"),
+        (b"[" * 5000, "too deep"),
+        (b"time,a\x01b\n2026-11-23T00:00:00Z,1\n", "control character"),
+        (b'[{"n": "a\\u0000b", "v": 1}]', "control character"),
+        (packet_of("a\\u0000b"), "control character"),
+        (packet_of("a\\nb"), "control character"),
     ):
         one = arrival_of(payload, MIDNIGHT, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused is not None
@@ -352,8 +358,17 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         (MIDNIGHT + 30 * 86_400 * MICROSECONDS, "its readings are 30 days old"),
     ):
         one = arrival_of(sent, arrived, "topic", reader, ClockWatch(ClockRule()))
-        assert one.refused == words
+        assert one.refused is not None
+        assert one.refused.startswith(f"{words}: set the clock")
     assert twin.sealing.seal(silent=["logger"]) == 0
+
+
+def packet_of(channel: str) -> bytes:
+    """A packet of one channel, whose name is written as JSON has it."""
+    return (
+        b'{"v": 1, "t0": "2026-11-23T00:00:00Z", "values": [[1]], "channels": ["%s"]}'
+        % channel.encode()
+    )
 
 
 def test_a_twin_that_has_ended_takes_no_more(twin: Twin) -> None:

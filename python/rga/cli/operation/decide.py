@@ -54,6 +54,8 @@ def _carry_out(place: str, command: "AnyCommand") -> None:
     if is_service(place):
         # Who asks is whoever the service lets in.
         sent = command.model_dump(mode="json", exclude={"who", "given_at"}, exclude_none=True)
+        if not sent["why"]:
+            del sent["why"]
         outcome = ServiceClient(place).outcome_of(sent)
     else:
         outcome = carry_out(place if "://" in place else Path(place), command)

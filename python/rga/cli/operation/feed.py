@@ -1,6 +1,7 @@
 """`rga feed`: a logger to try a service with."""
 
 import os
+from collections.abc import Mapping
 from datetime import datetime
 from math import inf
 from pathlib import Path
@@ -8,12 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rga.cli.options import JsonTarget, MappingFile, decimal, whole
+from rga.cli.options import JsonTarget, decimal, whole
 
 if TYPE_CHECKING:
     from rga.operation.feeding.senders import Sender
 
 RecordFile = Annotated[Path, typer.Argument(metavar="RECORD", help="A logger's file.")]
+MappingFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--import",
+        metavar="FILE",
+        help="How to read the record; left out, import.toml beside it.",
+    ),
+]
 Target = Annotated[
     str,
     typer.Option(
@@ -81,9 +90,10 @@ def feed(
     from rga.operation.feeding.player import play
     from rga.operation.feeding.sent_record import sent_record
     from rga.quantities import counted
-    from rga.records.mapping import RecordMapping, read_mapping
+    from rga.records.mapping import RecordMapping, find_mapping, read_mapping
 
-    chosen = RecordMapping() if mapping is None else read_mapping(mapping)
+    found = mapping or find_mapping(record, None)
+    chosen = RecordMapping() if found is None else read_mapping(found)
     drawn = Faults() if faults is None else read_faults(faults)
     sent = sent_record(record, chosen, None if start is None else _moment(start), stream)
     sender = _sender(to, source, credentials)
@@ -94,8 +104,30 @@ def feed(
     if json is not None:
         write_json({"stream": sent.stream, **counts}, json)
     if json != "-":
-        told = ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items()))
-        typer.echo(f"{counted(len(sent.times), 'row')} sent as stream {sent.stream}: {told}.")
+        typer.echo(
+            f"{counted(len(sent.times), 'row')} went out as stream {sent.stream}, "
+            f"in {_in_words(counts)}."
+        )
+
+
+def _in_words(counts: Mapping[str, int]) -> str:
+    """What was sent.
+
+    >>> _in_words({"packet": 9, "late": 1, "garbage": 2})
+    '10 packets, of which 1 was late, and 2 payloads of garbage besides'
+    """
+    from rga.quantities import counted
+
+    late, double, garbage = (counts.get(kind, 0) for kind in ("late", "duplicate", "garbage"))
+    words = counted(counts.get("packet", 0) + late, "packet")
+    words += f", of which {late} {'was' if late == 1 else 'were'} late" if late else ""
+    more = [f"{counted(double, 'packet')} sent twice"] if double else []
+    more += [f"{counted(garbage, 'payload')} of garbage"] if garbage else []
+    return f"{words}, and {' and '.join(more)} besides" if more else words
+
+
+def _told(words: str) -> None:
+    typer.echo(words, err=True)
 
 
 def _sender(to: str, source: str, credentials: Path | None) -> "Sender":
@@ -104,10 +136,10 @@ def _sender(to: str, source: str, credentials: Path | None) -> "Sender":
     from rga.operation.sources.secrets import credentials_of
 
     if to.startswith(("http://", "https://")):
-        return HttpSender(to, os.environ.get("RGA_TOKEN"))
+        return HttpSender(to, os.environ.get("RGA_TOKEN"), _told)
     if to.startswith(("mqtt://", "mqtts://")):
         known = None if credentials is None else credentials_of(credentials)
-        return BrokerSender(to, source, known)
+        return BrokerSender(to, source, known, _told)
     folder = Path(to)
     if not folder.is_dir():
         raise InputError("there is no such folder", to, "make it, or give http:// or mqtt://")

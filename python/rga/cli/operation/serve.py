@@ -44,7 +44,7 @@ def _serve(chosen: "Configuration", listening: "socket") -> None:
     from rga.dashboard.server import server_of
     from rga.operation.service import Service
 
-    service = Service(chosen)
+    service = Service(chosen, said=lambda line: typer.echo(line, err=True))
     app = app_of(service, lambda: server.should_exit)
     server = server_of(app, chosen.service)
     service.start()

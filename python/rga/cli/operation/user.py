@@ -24,9 +24,14 @@ class UserAction(StrEnum):
     add = "add"
     remove = "remove"
     token = "token"
+    list = "list"
+    password = "password"
 
 
-Name = Annotated[str, typer.Argument(metavar="NAME", help="Of the user, or of the token.")]
+Name = Annotated[
+    str | None,
+    typer.Argument(metavar="NAME", help="Of the user, or of the token; list takes none."),
+]
 RoleName = Annotated[
     str | None,
     typer.Option(
@@ -47,21 +52,33 @@ PasswordFile = Annotated[
 
 def user(
     configuration: ConfigurationFile,
-    action: Annotated[UserAction, typer.Argument(metavar="add|remove|token")],
-    name: Name,
+    action: Annotated[UserAction, typer.Argument(metavar="add|remove|token|list|password")],
+    name: Name = None,
     role: RoleName = None,
     twin: TwinName = None,
     password_file: PasswordFile = None,
 ) -> None:
-    """Let a user in to a service, or no more, or make a token, which is shown once."""
+    """Let a user in to a service, or no more, make a token, which is shown once, or list them.
+
+    Another password ends the sessions of its user.
+    """
     from rga.dashboard.access import tables
     from rga.dashboard.access.users import Users
     from rga.operation.configuration import read_configuration
     from rga.operation.service_file import service_file
 
     chosen = read_configuration(configuration)
+    if (name is None) != (action is UserAction.list):
+        raise typer.BadParameter("list takes no NAME" if name else f"{action} takes a NAME")
     with service_file(chosen.service.data, tables.metadata) as file:
-        if action is UserAction.token:
+        if name is None:
+            _list(file)
+        elif action is UserAction.password:
+            users = Users(file)
+            users.check_is_there(name)
+            users.change_password(name, _password(name, password_file))
+            typer.echo(f"{name} has another password; open sessions have ended.")
+        elif action is UserAction.token:
             _make_token(file, chosen, name, role or "ingest", twin)
         elif action is UserAction.add:
             _add(Users(file), name, role or "viewer", password_file)
@@ -76,6 +93,19 @@ def _add(users: "Users", name: str, role: str, password_file: Path | None) -> No
     users.check_is_new(name)
     users.add(name, chosen, _password(name, password_file))
     typer.echo(f"{name} may come in as {chosen}.")
+
+
+def _list(file: "TableFile") -> None:
+    from rga.dashboard.access.tokens import Tokens
+    from rga.dashboard.access.users import Users
+
+    users, tokens = sorted(Users(file).all().items()), Tokens(file).all()
+    for name, role in users:
+        typer.echo(f"{role:<8} {name}")
+    for one in tokens:
+        typer.echo(f"{one.purpose:<8} {one.name}, a token for twin {one.twin}")
+    if not users and not tokens:
+        typer.echo("There are no users and no tokens: whoever is at this machine may do all.")
 
 
 def _remove(file: "TableFile", name: str) -> None:

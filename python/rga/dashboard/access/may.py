@@ -36,7 +36,10 @@ def may(right: Right) -> Callable[[Request], Who]:
         found = access_of(request).who_calls(request)
         if found is None:
             raise NotLoggedIn
-        if not found.may(right, request.path_params.get("twin")):
+        twin = request.path_params.get("twin")
+        if twin is not None and found.twin not in (None, twin):
+            raise HTTPException(403, f"{found.name} ({found.role}) is for twin {found.twin}")
+        if not found.may(right, twin):
             raise HTTPException(403, f"{found.name} ({found.role}) may not do this")
         return found
 

@@ -61,6 +61,15 @@ class Users:
         with self._file.reading() as connection:
             check_is_free(connection, name, where)
 
+    def check_is_there(self, name: str) -> None:
+        """Whether there is a user of this name.
+
+        Raises:
+            InputError: there is none.
+        """
+        if self.role_of(name) is None:
+            raise InputError("there is no such user", f"user {name!r}", "look at its letters")
+
     def remove(self, name: str) -> None:
         """Let somebody in no more; open sessions end.
 

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 from typing import Annotated
 
 from fastapi import APIRouter, Body, Depends, HTTPException, Path, Query, Request
-from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
 
 from rga.dashboard.access.may import may, may_see_some
 from rga.dashboard.access.roles import Right, Who
@@ -23,7 +23,7 @@ from rga.dashboard.surroundings import Surroundings
 from rga.errors import InputError
 from rga.operation.alarms.alarm_book import MOST_LETTERS, AlarmBook
 from rga.operation.alarms.operator_alarm import AlarmTransition, OperatorAlarm
-from rga.operation.settings_types import Duration
+from rga.operation.settings_types import Duration, is_readable
 from rga.twin.repository.faults import RepositoryFault
 
 #: alarms of an answer that are closed
@@ -33,7 +33,15 @@ Closed = Annotated[
     int, Query(ge=0, le=MOST_CLOSED, description="How many of the latest closed ones besides.")
 ]
 AlarmNumber = Annotated[int, Path(ge=1, le=LARGEST, description="Number of the alarm.")]
-Why = Annotated[str, Field(max_length=MOST_LETTERS)]
+
+
+def _readable(words: str) -> str:
+    if not is_readable(words):
+        raise ValueError("it has a control character")
+    return words
+
+
+Why = Annotated[str, Field(max_length=MOST_LETTERS), AfterValidator(_readable)]
 
 
 @dataclass(frozen=True)
@@ -56,8 +64,9 @@ UNSAID = Reason()
 
 
 class Shelving(Reason):
-    """For how long nobody wants to hear of an alarm: `until` a time, or `for` a duration."""
+    """For how long nobody wants to hear of an alarm, and why: `until` a time, or `for` a while."""
 
+    why: Annotated[Why, Field(min_length=1)]
     until: Moment | None = None
     span: Annotated[
         Duration | None, WithJsonSchema({"type": "string", "examples": ["8 h", "2 d"]})
@@ -67,6 +76,8 @@ class Shelving(Reason):
     def _ends(self) -> "Shelving":
         if (self.until is None) == (self.span is None):
             raise ValueError("say until when, or for how long")
+        if not self.why.strip():
+            raise ValueError("say why")
         return self
 
     def end(self, now: datetime) -> datetime:

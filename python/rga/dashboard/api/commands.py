@@ -12,9 +12,11 @@ from starlette.responses import Response
 from rga.dashboard.access.may import may
 from rga.dashboard.access.roles import Who
 from rga.dashboard.api.past import LARGEST
+from rga.dashboard.api.possible import about, impossible, unreadable
 from rga.dashboard.api.served import OF_A_TWIN, PREFIX, TheTwin, answering
 from rga.operation.inbox.requests import KeyUsed, Requests
-from rga.twin.commands.command import Accept, AnyCommand, Reject, Rollback, read_command
+from rga.settings_files import in_words
+from rga.twin.commands.command import AnyCommand, read_command
 from rga.twin.restore import standing_of
 
 #: what the service fills in itself
@@ -87,20 +89,24 @@ def ask(
     key = idempotency_key or uuid4().hex
     if filled := [name for name in _FILLED if name in command]:
         raise HTTPException(422, f"{filled[0]} is filled in by the service: leave it out")
+    if wrong := unreadable(command):
+        raise HTTPException(422, wrong)
     try:
         read = read_command(json.dumps(command | {"who": who.name}))
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         place = ".".join(str(one) for one in first["loc"]) or "it"
-        raise HTTPException(422, f"{place}: {first['msg']}") from None
-    now = seen.reading.now()
-    if isinstance(read, Accept | Reject | Rollback) and read.version_seen is None and now:
-        # Of two who decide at once about the same version, the second is told.
-        read = read.model_copy(update={"version_seen": now.version or None})
+        raise HTTPException(422, f"{place}: {in_words(first)}") from None
+    requests = Requests(seen.served.inbox)
+    asked, compared = f"{who.name} {key}", json.dumps(command, sort_keys=True)
     try:
-        number = Requests(seen.served.inbox).ask(
-            f"{who.name} {key}", read.model_dump_json(), json.dumps(command, sort_keys=True)
-        )
+        number = requests.known(asked, compared)
+        if number is None:
+            now = seen.reading.now()
+            read = about(read, seen, now)
+            if lacking := impossible(read, seen, now):
+                raise HTTPException(422, lacking)
+            number = requests.ask(asked, read.model_dump_json(), compared)
     except KeyUsed as error:
         raise HTTPException(409, str(error)) from None
     response.headers["Location"] = f"{PREFIX}/twins/{seen.name}/commands/{number}"

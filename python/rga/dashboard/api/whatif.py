@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from threading import Semaphore
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Depends, HTTPException
@@ -29,7 +29,9 @@ class WhatIfQuestion(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    settings: dict[str, float] = Field(default_factory=dict, max_length=200)
+    settings: dict[str, Annotated[float, Field(strict=True)]] = Field(
+        default_factory=dict, max_length=200
+    )
     add: dict[str, dict[str, Any]] = Field(default_factory=dict, max_length=20)
 
 

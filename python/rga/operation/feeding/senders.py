@@ -4,6 +4,7 @@ import json
 import ssl
 import time
 from collections import OrderedDict
+from collections.abc import Callable
 from pathlib import Path
 from threading import Lock
 from typing import Any, Protocol
@@ -21,6 +22,8 @@ from rga.operation.packets.packet import Number
 ANSWER, AGAIN = 30.0, 1.0
 #: how long it waits for any packet to be acknowledged end to end before it sends them again [s]
 UNACKNOWLEDGED = 5.0
+#: how long nobody answers before that is told [s]
+SILENT = 5.0
 #: packets that are on their way at most: mosquitto as it comes drops what waits beyond a thousand,
 #: and each of these may wait there twice
 MOST_OPEN = 500
@@ -36,16 +39,44 @@ class Sender(Protocol):
         """Wait until everything is acknowledged."""
 
 
+class _Silence:
+    """Tells once when nobody has answered for a while, and again once somebody has meanwhile.
+
+    Args:
+        told: takes the words.
+    """
+
+    def __init__(self, told: Callable[[str], None]) -> None:
+        self._told, self._said, self._since = told, False, time.monotonic()
+
+    def heard(self) -> None:
+        """Somebody has answered."""
+        self._said, self._since = False, time.monotonic()
+
+    def tell(self, words: str) -> None:
+        """Say what keeps anybody from answering, if that has lasted, and was not said."""
+        if not self._said and time.monotonic() - self._since > SILENT:
+            self._said = True
+            self._told(words)
+
+
+def _nothing_told(words: str) -> None:
+    """Nobody wants to hear it."""
+
+
 class HttpSender:
     """Sends to the API of a service; an answer says that the payload is on its disk.
 
     Args:
         url: of the service and the twin, http://host:port/twin.
         token: that lets it send; None: the service asks for none.
+        told: takes in words that nobody answers.
     """
 
-    def __init__(self, url: str, token: str | None = None) -> None:
-        parts = urlsplit(url)
+    def __init__(
+        self, url: str, token: str | None = None, told: Callable[[str], None] = _nothing_told
+    ) -> None:
+        parts, self._place, self._silence = urlsplit(url), url, _Silence(told)
         twin = parts.path.strip("/")
         self._url = f"{parts.scheme}://{parts.netloc}/api/v1/twins/{twin}/packets"
         self._headers = {"Content-Type": "application/octet-stream"}
@@ -58,6 +89,7 @@ class HttpSender:
         Raises:
             InputError: the service says that it never will.
         """
+        self._silence.heard()
         while True:
             try:
                 asked = Request(self._url, payload, self._headers, method="POST")
@@ -67,14 +99,29 @@ class HttpSender:
                 if error.code not in (429, 503, 507):
                     said = error.read(500).decode(errors="replace")
                     raise InputError(
-                        f"the service answers {error.code}: {said}", self._url, "check the address"
+                        f"the service answers {error.code}: {said}", self._url, _remedy(error.code)
                     ) from None
-            except (URLError, OSError):
-                pass
+                self._silence.tell(
+                    f"the service at {self._place} takes nothing now ({error.code}); "
+                    "it is tried again until it does"
+                )
+            except (URLError, OSError) as error:
+                reason = getattr(error, "reason", error)
+                self._silence.tell(
+                    f"nobody answers at {self._place} ({reason}); it is tried again until "
+                    "somebody does"
+                )
             time.sleep(AGAIN)
 
     def finish(self) -> None:
         """Nothing is on its way."""
+
+
+def _remedy(code: int) -> str:
+    """What mends an answer of a service."""
+    if code in (401, 403):
+        return "give in RGA_TOKEN a token of the role ingest for this twin: rga user CONFIG token"
+    return "check the address" if code == 404 else "mend what it says"
 
 
 class BrokerSender:
@@ -88,13 +135,18 @@ class BrokerSender:
         url: of the broker and the topic, mqtt://host:port/rga/v1/twin/data/logger.
         source: of the twin, of which the service says what it has.
         credentials: user and password; None: the broker asks for none.
+        told: takes in words that nobody answers.
 
     Raises:
         InputError: the topic names no twin.
     """
 
     def __init__(
-        self, url: str, source: str = "mqtt", credentials: tuple[str, str] | None = None
+        self,
+        url: str,
+        source: str = "mqtt",
+        credentials: tuple[str, str] | None = None,
+        told: Callable[[str], None] = _nothing_told,
     ) -> None:
         self._parts, self._credentials = urlsplit(url), credentials
         self._topic = self._parts.path.strip("/")
@@ -104,6 +156,8 @@ class BrokerSender:
                 "the topic names no twin", url, "write mqtt://host:1883/rga/v1/TWIN/data/LOGGER"
             )
         self._acknowledged = f"rga/v1/{twin[0]}/ack/{source}"
+        self._away, self._unheard = _Silence(told), _Silence(told)
+        self._awaited = f"the source {source!r} of twin {twin[0]!r}"
         self._open: OrderedDict[Number, bytes] = OrderedDict()
         self._lock, self._heard = Lock(), time.monotonic()
         self._refused: str | None = None
@@ -118,7 +172,9 @@ class BrokerSender:
         self._stay_in_touch()
         if number is not None:
             with self._lock:
-                self._heard = self._heard if self._open else time.monotonic()
+                if not self._open:
+                    self._heard = time.monotonic()
+                    self._unheard.heard()
                 self._open[number] = payload
         self._client.publish(self._topic, payload, qos=1)
         while len(self._open) >= MOST_OPEN:
@@ -137,6 +193,10 @@ class BrokerSender:
         self._client.disconnect()
         self._client.loop_stop()
 
+    @property
+    def _address(self) -> str:
+        return self._parts._replace(path="").geturl()
+
     def _new_client(self) -> Client:
         client = Client(CallbackAPIVersion.VERSION2, protocol=MQTTv5, reconnect_on_failure=False)
         if self._credentials is not None:
@@ -148,14 +208,25 @@ class BrokerSender:
 
     def _stay_in_touch(self) -> None:
         """Connect anew, as often as it takes, if the connection has broken; send again."""
+        if not self._client.is_connected():
+            self._away.heard()
         while not self._client.is_connected():
             # What the client itself has not sent yet would come before what the broker has lost.
             self._client.loop_stop()
             self._client = self._new_client()
             if self._connects():
+                self._unheard.heard()
                 self._send_from_the_first()
             else:
+                self._away.tell(
+                    f"nobody answers at {self._address}; it is tried again until somebody does"
+                )
                 time.sleep(AGAIN / 10)
+        if self._open:
+            self._unheard.tell(
+                f"the broker takes packets, and no service says that they are kept: "
+                f"{self._awaited} is waited for"
+            )
         if self._open and time.monotonic() - self._heard > UNACKNOWLEDGED:
             self._send_from_the_first()
 
@@ -172,7 +243,7 @@ class BrokerSender:
             if self._refused is not None:
                 raise InputError(
                     f"the broker refuses the connection: {self._refused}",
-                    self._parts._replace(path="").geturl(),
+                    self._address,
                     "check user and password",
                 )
             time.sleep(AGAIN / 100)
@@ -205,6 +276,7 @@ class BrokerSender:
                 if here and not any(number.sequence in one for one in missing):
                     del self._open[number]
                     self._heard = time.monotonic()
+                    self._unheard.heard()
 
 
 class FolderSender:

@@ -1,6 +1,7 @@
 """A record as the packets of a logger."""
 
 import secrets
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -82,6 +83,19 @@ def sent_record(
         )
     after = np.rint(clock.seconds * MICROSECONDS).astype(np.int64)
     channels = [one for one in table.frame.columns if one not in clock.columns]
-    values = np.column_stack([table.numbers(one, tuple(mapping.missing)) for one in channels])
+    missing = _missing(mapping, channels)
+    values = np.column_stack([table.numbers(one, missing[one]) for one in channels])
     times = (start - EPOCH) // timedelta(microseconds=1) + after
     return SentRecord(tuple(channels), times, values, stream or secrets.token_hex(8))
+
+
+def _missing(mapping: FileMapping, columns: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """By column, what stands for a missing value in it."""
+    stated = {one.column or name: one.missing for name, one in mapping.channels.items()}
+    return {
+        column: (
+            *mapping.missing,
+            *stated.get(column, stated.get(mapping.channel_of(column)[0], ())),
+        )
+        for column in columns
+    }

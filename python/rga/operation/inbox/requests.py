@@ -1,6 +1,6 @@
 """Commands of people that are asked for once, however often they are sent."""
 
-from sqlalchemy import MetaData, Table, insert, select
+from sqlalchemy import Connection, MetaData, Table, insert, select
 
 from rga.errors import InputError
 from rga.twin.hardware.inbox import Inbox
@@ -39,6 +39,18 @@ class Requests:
         with inbox.writing() as connection:
             metadata.create_all(connection)
 
+    def known(self, key: str, compared: str) -> int | None:
+        """Number of the command that a key came with before; None: it is new.
+
+        Args:
+            key, compared: as `ask` takes them.
+
+        Raises:
+            KeyUsed: the key was sent with another command.
+        """
+        with self._inbox.reading() as connection:
+            return _known(connection, key, compared)
+
     def ask(self, key: str, command: str, compared: str) -> int:
         """Keep a command on the disk, unless its key has come before.
 
@@ -55,16 +67,20 @@ class Requests:
             InputError: nothing can be written.
         """
         with self._inbox.writing() as connection:
-            of_key = select(_request).where(_request.c.key == key)
-            found = connection.execute(of_key).one_or_none()
-            if found is not None:
-                known = values_of(_request, found)
-                if known["command"] != compared:
-                    raise KeyUsed(
-                        "another command was sent with this key", "request", "draw a new key"
-                    )
-                return int(known["number"])
+            known = _known(connection, key, compared)
+            if known is not None:
+                return known
             number = self._inbox.ask_within(connection, command)
             entry = with_checksum(key=key, number=number, command=compared)
             connection.execute(insert(_request).values(**entry))
             return number
+
+
+def _known(connection: Connection, key: str, compared: str) -> int | None:
+    found = connection.execute(select(_request).where(_request.c.key == key)).one_or_none()
+    if found is None:
+        return None
+    known = values_of(_request, found)
+    if known["command"] != compared:
+        raise KeyUsed("another command was sent with this key", "request", "draw a new key")
+    return int(known["number"])

@@ -1,5 +1,6 @@
 """The packet of rga's own, as JSON or MessagePack."""
 
+import json
 import re
 from datetime import datetime, timedelta
 from typing import Annotated, Any, Literal
@@ -37,7 +38,7 @@ class NativePacket(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
         dt: time between the rows [s].
         t: seconds of each row since `t0`, rising, in place of `dt`; a single row needs neither.
         stream: drawn at random by the logger when it starts.
-        seq: number of the packet within the stream, counted from 0.
+        seq: number of the packet within the stream, counted from 0, below 2**53.
     """
 
     v: Literal[1]
@@ -47,7 +48,7 @@ class NativePacket(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     dt: Annotated[float, Meta(gt=0, le=LONGEST)] | None = None
     t: list[float] | None = None
     stream: Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{1,64}$")] | None = None
-    seq: Annotated[int, Meta(ge=0, le=2**62)] | None = None
+    seq: Annotated[int, Meta(ge=0, lt=2**53)] | None = None
 
 
 _JSON = msgspec.json.Decoder(NativePacket)
@@ -108,6 +109,7 @@ def read_packet(payload: bytes, where: str) -> SensorPacket:
             where,
             "write it as `rga schema packet` says",
         ) from None
+    _check_keys(payload, where)
     channels = tuple(written.channels)
     if len(set(channels)) < len(channels):
         double = next(name for name in channels if channels.count(name) > 1)
@@ -157,6 +159,23 @@ def write_packet(packet: SensorPacket, *, binary: bool = False, single: bool = F
         name: value for name, value in msgspec.structs.asdict(written).items() if value is not None
     }
     return msgspec.msgpack.encode(said) if binary else msgspec.json.encode(said)
+
+
+def _check_keys(payload: bytes, where: str) -> None:
+    """Whether every key of a packet in JSON stands once.
+
+    Raises:
+        InputError: one stands twice.
+    """
+    if payload[:1] in _MAPS:
+        return
+    # A name may be written by escapes; else a key that stands twice is found twice.
+    names = [f'"{name}"'.encode() for name in NativePacket.__struct_fields__]
+    if b"\\u" not in payload and all(payload.count(name) < 2 for name in names):
+        return
+    keys = [key for key, _ in json.loads(payload, object_pairs_hook=list)]
+    if double := next((key for key in keys if keys.count(key) > 1), None):
+        raise InputError(f"the key {double!r} stands twice", where, "write every key once")
 
 
 def _values(written: NativePacket, where: str) -> FloatArray:

@@ -1,10 +1,12 @@
 """Readings that come one by one, each with a channel and a time, as packets."""
 
+import json
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
+from rga.bounded_files import fault_of
 from rga.errors import InputError
 from rga.operation.packets.packet import MICROSECONDS, MOST_BYTES, MOST_CHANNELS, SensorPacket
 from rga.records.table import LARGEST
@@ -117,3 +119,19 @@ def _check(layers: Mapping[str, list[dict[int, float]]], where: str) -> None:
             where,
             "send what is measured sooner",
         )
+
+
+def check_json(payload: bytes, where: str) -> None:
+    """Whether what begins as JSON is JSON.
+
+    Raises:
+        InputError: it begins so, and is none.
+    """
+    if payload.lstrip()[:1] not in (b"{", b"["):
+        return
+    try:
+        json.loads(payload)
+    except (ValueError, RecursionError) as error:
+        raise InputError(
+            f"this is no JSON: {fault_of(error)}", where, "send the whole of it, as JSON is written"
+        ) from None

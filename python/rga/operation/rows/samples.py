@@ -14,8 +14,9 @@ from rga.model import Model
 from rga.operation.packets.csv_row import file_of_row
 from rga.operation.packets.formats import PayloadFormat, StatedFormat, format_of_bytes, read_packets
 from rga.operation.packets.packet import EPOCH, MICROSECONDS, Moments, SensorPacket
-from rga.operation.packets.readings import check_size
+from rga.operation.packets.readings import check_json, check_size
 from rga.operation.rows.cells import SensorSamples
+from rga.operation.settings_types import is_readable
 from rga.records.channels import ColumnSource, sources_of, values_of
 from rga.records.formats import read_format
 from rga.records.logger_data import measured
@@ -91,6 +92,7 @@ class Reader:
         """
         packets = read_packets(kind, payload, where, arrived, self._stated)
         for packet in packets:
+            _check_names(packet.channels, where)
             self._sources(_columns(packet))
         return packets
 
@@ -140,11 +142,16 @@ class Reader:
         Raises:
             InputError: it cannot be read, or its times have no zone.
         """
-        return self._of_table(payload, self._mapping)
+        try:
+            return self._of_table(payload, self._mapping)
+        except InputError:
+            check_json(payload, str(self._where))
+            raise
 
     def _of_table(self, payload: bytes, mapping: FileMapping) -> SensorSamples:
         check_size(payload, str(self._where))
         table = read_format(payload, self._where, mapping, self._columns)
+        _check_names(table.frame.columns, str(self._where))
         chosen = _for(table, mapping)
         found = measured(table, chosen, self._model)
         self._tell_unknown(table, chosen, found.clock.columns)
@@ -224,6 +231,19 @@ class Reader:
         frame = pl.DataFrame(dict(zip(names, values.T, strict=True)))
         units = {name: unit for name, unit in columns if unit}
         return Table(self._where, frame, "row", 1, format="packet", units=units)
+
+
+def _check_names(names: Iterable[str], where: str) -> None:
+    """Whether names can be shown to people.
+
+    Raises:
+        InputError: one has a control character.
+    """
+    for name in names:
+        if not is_readable(name) or "\n" in name:
+            raise InputError(
+                f"the name {name!r} has a control character", where, "name it by visible letters"
+            )
 
 
 def _columns(packet: SensorPacket) -> Columns:

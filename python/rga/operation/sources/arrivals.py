@@ -11,6 +11,8 @@ from rga.operation.sources.clock import ClockSight, ClockWatch
 
 #: cells of a line of a text: reading it takes the square of them
 MOST_CELLS = 1_000
+#: what mends a clock that is not believed
+_MEND = "set the clock of the logger, or state another clock of the source"
 _DELIMITERS = (b",", b";", b"\t", b"|", b" ")
 
 
@@ -52,6 +54,7 @@ def arrival_of(
     fault = None
     if clock is not None:
         fault = clock.refused(ClockSight(where, channels, number, first, last, arrived))
+        fault = fault and f"{fault}: {_MEND}"
     # The same number may be sent again and again, and is another reading each time.
     known = digest if timed and number is None else None
     return Arrival(payload, kind, arrived, first, last, number, known, fault, where)

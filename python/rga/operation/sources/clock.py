@@ -8,6 +8,8 @@ from typing import NamedTuple
 from rga.operation.packets.packet import MICROSECONDS, Number
 
 MINUTE, DAY = 60.0, 86_400.0
+#: days beyond which a span is told in years
+MANY_DAYS = 2000.0
 #: streams whose clocks are remembered
 MOST_STREAMS = 10_000
 _OLD = "it was away, or its clock is behind"
@@ -184,9 +186,11 @@ class ClockWatch:
 def in_words(seconds: float) -> str:
     """A span of time in the unit in which it is read best.
 
-    >>> in_words(90), in_words(7200), in_words(86_400 * 3)
-    ('90 s', '2 h', '3 days')
+    >>> in_words(90), in_words(7200), in_words(86_400 * 3), in_words(86_400 * 10_200)
+    ('90 s', '2 h', '3 days', '27.9 years')
     """
+    if seconds > MANY_DAYS * DAY:
+        return f"{seconds / (365.25 * DAY):.3g} years"
     for unit, size in (("days", DAY), ("h", 3600.0), ("min", MINUTE)):
         if seconds >= 2 * size:
             return f"{seconds / size:.3g} {unit}"

@@ -104,7 +104,7 @@ class Broker:
         client.manual_ack_set(True)
         client.will_set(self._status, "offline", qos=1, retain=True)
         client.on_connect, client.on_disconnect = self._connected, self._disconnected
-        client.on_message = self._came
+        client.on_message, client.on_connect_fail = self._came, self._unanswered
         return client
 
     def _connected(self, client: Client, _: Any, flags: Any, reason: Any, *__: Any) -> None:
@@ -120,6 +120,9 @@ class Broker:
         client.subscribe([(topic, options) for topic in (*self._topics, self._probe)])
         client.publish(self._status, "online", qos=1, retain=True)
         self._answered = time.monotonic()
+
+    def _unanswered(self, _client: Client, _: Any) -> None:
+        self.fault = f"nobody answers at {self._host}:{self._port}"
 
     def _disconnected(self, _client: Client, _: Any, __: Any, reason: Any, *___: Any) -> None:
         self.fault = f"the broker is away: {reason}"

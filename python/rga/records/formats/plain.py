@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 
 from rga.errors import InputError
+from rga.quantities import counted
 from rga.records.formats.encoding import Text
 from rga.records.formats.rows import open_quote, read_rows
 from rga.records.formats.shape import Shape, find_shape, rows_above, split, uncommented
@@ -40,7 +41,9 @@ def read_plain(text: Text, mapping: FileMapping, known: Collection[str]) -> Tabl
         stated = getattr(mapping, key)
         if stated is not None and stated > len(lines):
             raise InputError(
-                f"{key} = {stated}, but the file has {len(lines)} lines", str(text.path), "mend it"
+                f"{key} = {stated}, but the file has {counted(len(lines), 'line')}",
+                str(text.path),
+                "mend it",
             )
     shape = find_shape(lines, mapping, {"time", *known})
     above = rows_above(lines, shape) if mapping.header_line is None else 0
