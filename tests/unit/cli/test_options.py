@@ -70,7 +70,8 @@ def test_commands_say_so(rga: Any, model_file: Path, tmp_path: Path) -> None:
     ):
         said = rga("dataset", model_file, *arguments)
         assert said.code == 2
-        assert words in said.err
+        # Words are broken where a line ends, which hangs on how long the path is.
+        assert words in " ".join(said.err.replace("│", " ").split())
     assert not target.parent.exists()
     assert rga("dataset", model_file, "-n", "3", "-o", target).code == 0
     twice = rga("results", model_file, "--contexts", "load=1,load=2", "-o", tmp_path / "r.csv")
