@@ -21,15 +21,15 @@ from served.made_service import waited_for
 
 __all__ = ["mosquitto"]
 
-TOPIC, ACK = "rga/v1/east/data/logger", "rga/v1/east/ack/mqtt"
+TOPIC = "rga/v1/east/data/logger"
 
 
 class Listener:
     """Stands for a service: it says what it has."""
 
-    def __init__(self, port: int, *, answers: bool = True) -> None:
+    def __init__(self, port: int, source: str = "mqtt", *, answers: bool = True) -> None:
         self.came: list[int] = []
-        self._answers = answers
+        self._answers, self._ack = answers, f"rga/v1/east/ack/{source}"
         self._client = Client(CallbackAPIVersion.VERSION2, protocol=MQTTv5)
         self._client.on_message = self._take
         self._client.connect("127.0.0.1", port)
@@ -47,7 +47,7 @@ class Listener:
         next_ = max(self.came) + 1
         missing = [(k, k) for k in range(next_) if k not in self.came]
         said = {"stream": "s", "next": next_, "missing": missing}
-        client.publish(ACK, json.dumps(said), qos=1)
+        client.publish(self._ack, json.dumps(said), qos=1)
 
 
 @pytest.mark.parametrize("later", [0.0, 1.5], ids=["before the logger", "after it"])
@@ -85,14 +85,28 @@ def test_a_broker_that_refuses_is_told(mosquitto: Mosquitto, tmp_path: Path) -> 
         BrokerSender(f"{mosquitto.url}/{TOPIC}").send(b"0", None)
 
 
+@pytest.mark.parametrize(
+    "url",
+    ["mqtt:///rga/v1/east/data/x", "mqtt://h:99999/rga/v1/east/data/x", "mqtt://h/rga/v1/+/data"],
+)
+def test_an_address_that_is_none_is_told(url: str) -> None:
+    with pytest.raises(InputError, match=r"names no (host and port|twin)"):
+        BrokerSender(url)
+
+
 def test_a_service_that_never_acknowledges_is_told_of_once(
     mosquitto: Mosquitto, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(senders, "SILENT", 0.2)
+    monkeypatch.setattr(senders, "UNACKNOWLEDGED", 0.1)
     told: list[str] = []
     sender = BrokerSender(f"{mosquitto.url}/{TOPIC}", "logger", told=told.append)
-    for k in range(3):
-        time.sleep(0.3)
-        sender.send(str(k).encode(), Number("s", k))
+    sender.send(b"0", Number("s", 0))
+    with ThreadPoolExecutor() as pool:
+        finishing = pool.submit(sender.finish)
+        time.sleep(2.5)
+        listener = Listener(mosquitto.port, "logger")
+        finishing.result()
+    listener.stop()
     assert len(told) == 1
     assert "the source 'logger' of twin 'east' is waited for" in told[0]

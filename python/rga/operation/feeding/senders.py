@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Protocol
 from urllib.error import HTTPError, URLError
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 from urllib.request import Request, urlopen
 
 from paho.mqtt.client import Client, MQTTMessage, MQTTv5
@@ -71,12 +71,15 @@ class HttpSender:
         url: of the service and the twin, http://host:port/twin.
         token: that lets it send; None: the service asks for none.
         told: takes in words that nobody answers.
+
+    Raises:
+        InputError: the address names no host.
     """
 
     def __init__(
         self, url: str, token: str | None = None, told: Callable[[str], None] = _nothing_told
     ) -> None:
-        parts, self._place, self._silence = urlsplit(url), url, _Silence(told)
+        parts, self._place, self._silence = _parts_of(url), url, _Silence(told)
         twin = parts.path.strip("/")
         self._url = f"{parts.scheme}://{parts.netloc}/api/v1/twins/{twin}/packets"
         self._headers = {"Content-Type": "application/octet-stream"}
@@ -117,6 +120,22 @@ class HttpSender:
         """Nothing is on its way."""
 
 
+def _parts_of(url: str) -> SplitResult:
+    """The parts of an address that names a host."""
+    parts = urlsplit(url)
+    try:
+        is_one = bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        is_one = False
+    if not is_one:
+        raise InputError(
+            "the address names no host and port",
+            url,
+            "write http://host:8471/TWIN or mqtt://host:1883/rga/v1/TWIN/data/LOGGER",
+        )
+    return parts
+
+
 def _remedy(code: int) -> str:
     """What mends an answer of a service."""
     if code in (401, 403):
@@ -138,7 +157,7 @@ class BrokerSender:
         told: takes in words that nobody answers.
 
     Raises:
-        InputError: the topic names no twin.
+        InputError: the address names no host, or the topic no twin.
     """
 
     def __init__(
@@ -148,10 +167,10 @@ class BrokerSender:
         credentials: tuple[str, str] | None = None,
         told: Callable[[str], None] = _nothing_told,
     ) -> None:
-        self._parts, self._credentials = urlsplit(url), credentials
+        self._parts, self._credentials = _parts_of(url), credentials
         self._topic = self._parts.path.strip("/")
         root, twin = self._topic.split("/")[:2], self._topic.split("/")[2:3]
-        if root != ["rga", "v1"] or not twin:
+        if root != ["rga", "v1"] or not twin or "+" in self._topic:
             raise InputError(
                 "the topic names no twin", url, "write mqtt://host:1883/rga/v1/TWIN/data/LOGGER"
             )
@@ -222,11 +241,6 @@ class BrokerSender:
                     f"nobody answers at {self._address}; it is tried again until somebody does"
                 )
                 time.sleep(AGAIN / 10)
-        if self._open:
-            self._unheard.tell(
-                f"the broker takes packets, and no service says that they are kept: "
-                f"{self._awaited} is waited for"
-            )
         if self._open and time.monotonic() - self._heard > UNACKNOWLEDGED:
             self._send_from_the_first()
 
@@ -255,6 +269,10 @@ class BrokerSender:
             first = next(iter(self._open.items()), None)
         while first is not None and first[0] in self._open and self._client.is_connected():
             self._client.publish(self._topic, first[1], qos=1)
+            self._unheard.tell(
+                f"the broker takes packets, and no service says that they are kept: "
+                f"{self._awaited} is waited for"
+            )
             until = time.monotonic() + AGAIN
             while first[0] in self._open and time.monotonic() < until:
                 time.sleep(AGAIN / 100)
