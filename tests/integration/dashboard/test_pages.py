@@ -128,6 +128,9 @@ def test_a_sensor_is_taken_out_of_use(service: Service, client: TestClient) -> N
         {"kind": "rollback", "version": "one", "version_seen": "1"},
         {"kind": "exclude", "sensor": "D1", "since": "soon"},
         {"kind": "rollback", "version": "1", "version_seen": "1", "key": ""},
+        {"kind": "rollback", "version": "9", "version_seen": "1"},
+        {"kind": "exclude", "sensor": "D77"},
+        {"kind": "exclude", "sensor": "D1", "why": "a\0b"},
     ],
 )
 def test_what_a_form_cannot_ask_for_is_told(client: TestClient, fields: dict[str, str]) -> None:

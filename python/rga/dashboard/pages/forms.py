@@ -6,6 +6,7 @@ from urllib.parse import parse_qs
 
 from fastapi import HTTPException, Request
 
+from rga.dashboard.api.possible import impossible, unreadable
 from rga.dashboard.pages.times import given_moment
 from rga.dashboard.surroundings import SeenTwin
 from rga.errors import InputError
@@ -32,13 +33,19 @@ def ask(seen: SeenTwin, form: Mapping[str, str], who: str) -> None:
     """Keep what a form asks a twin for; whoever plays it carries it out.
 
     Raises:
-        InputError: it asks for nothing that there is, or its key was used for something else.
+        InputError: it asks for nothing that can be done, or its key was used for something else.
     """
     command = command_of(form, who)
     if not form.get("key"):
         raise InputError("the form has no key", PLACE, "load its page again")
+    if wrong := unreadable({name: words for name, words in form.items() if words}):
+        raise InputError(wrong, PLACE, "write it again")
+    requests, asked = Requests(seen.served.inbox), f"{who} {form['key']}"
     compared = command.model_dump_json(exclude={"given_at"})
-    Requests(seen.served.inbox).ask(f"{who} {form['key']}", command.model_dump_json(), compared)
+    if requests.known(asked, compared) is None:
+        if lacking := impossible(command, seen, seen.reading.now()):
+            raise InputError(lacking, PLACE, "load its page again")
+        requests.ask(asked, command.model_dump_json(), compared)
 
 
 def command_of(form: Mapping[str, str], who: str) -> AnyCommand:
