@@ -282,6 +282,15 @@ def test_packets_that_never_came_are_told_of(calm: Bridge) -> None:
     assert calm.changes[-1] == ("source", "missing", "cleared")
 
 
+def test_what_a_logger_sent_before_it_was_first_heard_is_no_loss(calm: Bridge) -> None:
+    calm.send(8)
+    calm.receive(8, known=Number("begun before", 7))
+    calm.receive(9, known=Number("begun before", 8))
+    calm.send(8)
+    assert calm.changes == []
+    assert calm.service.twins["east"].numbers("http")["begun before"].gaps == [(0, 6)]
+
+
 def test_a_clock_that_is_ahead_is_told_of(calm: Bridge) -> None:
     calm.send(8)
     calm.receive(1000, known=Number("another", 0))

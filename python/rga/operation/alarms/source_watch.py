@@ -118,4 +118,6 @@ class _Missing:
             max(0, min(last + 1, self._before.get(stream, 0)) - first)
             for stream, known in numbers.items()
             for first, last in known.gaps
+            # A logger that runs already, or counts from 1, has not sent what comes before.
+            if first > 0
         )
