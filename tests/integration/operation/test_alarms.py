@@ -284,11 +284,11 @@ def test_packets_that_never_came_are_told_of(calm: Bridge) -> None:
 
 def test_what_a_logger_sent_before_it_was_first_heard_is_no_loss(calm: Bridge) -> None:
     calm.send(8)
-    calm.receive(8, known=Number("begun before", 7))
-    calm.receive(9, known=Number("begun before", 8))
+    calm.receive(8, known=Number("running", 7))
+    calm.receive(9, known=Number("running", 8))
     calm.send(8)
     assert calm.changes == []
-    assert calm.service.twins["east"].numbers("http")["begun before"].gaps == [(0, 6)]
+    assert calm.service.twins["east"].numbers("http")["running"].gaps == [(0, 6)]
 
 
 def test_a_clock_that_is_ahead_is_told_of(calm: Bridge) -> None:
