@@ -81,7 +81,7 @@ def test_a_file_states_what_differs(tmp_path: Path, suffix: str) -> None:
 
 WRONG = {
     "group": ("[nameing]\nlog_odds = 9\n", "nameing: ", "the criteria are record, zeros"),
-    "name": ("[naming]\nodds = 9\n", "naming.odds: ", "the criteria of naming are log_odds"),
+    "name": ("[naming]\nodds = 9\n", "naming.odds: ", "the keys of [naming] are log_odds"),
     "value": ("[naming]\nlog_odds = -9\n", "naming.log_odds: ", "greater than 0"),
     "text": ('[rivals]\nlisted = "3"\n', "rivals.listed: ", "valid integer"),
     "figure in place of a group": ("naming = 9\n", "naming: ", "the criteria are record"),
