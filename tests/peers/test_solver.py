@@ -194,6 +194,7 @@ def test_a_page_reports_ratios_and_whether_they_reach_their_targets() -> None:
         assert line in text.splitlines()
 
 
+@pytest.mark.thorough
 def test_the_command(rga: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "rga_bench.solver.experiment.shorter",

@@ -59,6 +59,7 @@ def test_networks_on_the_corrected_twin_gain_by_it() -> None:
     assert coverage(problem, alone, data.test) < 0.83 < coverage(problem, amortised, data.test)
 
 
+@pytest.mark.thorough
 def test_the_polished_network_leaves_hardly_more_than_the_noise() -> None:
     data = known("noise only")
     polished = refined_network(data.lesson)

@@ -25,6 +25,7 @@ def quick_monitor(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rga_bench.contexts.twin_run.Settings", partial(Settings, arl0=2000.0))
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("quick_monitor")
 def test_a_method_lives_through_drifts() -> None:
     little = task(drifts=("none", "recurring"), sizes=replace(FEW, test=40))

@@ -45,6 +45,7 @@ def test_any_number_of_processes_finds_the_same(monkeypatch: pytest.MonkeyPatch)
     assert other.delays != one.delays
 
 
+@pytest.mark.thorough
 def test_a_detector_of_ones_own_stands_in_the_tables() -> None:
     shares: list[float] = []
     experiment = DetectionExperiment(LITTLE, [coin(0.01)])

@@ -37,6 +37,7 @@ LITTLE = ContextsSetting(
 )
 
 
+@pytest.mark.thorough
 def test_a_run_that_was_killed_goes_on(few_methods: dict[str, Row], tmp_path: Path) -> None:
     experiment = ContextsExperiment(replace(LITTLE, rows=("noise", "prior mean", "absent")))
     whole = experiment.measure(Execution(folder=tmp_path / "whole"))
@@ -61,6 +62,7 @@ def _timeless(result: Any) -> list[Any]:
     return [replace(one, learning=None, inference=None) for one in result.outcomes]
 
 
+@pytest.mark.thorough
 def test_a_method_beside_others_is_reported(few_methods: dict[str, Row]) -> None:
     setting = replace(LITTLE, gaps=("all",), manners=("same",))
     found = ContextsExperiment(setting).measure(Execution())

@@ -31,6 +31,7 @@ def test_the_command_writes_its_tables(rga: Callable[..., Any], tmp_path: Path) 
     assert "| 4,000 " in page
 
 
+@pytest.mark.thorough
 def test_a_step_leaves_little_beside_its_rows() -> None:
     told: list[float] = []
     run = measure(4_000, 24, 10, 1, told.append)

@@ -88,6 +88,7 @@ def test_another_unit_and_a_context_that_stands_still_are_warned_of(
     assert warnings(healthy, tmp_path) == []
 
 
+@pytest.mark.thorough
 def test_a_swap_has_a_report(healthy: Case, diagnosed: Diagnosed, tmp_path: Path) -> None:
     one, other = healthy.channels["w2"], healthy.channels["w6"]
     channels = {**healthy.channels, "w2": other, "w6": one}

@@ -212,6 +212,7 @@ def test_a_state_of_networks_is_what_it_was(
                 np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.thorough
 def test_findings_written_after_an_interruption_are_those_of_the_run(
     small_stream: Callable[..., Path], tmp_path: Path
 ) -> None:

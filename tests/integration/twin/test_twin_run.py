@@ -158,6 +158,7 @@ def test_a_run_that_is_done_is_not_done_again(stream: Path, finished: tuple[Path
         assert kept.runs()[0].steps == steps
 
 
+@pytest.mark.thorough
 def test_another_model_in_the_same_directory_is_another_run(
     stream: Path, at_level: Callable[[str], tuple[Path, Outcome]], tmp_path: Path
 ) -> None:
