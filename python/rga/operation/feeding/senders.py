@@ -17,6 +17,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 
 from rga.errors import InputError
 from rga.operation.packets.packet import Number
+from rga.operation.sources.broker_client import address_of
 
 #: how long a logger waits for an answer, and before it tries again [s]
 ANSWER, AGAIN = 30.0, 1.0
@@ -246,9 +247,8 @@ class BrokerSender:
 
     def _connects(self) -> bool:
         """Whether the broker takes a connection."""
-        port = self._parts.port or (8883 if self._parts.scheme == "mqtts" else 1883)
         try:
-            self._client.connect(self._parts.hostname or "", port)
+            self._client.connect(*address_of(self._parts.geturl()))
         except OSError:
             return False
         self._client.loop_start()

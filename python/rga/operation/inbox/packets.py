@@ -106,11 +106,12 @@ class Packets:
                 outcomes.append((fate, reason))
                 late_before = until if fate == "waiting" and one.first < until else None
                 count = counts.setdefault(one.arrived - one.arrived % HOUR, Counter())
-                count.update(received=1, partly_late=int(late_before is not None))
+                count["received"] += 1
+                count["partly_late"] += late_before is not None
                 if fate == "waiting":
                     latest[source] = max(one.last, latest[source] or NEVER)
                 else:
-                    count.update([fate])
+                    count[fate] += 1
                 if fate == "refused":
                     aside.append(_refused(refused := refused + 1, source, one, reason))
                 elif fate != "duplicate":

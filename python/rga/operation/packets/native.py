@@ -53,6 +53,8 @@ class NativePacket(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 _JSON = msgspec.json.Decoder(NativePacket)
 _MESSAGE_PACK = msgspec.msgpack.Decoder(NativePacket)
+#: its keys as they stand in JSON
+_QUOTED = [f'"{name}"'.encode() for name in NativePacket.__struct_fields__]
 
 
 def packet_schema() -> dict[str, Any]:
@@ -170,8 +172,7 @@ def _check_keys(payload: bytes, where: str) -> None:
     if payload[:1] in _MAPS:
         return
     # A name may be written by escapes; else a key that stands twice is found twice.
-    names = [f'"{name}"'.encode() for name in NativePacket.__struct_fields__]
-    if b"\\u" not in payload and all(payload.count(name) < 2 for name in names):
+    if b"\\u" not in payload and all(payload.count(name) < 2 for name in _QUOTED):
         return
     keys = [key for key, _ in json.loads(payload, object_pairs_hook=list)]
     if double := next((key for key in keys if keys.count(key) > 1), None):
