@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from rga.arrays import FloatArray, IntArray
 from rga.errors import InputError
@@ -54,7 +54,7 @@ class OverRanges:
         middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
         drawn = np.zeros((0, len(ranges)))
         if ranges:
-            drawn = qmc.Sobol(len(ranges), scramble=True, rng=0).random(DRAWN)
+            drawn = scipy.stats.qmc.Sobol(len(ranges), scramble=True, rng=0).random(DRAWN)
         table = {}
         for number, (name, (low, high)) in enumerate(ranges.items()):
             along = [

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy
 
 from rga.arrays import FloatArray
 from rga.detection.baseline.baseline_model import Reference
@@ -170,7 +170,7 @@ class CalibrationNoise:
         steps = self._generator.standard_normal((count, self._last.shape[1]))
         if self._memory == 0.0:
             return steps
-        found, self._last = lfilter(
+        found, self._last = scipy.signal.lfilter(
             [1.0], [1.0, -self._memory], steps, axis=0, zi=self._memory * self._last
         )
         self._last = self._last / self._memory

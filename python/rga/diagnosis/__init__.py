@@ -1,5 +1,19 @@
 """Diagnosis: what a simulation gets wrong, why, where, and how sure that is."""
 
-from rga.diagnosis.pipeline import diagnose
+from typing import TYPE_CHECKING
 
-__all__ = ["diagnose"]
+from rga.lazy import listing, opening
+
+if TYPE_CHECKING:
+    from rga.diagnosis.pipeline import diagnose
+
+__all__ = [
+    "diagnose",
+]
+
+# They are opened on first use, so that a part is used without the others.
+_HOMES = {
+    "diagnose": "rga.diagnosis.pipeline",
+}
+__getattr__ = opening(__name__, _HOMES)
+__dir__ = listing(__name__, __all__)

@@ -7,7 +7,8 @@ from typing import Unpack
 from matplotlib.axes import Axes
 
 from rga.drawing.content import Content, DrawingOptions, asked, gather
-from rga.drawing.figure_style import label, style
+from rga.drawing.figure_style import style
+from rga.drawing.label import label
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.sheet import WIDTH, letters, sheet, sheet_bytes
 from rga.drawing.sheet.view import draw_view, palette_of

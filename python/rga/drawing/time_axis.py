@@ -10,15 +10,12 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
+from rga.drawing.date_formats import BESIDE_DATES, DATES, ROUND_DATES
 from rga.quantities import MINUS, duration
 from rga.records import Record
 
 Rows = NDArray[np.intp]
 DAY = 86400.0
-#: of ticks that are years, months, days, hours, minutes, seconds; the same in any language
-DATES = ["%Y", "%Y-%m", "%m-%d", "%H:%M", "%H:%M", "%H:%M:%S"]
-ROUND_DATES = ["", "%Y", "%Y-%m", "%m-%d", "%H:%M", "%H:%M"]
-BESIDE_DATES = ["", "%Y", "%Y", "%Y-%m-%d", "%Y-%m-%d", "%Y-%m-%d %H:%M"]
 
 
 @dataclass(frozen=True)

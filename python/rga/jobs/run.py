@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from rga.diagnosis.preparation.prepare import check_length
 from rga.errors import InputError
 from rga.files import made_directory
 from rga.given import as_record
@@ -61,7 +60,7 @@ def run(
     """
     model = as_model(model)
     record, settings = as_record(record, model, mapping), as_settings(settings)
-    check_length(record, settings.criteria.record)
+    settings.criteria.record.check_length(len(record))
     directory = made_directory(directory)
     check_outputs(directory)
     if (directory / INBOX).exists():

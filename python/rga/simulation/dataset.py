@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from scipy.stats import qmc
+import scipy
 from threadpoolctl import threadpool_limits
 
 from rga.errors import InputError
@@ -148,7 +148,7 @@ class _Part:
     def _frame(self) -> pl.DataFrame:
         model = self.model
         low, high = np.array([variable.range for variable in model.context.values()]).T
-        sequence = qmc.Sobol(len(model.context), scramble=True, rng=self.seed)
+        sequence = scipy.stats.qmc.Sobol(len(model.context), scramble=True, rng=self.seed)
         if self.begin:
             sequence.fast_forward(self.begin)
         # A whole power of two is drawn for the balance of the sequence; the surplus is left out.

@@ -1,8 +1,8 @@
 """T2: should a newly inferred context and its simulation join the repository?"""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from rga.arrays import FloatArray
 
@@ -34,7 +34,7 @@ def spacing(contexts: FloatArray, width: FloatArray) -> float:
     scaled = contexts / width
     if len(scaled) < 2:
         return 0.0
-    near, _ = cKDTree(scaled).query(scaled, k=2)
+    near, _ = scipy.spatial.cKDTree(scaled).query(scaled, k=2)
     return float(np.quantile(near[:, 1], KNOWN_GROUND))
 
 
@@ -66,7 +66,7 @@ def novel(
     if not len(contexts):
         return []
     credible = np.asarray(~(gaps > bound).any(axis=1) & np.isfinite(gaps).any(axis=1))
-    known = cKDTree(stored / width) if len(stored) else None
+    known = scipy.spatial.cKDTree(stored / width) if len(stored) else None
     chosen: list[int] = []
     for row in np.flatnonzero(credible):
         place = contexts[row] / width

@@ -40,7 +40,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Hashes that cost little."""
     hasher = PasswordHasher(time_cost=1, memory_cost=8, parallelism=1)
     monkeypatch.setattr(passwords, "_HASHER", hasher)
-    monkeypatch.setattr(users, "NOBODYS", hasher.hash("of nobody"))
+    monkeypatch.setattr(users, "nobodys", lambda: hasher.hash("of nobody"))
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from rga.checking.finding import MOST_NAMED, Finding, named, parts
 from rga.checking.over_ranges import OverRanges
@@ -19,7 +19,7 @@ def duplicates(over: OverRanges) -> Iterator[Finding]:
     points = np.array(list(model.nodes.values()), dtype=float).reshape(-1, 3)
     if len(points):
         size = float(np.ptp(points, axis=0).max())
-        near = cKDTree(points / (size or 1.0)).query_pairs(SAME_PLACE)
+        near = scipy.spatial.cKDTree(points / (size or 1.0)).query_pairs(SAME_PLACE)
         together = {frozenset(tie.nodes) for tie in model.ties}
         together |= {frozenset((one.node, one.to or "")) for one in model.springs}
         apart = [

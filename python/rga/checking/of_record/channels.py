@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from rga.checking.finding import Finding, parts
 from rga.checking.measured import Measured
-from rga.diagnosis.preparation.prepare import check_length
 from rga.quantities import counted
 
 
@@ -43,4 +42,4 @@ def channels(measured: Measured) -> Iterator[Finding]:
     if len(record) < few:
         what = f"it has {counted(len(record), 'row')}: noise and intervals are rough estimates"
         yield Finding("note", "record", what, f"give {few} rows or more")
-    check_length(record, measured.criteria.record)
+    measured.criteria.record.check_length(len(record))

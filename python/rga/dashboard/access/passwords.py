@@ -1,5 +1,6 @@
 """Passwords: what one must be, and how it is kept (argon2id)."""
 
+from functools import cache
 from threading import Lock
 
 from argon2 import PasswordHasher
@@ -54,5 +55,7 @@ def _utf8(password: str) -> bytes:
     return password.encode("utf-8", "surrogatepass")
 
 
-#: compared with where there is no such user, so that nobody learns that from the time it takes
-NOBODYS = _HASHER.hash("of nobody")
+@cache
+def nobodys() -> str:
+    """What is compared with where there is no such user: the time it takes tells nothing."""
+    return _HASHER.hash("of nobody")

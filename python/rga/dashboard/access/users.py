@@ -4,7 +4,7 @@ from sqlalchemy import delete, func, insert, select, update
 
 from rga.dashboard.access import tables
 from rga.dashboard.access.names import check_is_free, check_name
-from rga.dashboard.access.passwords import NOBODYS, hashed, matches
+from rga.dashboard.access.passwords import hashed, matches, nobodys
 from rga.dashboard.access.roles import Role
 from rga.errors import InputError
 from rga.twin.repository.checksum import with_checksum
@@ -104,5 +104,5 @@ class Users:
             found = connection.execute(
                 select(tables.user).where(tables.user.c.name == name)
             ).one_or_none()
-        kept = NOBODYS if found is None else str(values_of(tables.user, found)["hash"])
+        kept = nobodys() if found is None else str(values_of(tables.user, found)["hash"])
         return matches(password, kept) and found is not None

@@ -10,11 +10,9 @@ from datetime import UTC, datetime, timedelta
 from typing import Literal
 
 import numpy as np
-from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num, num2date
-from matplotlib.ticker import LogLocator, MaxNLocator
 
 from rga.arrays import FloatArray
-from rga.drawing.time_axis import BESIDE_DATES, DATES, ROUND_DATES
+from rga.drawing.date_formats import BESIDE_DATES, DATES, ROUND_DATES
 from rga.operation.reading.overview import Floats, Trace
 from rga.quantities import number, short
 
@@ -213,6 +211,9 @@ def time_ticks(window: Window) -> tuple[tuple[Tick, ...], str]:
     >>> [tick.words for tick in ticks], date
     (['11-23', '06:00', '12:00', '18:00', '11-24'], '2026-11-24')
     """
+    # With the first chart, not with the service, which answers sooner so.
+    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num, num2date
+
     ends = [window.moment(one) for one in (window.begin, max(window.end, window.begin + 1.0))]
     locator = AutoDateLocator(tz=UTC, minticks=3, maxticks=6)  # type: ignore[no-untyped-call]
     formatter = ConciseDateFormatter(  # type: ignore[no-untyped-call]
@@ -253,6 +254,8 @@ def _logarithm(values: Floats) -> FloatArray:
 
 
 def _steps(low: float, high: float, logarithmic: bool) -> list[float]:
+    from matplotlib.ticker import MaxNLocator
+
     if logarithmic:
         return _factors(low, high)
     return [float(one) for one in MaxNLocator(4).tick_values(low, high) if low <= one <= high]
@@ -260,6 +263,8 @@ def _steps(low: float, high: float, logarithmic: bool) -> list[float]:
 
 def _factors(low: float, high: float) -> list[float]:
     """Round numbers on a scale of factors: those of ten, and others where these are few."""
+    from matplotlib.ticker import LogLocator
+
     found: list[float] = []
     for within_ten in FACTORS:
         steps = LogLocator(subs=within_ten, numticks=5).tick_values(10.0**low, 10.0**high)

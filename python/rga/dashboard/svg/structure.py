@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import label
+from rga.drawing.label import label
 from rga.drawing.labels import Room
 from rga.drawing.projection import Projection, views
 from rga.model.schema import Model

@@ -1,8 +1,8 @@
 """How readings go with the ones before them."""
 
 import numpy as np
+import scipy
 from scipy.special import ndtri
-from scipy.stats import rankdata
 
 from rga.arrays import FloatArray
 
@@ -28,7 +28,7 @@ def predictors(deviations: FloatArray) -> FloatArray:
     """
     rows, sensors = deviations.shape
     missing = ~np.isfinite(deviations)
-    ranks = rankdata(deviations, axis=0, nan_policy="omit")
+    ranks = scipy.stats.rankdata(deviations, axis=0, nan_policy="omit")
     scores = ndtri((ranks - 0.5) / np.maximum(1, (~missing).sum(axis=0)), order="C")
     scores[missing] = 0.0
     there = (~missing).astype(float)

@@ -3,8 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtri
-from scipy.stats import norm
+from scipy.special import ndtr, ndtri
 
 from rga import _core
 from rga.arrays import FloatArray
@@ -20,9 +19,9 @@ FOLLOWED = 2.5
 KNOTS = 9
 #: scores at the knots, and the shares of a normal variable below them
 SCORES = np.linspace(-FOLLOWED, FOLLOWED, KNOTS)
-SHARES = norm.cdf(SCORES)
+SHARES = ndtr(SCORES)
 #: mean of a normal variable beyond the outer knot, less the knot
-BEYOND = norm.pdf(FOLLOWED) / norm.sf(FOLLOWED) - FOLLOWED
+BEYOND = float(np.exp(-(FOLLOWED**2) / 2) / np.sqrt(2 * np.pi) / ndtr(-FOLLOWED)) - FOLLOWED
 #: readings beyond the outer knots that weigh as much as what all sensors have in common
 TAIL = 20.0
 #: readings that differ by less are alike

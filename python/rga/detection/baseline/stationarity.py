@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import kstwobign, norm
+from scipy.special import kolmogorov, ndtr
 
 from rga.arrays import FloatArray
 from rga.detection.baseline.baseline_model import Reference
@@ -57,7 +57,7 @@ def wandering(values: FloatArray) -> float:
     less = np.where(known, values - np.nanmean(values, axis=0), 0.0)
     size = np.maximum(np.sqrt((less**2).sum(axis=0) / count), 1e-12)
     distance = np.abs(np.cumsum(less, axis=0)).max(axis=0) / size / np.sqrt(count)
-    return float(min(1.0, values.shape[1] * kstwobign.sf(distance.max())))
+    return float(min(1.0, values.shape[1] * kolmogorov(distance.max())))
 
 
 def alike_neighbours(baseline: FloatArray) -> float:
@@ -79,4 +79,4 @@ def alike_neighbours(baseline: FloatArray) -> float:
     between = (np.diff(medians, axis=0) ** 2).sum(axis=0)
     ratio = np.divide(between, all_in_all, out=np.full_like(between, 2.0), where=all_in_all > 0)
     height = (1.0 - ratio / 2.0) * np.sqrt((PARTS**2 - 1) / (PARTS - 2))
-    return float(min(1.0, len(height) * norm.sf(height.max())))
+    return float(min(1.0, len(height) * ndtr(-height.max())))

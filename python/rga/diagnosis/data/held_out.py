@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import bootstrap, norm, t
+import scipy
+from scipy.special import ndtr, stdtrit
 
 from rga.arrays import BoolArray, FloatArray
 from rga.errors import InputError
@@ -78,12 +79,12 @@ def gain(left: FloatArray, change: FloatArray, held_out: BoolArray, seed: int) -
         )
     product = np.where(seen, 2 * change * left, 0.0).sum(1)
     sums = [np.array([column[block].sum() for block in blocks]) for column in (product, count)]
-    wide = t.ppf(0.5 + CONFIDENCE / 2, len(blocks) - 1) * np.sqrt(len(blocks) / (len(blocks) - 1))
-    found = bootstrap(
+    wide = stdtrit(len(blocks) - 1, 0.5 + CONFIDENCE / 2) * np.sqrt(len(blocks) / (len(blocks) - 1))
+    found = scipy.stats.bootstrap(
         sums,
         lambda product, count, axis: product.sum(axis) / count.sum(axis),
         paired=True,
-        confidence_level=2 * norm.cdf(wide) - 1,
+        confidence_level=2 * ndtr(wide) - 1,
         method="percentile",
         rng=np.random.default_rng(seed),
     ).confidence_interval

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from rga.arrays import FloatArray
 from rga.diagnosis.data.observations import Data
@@ -265,7 +265,9 @@ def _most_likely(
 
     inside = np.clip(np.log(start), *np.transpose(BOUNDS))
     options = {"ftol": 1e-5, "gtol": 0.05, "maxiter": 20}
-    found = minimize(loss, inside, jac=True, method="L-BFGS-B", bounds=BOUNDS, options=options)
+    found = scipy.optimize.minimize(
+        loss, inside, jac=True, method="L-BFGS-B", bounds=BOUNDS, options=options
+    )
     return np.asarray(np.exp(found.x))
 
 

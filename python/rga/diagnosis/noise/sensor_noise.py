@@ -7,8 +7,8 @@ ones are drawn in, so that least squares treat the readings as their noise deser
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.optimize import minimize_scalar
 from scipy.special import gammaln
 
 from rga.arrays import BoolArray, FloatArray
@@ -211,5 +211,7 @@ def _likeliest_freedom(squares: FloatArray) -> float:
         each = gammaln((nu + 1) / 2) - gammaln(nu / 2) - np.log(nu) / 2
         return float((nu + 1) / 2 * np.log1p(squares / nu).sum() - len(squares) * each)
 
-    found = minimize_scalar(loss, bounds=INVERSE_FREEDOM, method="bounded", options={"xatol": 2e-3})
+    found = scipy.optimize.minimize_scalar(
+        loss, bounds=INVERSE_FREEDOM, method="bounded", options={"xatol": 2e-3}
+    )
     return float(1 / found.x)

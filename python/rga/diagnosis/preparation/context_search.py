@@ -11,8 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import minimize
-from scipy.stats import qmc
+import scipy
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.data.observations import Data
@@ -62,7 +61,9 @@ def guess_lines(simulator: Simulator, data: Data, progress: Callable[[float], No
         start = np.array(best[1:])
         steps = np.array([(high - low) / LEVELS, float(np.ptp(rates)) / RATES])
         simplex = start + np.array([[0, 0], [steps[0], 0], [0, steps[1]]])
-        found = minimize(left, start, method="Nelder-Mead", options={"initial_simplex": simplex}).x
+        found = scipy.optimize.minimize(
+            left, start, method="Nelder-Mead", options={"initial_simplex": simplex}
+        ).x
         line = found[0] + found[1] * (data.time - middle)
         data = replace(data, belief=data.belief.with_values({name: line}))
     return data
@@ -103,7 +104,7 @@ def guess_rows(simulator: Simulator, data: Data) -> Data:
     rows = np.arange(len(data.time))
     start = np.zeros((len(rows), len(names)))
     least = (residual(start, rows) ** 2).sum(axis=1)
-    for trial in qmc.Sobol(len(names), scramble=True, rng=0).random(TRIALS):
+    for trial in scipy.stats.qmc.Sobol(len(names), scramble=True, rng=0).random(TRIALS):
         z = np.tile(EDGE * (2.0 * trial - 1.0), (len(rows), 1))
         found = (residual(z, rows) ** 2).sum(axis=1) + (z**2).sum(axis=1)
         start[found < least] = z[0]

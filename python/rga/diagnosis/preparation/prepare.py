@@ -34,7 +34,6 @@ from rga.diagnosis.search.linearised import load_basis
 from rga.diagnosis.search.signatures import signatures
 from rga.errors import InputError
 from rga.findings.criteria import Criteria
-from rga.findings.criteria.records import RecordCriteria
 from rga.model.schema import Model
 from rga.quantities import counted
 from rga.records import Record
@@ -98,7 +97,7 @@ def prepare(
         InputError: too few rows, or no channel that works.
     """
     criteria = criteria or Criteria()
-    check_length(record, criteria.record)
+    criteria.record.check_length(len(record))
     record, limits = without_limits(record, criteria.record)
     record, impossible = without_impossible(model, record, criteria.record)
     record, silent = without_silent(record, criteria.record)
@@ -246,16 +245,6 @@ def _spike_words(count: int, of: str) -> str:
     if count == 1:
         return f"a lone spike of {of} was taken as a missing reading"
     return f"{count} lone spikes of {of} were taken as missing readings"
-
-
-def check_length(record: Record, criteria: RecordCriteria) -> None:
-    """Refuse a record that is too short for a diagnosis (InputError)."""
-    if len(record) < criteria.least_rows:
-        raise InputError(
-            f"the record has {counted(len(record), 'row')}",
-            "record",
-            f"a diagnosis needs {criteria.least_rows} at least",
-        )
 
 
 def data_of(model: Model, record: Record, criteria: Criteria) -> Data:

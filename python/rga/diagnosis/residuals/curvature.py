@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from rga.arrays import FloatArray
 from rga.diagnosis.residuals.slopes import STRAIGHT, squares, standardised
@@ -98,8 +98,8 @@ def curves(problem: Problem) -> list[Curve]:
         count[sensor, seen] = 1
         chance_squared[sensor] = _by_chance(along, wandering, reading) / variance
     squared /= _excess(chance_squared)
-    chance = chi2.sf(squared.sum(0), np.maximum(count.sum(0), 1))
-    largest = sensors * chi2.sf(squared.max(0, initial=0.0), 1)
+    chance = chdtrc(np.maximum(count.sum(0), 1), squared.sum(0))
+    largest = sensors * chdtrc(1, squared.max(0, initial=0.0))
     found: dict[str, tuple[float, Curve]] = {}
     for number, one in enumerate(tried):
         likely = 2 * min(chance[number], largest[number]) if one.alone else chance[number]

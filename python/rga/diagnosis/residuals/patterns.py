@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import spearmanr
+import scipy
 
 from rga.arrays import BoolArray, FloatArray
 from rga.diagnosis.noise.unexplainable import unexplainable
@@ -212,7 +212,10 @@ def _drivers(
         rate = np.gradient(column, time)
         if np.ptp(rate) > 1e-6 * np.abs(rate).max():
             drivers[name, "the rate of {}, in a loop: a lag, or friction"] = rate
-    return {way: abs(float(spearmanr(column, amplitude)[0])) for way, column in drivers.items()}
+    return {
+        way: abs(float(scipy.stats.spearmanr(column, amplitude)[0]))
+        for way, column in drivers.items()
+    }
 
 
 def _by_context(drivers: dict[tuple[str, str], float]) -> dict[str, float]:

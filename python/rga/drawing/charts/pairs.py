@@ -8,7 +8,8 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from numpy.typing import ArrayLike
 
 from rga.drawing.charts.axes import axes_or_new
-from rga.drawing.figure_style import AFTER, BEFORE, STEEL, label, style
+from rga.drawing.figure_style import AFTER, BEFORE, STEEL, style
+from rga.drawing.label import label
 from rga.quantities import short
 
 #: names of things, and how many are drawn

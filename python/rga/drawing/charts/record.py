@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 
 from rga.arrays import FloatArray
 from rga.drawing.charts.axes import axes_or_new
-from rga.drawing.figure_style import AFTER, FAINT, MEASURED, label, style
+from rga.drawing.figure_style import AFTER, FAINT, MEASURED, style
+from rga.drawing.label import label
 from rga.drawing.time_axis import thinned, time_axis
 from rga.errors import InputError
 from rga.quantities import short

@@ -4,7 +4,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rga.drawing.content import Content
-from rga.drawing.figure_style import label
+from rga.drawing.label import label
 from rga.drawing.labels import LETTER
 from rga.drawing.palette import Palette, group_look
 from rga.drawing.scene.loads import LoadMark

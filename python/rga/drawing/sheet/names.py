@@ -6,7 +6,7 @@ import numpy as np
 
 from rga.arrays import FloatArray
 from rga.drawing.content import Content
-from rga.drawing.figure_style import label
+from rga.drawing.label import label
 from rga.drawing.labels import LETTER
 from rga.drawing.scene.scene import MOST_NAMED
 from rga.drawing.sheet.canvas import Canvas

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rga.drawing.content import Content
-from rga.drawing.figure_style import inline, label, style
+from rga.drawing.figure_style import inline, style
+from rga.drawing.label import label
 from rga.drawing.labels import LETTER
 from rga.drawing.sheet import legend
 from rga.drawing.sheet.canvas import FOOT

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from rga.errors import InputError
 from rga.findings.criteria.criterion import (
     Count,
     CriteriaGroup,
@@ -12,6 +13,7 @@ from rga.findings.criteria.criterion import (
     Share,
     criterion,
 )
+from rga.quantities import counted
 
 
 class RecordCriteria(CriteriaGroup):
@@ -105,6 +107,20 @@ class RecordCriteria(CriteriaGroup):
         "share of channels without any reading from which on a record is not called explained",
         "judgement: less than half of what was mounted to see it sees too little",
     )
+
+    def check_length(self, rows: int) -> None:
+        """Refuse a record that is too short for a diagnosis (InputError).
+
+        >>> RecordCriteria().check_length(11)
+        Traceback (most recent call last):
+        rga.errors.InputError: the record has 11 rows (record): a diagnosis needs 12 at least
+        """
+        if rows < self.least_rows:
+            raise InputError(
+                f"the record has {counted(rows, 'row')}",
+                "record",
+                f"a diagnosis needs {self.least_rows} at least",
+            )
 
     @model_validator(mode="after")
     def _least_below_most(self) -> "RecordCriteria":

@@ -1,7 +1,7 @@
 """Which few of many parameters have changed since they were found, by the evidence of new rows."""
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from rga.arrays import FloatArray, IntArray
 
@@ -10,7 +10,7 @@ EVIDENT = 16.0
 #: share of the most that rows say of a parameter, below which they say nothing of another
 SILENT = 1e-9
 #: median of that of parameters that have not
-ORDINARY = float(chi2(1).median())
+ORDINARY = float(chdtri(1, 0.5))
 
 
 def sparse_changes(

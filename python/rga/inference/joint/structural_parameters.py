@@ -7,7 +7,7 @@ from itertools import chain, count
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -134,7 +134,7 @@ class Unknowns:
     def spread_contexts(self) -> FloatArray:
         """Contexts spread over their ranges, float[SPREAD, contexts]."""
         low, high = np.array([one.range for one in self.model.context.values()]).T
-        share = qmc.Sobol(len(low), scramble=True, rng=0).random(SPREAD)
+        share = scipy.stats.qmc.Sobol(len(low), scramble=True, rng=0).random(SPREAD)
         return np.asarray(low + (high - low) * share)
 
     def at(self, values: FloatArray) -> Model:

@@ -1,8 +1,8 @@
 """How a latent context moves: the estimates of single rows, combined over time."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from rga.arrays import FloatArray
 from rga.inference.laws.linear import fit_line
@@ -99,7 +99,9 @@ def _level(
     grid = np.linspace(float(np.log(DRIFTS[0])), float(np.log(DRIFTS[1])), 25)
     best = int(np.argmin([cost(float(one)) for one in grid]))
     bounds = (grid[max(0, best - 1)], grid[min(len(grid) - 1, best + 1)])
-    drift = variances(float(minimize_scalar(cost, bounds=bounds, method="bounded").x))
+    drift = variances(
+        float(scipy.optimize.minimize_scalar(cost, bounds=bounds, method="bounded").x)
+    )
     mean, variance, ahead, _ = _filter(value, information, drift, start)
     for row in range(len(time) - 2, -1, -1):
         share = variance[row] / ahead[row + 1]

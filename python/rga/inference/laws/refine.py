@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from rga.arrays import FloatArray
 
@@ -73,7 +73,7 @@ def polish_line(
     found = min((np.array([at, np.clip(rise, *slopes)]) for at, rise in starts), key=misfit)
     for _ in range(PASSES):
         scale = np.fmax(np.sqrt(np.mean(off(found) ** 2, axis=0)), noise)
-        fit = least_squares(
+        fit = scipy.optimize.least_squares(
             lambda level, scale=scale: (off(level) / scale).ravel(),
             found,
             loss="soft_l1",

@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -85,7 +85,7 @@ def covering_factor(errors: FloatArray, spreads: FloatArray, level: float = LEVE
         InputError: too few rows for the level.
 
     >>> errors = np.linspace(-2, 2, 41)[:, None]
-    >>> float(covering_factor(errors, np.ones_like(errors))[0] * norm.ppf(0.95))
+    >>> float(covering_factor(errors, np.ones_like(errors))[0] * ndtri(0.95))
     1.9
     """
     rows = len(errors)
@@ -94,7 +94,7 @@ def covering_factor(errors: FloatArray, spreads: FloatArray, level: float = LEVE
         remedy = f"give {int(np.ceil(level / (1 - level)))} rows or more"
         raise InputError(f"{rows} rows are too few", "calibration of intervals", remedy)
     ratio = np.sort(np.abs(errors) / spreads, axis=0)[rank - 1]
-    return np.asarray(ratio / norm.ppf(0.5 + level / 2))
+    return np.asarray(ratio / ndtri(0.5 + level / 2))
 
 
 def birge_ratio(gaps: FloatArray, noise: FloatArray) -> FloatArray:

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -79,7 +79,9 @@ def design(
             raise InputError(f"the interval {list(interval)} is empty", f"design of {name}", remedy)
         ranges[name] = interval
     low, high = np.array(list(ranges.values())).T
-    share = qmc.Sobol(len(ranges), scramble=True, rng=seed).random(1 << (rows - 1).bit_length())
+    share = scipy.stats.qmc.Sobol(len(ranges), scramble=True, rng=seed).random(
+        1 << (rows - 1).bit_length()
+    )
     contexts = low + (high - low) * share[:rows]
     moving = [name for name in latent if (rate := model.context[name].rate) and rate[0] < 0]
     moving = [name for name in moving if model.context[name].law == "linear"]

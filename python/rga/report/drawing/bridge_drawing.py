@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import INK, MARKED, STEEL, inline, label, style
+from rga.drawing.figure_style import INK, MARKED, STEEL, inline, style
+from rga.drawing.label import label
 from rga.drawing.projection import Projection, views
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.schema import Model

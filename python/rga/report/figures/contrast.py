@@ -8,16 +8,8 @@ from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Contrast
-from rga.drawing.figure_style import (
-    AFTER,
-    BEFORE,
-    MEASURED,
-    STEEL,
-    grid,
-    inline,
-    label,
-    style,
-)
+from rga.drawing.figure_style import AFTER, BEFORE, MEASURED, STEEL, grid, inline, style
+from rga.drawing.label import label
 from rga.model.schema import Model
 from rga.quantities import duration, scale, short
 

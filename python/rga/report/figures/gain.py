@@ -11,17 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import (
-    AFTER,
-    BEFORE,
-    FAINT,
-    INK,
-    STEEL,
-    grid,
-    inline,
-    label,
-    style,
-)
+from rga.drawing.figure_style import AFTER, BEFORE, FAINT, INK, STEEL, grid, inline, style
+from rga.drawing.label import label
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.quantities import DASH, duration, number, short

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
 from rga.diagnosis.member_forces import IDLE, Forces
-from rga.drawing.figure_style import STEEL, inline, label, style
+from rga.drawing.figure_style import STEEL, inline, style
+from rga.drawing.label import label
 from rga.drawing.projection import Projection, views
 from rga.findings.phrases import kind_words
 from rga.model.effect import Effect

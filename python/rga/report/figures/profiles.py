@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.profiles import Onset, Profile
-from rga.drawing.figure_style import AFTER, FAINT, INK, STEEL, grid, inline, label, style
+from rga.drawing.figure_style import AFTER, FAINT, INK, STEEL, grid, inline, style
+from rga.drawing.label import label
 from rga.model.parameter import NORMAL_90
 from rga.quantities import duration, scale
 from rga.report.pages.cards import plain

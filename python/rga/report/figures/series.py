@@ -8,16 +8,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import (
-    AFTER,
-    BEFORE,
-    FAINT,
-    MEASURED,
-    grid,
-    inline,
-    label,
-    style,
-)
+from rga.drawing.figure_style import AFTER, BEFORE, FAINT, MEASURED, grid, inline, style
+from rga.drawing.label import label
 from rga.findings import Findings
 from rga.findings.arrays import DiagnosisArrays
 from rga.quantities import duration, scale

@@ -10,7 +10,8 @@ from rga.arrays import FloatArray
 from rga.diagnosis.residuals.patterns import Leftover, known_contexts, leftovers
 from rga.diagnosis.residuals.slopes import Bend, bends
 from rga.diagnosis.search.linearised import Problem
-from rga.drawing.figure_style import INK, MEASURED, grid, inline, label, style
+from rga.drawing.figure_style import INK, MEASURED, grid, inline, style
+from rga.drawing.label import label
 from rga.findings.arrays import DiagnosisArrays
 from rga.model.effect import Values
 from rga.quantities import DASH, duration, fixed, scale

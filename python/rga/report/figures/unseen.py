@@ -7,7 +7,8 @@ from matplotlib.lines import Line2D
 
 from rga.arrays import FloatArray
 from rga.diagnosis.checks.leave_one_out import Unseen
-from rga.drawing.figure_style import AFTER, BEFORE, MEASURED, grid, inline, label, style
+from rga.drawing.figure_style import AFTER, BEFORE, MEASURED, grid, inline, style
+from rga.drawing.label import label
 from rga.model.parameter import NORMAL_90
 from rga.model.schema import Model
 from rga.quantities import scale

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import BarycentricInterpolator
+import scipy
 
 from rga.arrays import FloatArray, IntArray
 from rga.model.structure import Structure
@@ -143,7 +143,7 @@ def between(
         # The weights of Chebyshev points are known; else they are worked out in random order.
         weights = (-1.0) ** np.arange(count)
         weights[[0, -1]] /= 2
-        found: Callable[[FloatArray], FloatArray] = BarycentricInterpolator(
+        found: Callable[[FloatArray], FloatArray] = scipy.interpolate.BarycentricInterpolator(
             points, there, wi=weights
         )
         return found

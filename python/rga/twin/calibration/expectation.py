@@ -6,7 +6,7 @@ rows.
 """
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from rga.arrays import FloatArray
 
@@ -38,7 +38,7 @@ def scatter_share(gaps: FloatArray, simulated: FloatArray, noise: FloatArray) ->
         return 0.0
     if excess(LARGEST) > 0:
         return LARGEST
-    return float(brentq(excess, 0.0, LARGEST, xtol=1e-6))
+    return float(scipy.optimize.brentq(excess, 0.0, LARGEST, xtol=1e-6))
 
 
 def against_expected(

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+import rga.diagnosis
 from rga.arrays import IntArray
-from rga.diagnosis import diagnose
 from rga.findings import Findings
 from rga.findings.criteria import Criteria
 from rga.model import Model
@@ -75,7 +75,7 @@ class PastDiagnosis:
             )
             if found is not None:
                 return with_choice(found, words, rows)
-        findings = diagnose(
+        findings = rga.diagnosis.diagnose(
             model, record, criteria=criteria, seed=self._seed, progress=self._progress
         )
         findings = with_choice(findings, words, rows)

@@ -8,7 +8,7 @@ noise allows was taken off.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtr
 
 from rga.arrays import BoolArray, FloatArray, IntArray
 from rga.diagnosis.preparation.zeros.levels import Compared, RunningSums, blocks
@@ -64,7 +64,7 @@ def zero_rows(compared: Compared) -> ZeroRows | None:
         np.divide(mean, compared.own, out=squares, where=zero)
         # Of stretches that read zero as nearly, the longer one says more.
         power = (squares**2).sum(1) * (end[block] - first[block])
-        chance[block] = chi2.cdf(power, np.maximum(zero.sum(1), 1))
+        chance[block] = chdtr(np.maximum(zero.sum(1), 1), power)
         surely[block] = chance[block] * len(first) < BY_CHANCE
         surely[block] &= zero.sum(1) >= criteria.reading_zero * compared.working.sum()
         _, telling = told(block)

@@ -9,7 +9,8 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import AFTER, BEFORE, FAINT, grid, inline, label, style
+from rga.drawing.figure_style import AFTER, BEFORE, FAINT, grid, inline, style
+from rga.drawing.label import label
 from rga.drawing.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.quantities import scale
 from rga.twin.history import History

@@ -8,7 +8,8 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path as Outline
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import FAINT, INK, inline, label, style
+from rga.drawing.figure_style import FAINT, INK, inline, style
+from rga.drawing.label import label
 from rga.drawing.time_axis import TimeAxis, time_axis
 from rga.report.figures.gap_colours import HATCH, LEVELS, GapColours, gap_colours
 from rga.report.figures.of_run.run_gap import row_of, standardised

@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import INK, STEEL, inline, label, style
+from rga.drawing.figure_style import INK, STEEL, inline, style
+from rga.drawing.label import label
 from rga.drawing.projection import Projection, views
 from rga.quantities import number
 from rga.report.drawing.bridge_drawing import MARKERS

@@ -12,17 +12,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rga.arrays import FloatArray
-from rga.drawing.figure_style import (
-    AFTER,
-    BEFORE,
-    FAINT,
-    INK,
-    STEEL,
-    grid,
-    inline,
-    label,
-    style,
-)
+from rga.drawing.figure_style import AFTER, BEFORE, FAINT, INK, STEEL, grid, inline, style
+from rga.drawing.label import label
 from rga.drawing.labels import LETTER
 from rga.drawing.time_axis import TimeAxis, spaced, thinned, time_axis
 from rga.quantities import number, short
