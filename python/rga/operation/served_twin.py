@@ -18,6 +18,7 @@ from rga.operation.inbox.known_packets import COUNTED_AGAIN
 from rga.operation.inbox.numbers import Numbers
 from rga.operation.inbox.packets import Packets
 from rga.operation.packets.formats import PayloadFormat
+from rga.operation.rows.overtaken import Overtaken
 from rga.operation.rows.samples import Reader
 from rga.operation.rows.sealing import Sealing
 from rga.operation.service_clock import ServiceClock, microseconds
@@ -84,6 +85,7 @@ class ServedTwin:
         grid = settings.rows.grid
         self.packets = Packets(self.inbox, grid, self._sources)
         self._sealing = Sealing(self.inbox, self.packets, model, self._readers, grid)
+        self._overtaken = Overtaken(self.packets, self._sources, clock)
         days = None if settings.retention.raw is None else settings.retention.raw / 86_400
         self.archive = PacketArchive(self.inbox, directory, days)
         self._settings, self._packet = settings, run.pace(None).packet
@@ -228,9 +230,10 @@ class ServedTwin:
         with self._lock:
             if silent == self._sealed_for:
                 return 0
-            self._sealed_for = silent
             try:
-                return self._sealing.seal(silent)
+                latest, waits = self._overtaken.latest()
+                self._sealed_for = None if waits else silent
+                return self._sealing.seal(latest, silent)
             except BaseException:
                 self._sealed_for = None
                 raise

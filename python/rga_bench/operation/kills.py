@@ -128,7 +128,8 @@ def _settled(service: ServiceProcess, source: str, packets: int) -> dict[str, An
     while time.monotonic() < until:
         found: dict[str, Any] = service.get("/api/v1/twins/east/account")[source]
         # Those of the last rows wait for others that may be late.
-        if found["used"] + found["waiting"] >= packets and found["waiting"] <= LATENESS + 2:
+        come = found["used"] + found["waiting"] + found["late"]
+        if come >= packets and found["waiting"] <= LATENESS + 2:
             return found
         time.sleep(0.1)
     raise InputError("the packets do not all come", json.dumps(found), "look at its log")

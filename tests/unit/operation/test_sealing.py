@@ -102,7 +102,7 @@ def test_a_row_is_the_mean_of_its_cell(twin: Twin, model: Model) -> None:
     for payload in payloads(values):
         assert twin.send("logger", payload) == "waiting"
     # The last sample is of second 1393: rows end two minutes before.
-    assert twin.sealing.seal(silent=()) == 21
+    assert twin.sealing.seal(twin.packets.latest(), silent=()) == 21
     rows = twin.rows()
     station = twin.inbox.station
     assert station is not None
@@ -115,7 +115,7 @@ def test_a_row_is_the_mean_of_its_cell(twin: Twin, model: Model) -> None:
         np.testing.assert_allclose(rows[k, [1, 2, -1]], mean, rtol=1e-12)
     assert np.isnan(rows[:, 3:-1]).all()
     # Nothing is left to wait for where the logger is silent.
-    assert twin.sealing.seal(silent=["logger"]) == 3
+    assert twin.sealing.seal(twin.packets.latest(), silent=["logger"]) == 3
     assert sum(twin.packets.account().values(), Account()) == Account(received=40, used=40)
 
 
@@ -128,7 +128,7 @@ def test_rows_do_not_hang_on_how_packets_arrived(
     values = readings()
     for payload in payloads(values):
         twin.send("logger", payload)
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     draw = random.Random(seed)
     (tmp_path / "other").mkdir()
     other = Twin(tmp_path / "other", model, {"logger": RecordMapping()})
@@ -139,10 +139,10 @@ def test_rows_do_not_hang_on_how_packets_arrived(
     for _, payload in sorted(late, key=lambda one: one[0]):
         assert other.send("logger", payload) != "late"
         if draw.random() < 0.3:
-            other.sealing.seal(silent=())
+            other.sealing.seal(other.packets.latest(), silent=())
         if draw.random() < 0.3:
             other.start()
-    other.sealing.seal(silent=["logger"])
+    other.sealing.seal(other.packets.latest(), silent=["logger"])
     np.testing.assert_array_equal(other.rows(), twin.rows())
     account = sum(other.packets.account().values(), Account())
     assert account == Account(len(late), used=len(sent), duplicate=len(late) - len(sent))
@@ -151,9 +151,9 @@ def test_rows_do_not_hang_on_how_packets_arrived(
 def test_what_comes_after_its_row_is_late(twin: Twin) -> None:
     sent = payloads(readings())
     twin.send("logger", sent[-1])
-    twin.sealing.seal(silent=())
+    twin.sealing.seal(twin.packets.latest(), silent=())
     twin.send("logger", sent[-2])
-    assert twin.sealing.seal(silent=["logger"]) == 2
+    assert twin.sealing.seal(twin.packets.latest(), silent=["logger"]) == 2
     assert twin.send("logger", sent[0]) == "late"
     account = sum(twin.packets.account().values(), Account())
     assert account == Account(received=3, used=2, late=1)
@@ -171,11 +171,11 @@ def test_of_a_packet_across_what_is_sealed_the_rest_is_used(
     for payload in sent[:12]:
         twin.send("logger", payload)
     if sealed_before:
-        assert twin.sealing.seal(silent=()) == 5
+        assert twin.sealing.seal(twin.packets.latest(), silent=()) == 5
     assert twin.send("logger", across) == "waiting"
     for payload in sent[12:]:
         twin.send("logger", payload)
-    assert twin.sealing.seal(silent=["logger"]) + 5 * sealed_before == 24
+    assert twin.sealing.seal(twin.packets.latest(), silent=["logger"]) + 5 * sealed_before == 24
     second = STEP * np.arange(COUNT)
     in_time = (second < 280) | (second >= 300)
     for k, row in enumerate(twin.rows()):
@@ -190,8 +190,8 @@ def test_rows_wait_for_every_source_until_it_is_silent(tmp_path: Path, model: Mo
     twin = Twin(tmp_path, model, {"east": mapping, "west": mapping})
     for payload in payloads(readings()):
         twin.send("east", payload)
-    assert twin.sealing.seal(silent=()) == 0
-    assert twin.sealing.seal(silent=["west"]) == 21
+    assert twin.sealing.seal(twin.packets.latest(), silent=()) == 0
+    assert twin.sealing.seal(twin.packets.latest(), silent=["west"]) == 21
 
 
 def test_a_long_pause_makes_no_rows(twin: Twin) -> None:
@@ -199,7 +199,7 @@ def test_a_long_pause_makes_no_rows(twin: Twin) -> None:
         time = np.array([MIDNIGHT + day * 86_400 * MICROSECONDS])
         packet = SensorPacket(None, ("D1",), time, np.array([[1.5]]))
         twin.send("logger", write_packet(packet))
-    assert twin.sealing.seal(silent=["logger"]) == 2
+    assert twin.sealing.seal(twin.packets.latest(), silent=["logger"]) == 2
     np.testing.assert_array_equal(twin.rows()[:, :2], [[0, 1.5], [30 * 86_400, 1.5]])
 
 
@@ -211,7 +211,7 @@ def test_names_units_and_signs_go_through_the_mapping(tmp_path: Path, model: Mod
     for names in (("ch 1", "spare"), ("ch 2",)):
         packet = SensorPacket(None, names, time, np.array([[0.002, 7.0][: len(names)]]))
         twin.send("logger", write_packet(packet))
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     station = twin.inbox.station
     assert station is not None
     assert "D3" not in station.channels
@@ -238,7 +238,7 @@ def test_formats_of_others_give_the_same_rows(kind: str, tmp_path: Path, model: 
     twin = Twin(tmp_path, model, {"logger": mapping})
     assert twin.send("logger", FOREIGN[kind]()) == "waiting"
     assert twin.send("logger", FOREIGN[kind]()) == "duplicate"
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     np.testing.assert_array_equal(twin.rows()[:, :3], [[0, 1.5, 2.5], [60, 2.5, 3.5]])
 
 
@@ -259,7 +259,7 @@ def test_what_has_no_time_is_of_when_it_arrived(kind: str, tmp_path: Path, model
     for minute in range(3):
         assert twin.send("logger", payload, MIDNIGHT + minute * MINUTE, where) == "waiting"
     twin.start()
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     np.testing.assert_array_equal(twin.rows()[:, :2], [[0, 1.5], [60, 1.5], [120, 1.5]])
 
 
@@ -271,7 +271,7 @@ def test_a_row_has_a_time_of_its_own_where_a_column_is_one(tmp_path: Path, model
     assert twin.send("logger", b"23.11.2026 01:00;1,5\r\n") == "duplicate"
     assert twin.send("logger", b"25.10.2026 02:30;1,5") == "refused"
     assert twin.send("logger", b"1,5") == "refused"
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     np.testing.assert_array_equal(twin.rows()[:, :2], [[0, 1.5]])
 
 
@@ -280,7 +280,7 @@ def test_units_of_a_payload_are_turned_into_those_of_the_model(twin: Twin) -> No
     pack = f"""[{{"bt":{time},"n":"D1","u":"m","v":0.002}},{{"n":"D2","u":"kg","v":5}},
         {{"n":"temperature","u":"Cel","v":11}},{{"n":"spare","v":1}}]"""
     assert twin.send("logger", pack.encode()) == "waiting"
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     rows = twin.rows()
     assert rows[0, 1] == 2.0
     assert np.isnan(rows[0, 2])
@@ -297,7 +297,7 @@ def test_two_channels_that_mean_the_same_are_refused_when_they_come(
     twin = Twin(tmp_path, model, {"logger": mapping})
     packet = SensorPacket(None, ("ch 1", "D1"), np.array([MIDNIGHT]), np.array([[1.0, 2.0]]))
     assert twin.send("logger", write_packet(packet)) == "refused"
-    assert twin.sealing.seal(silent=["logger"]) == 0
+    assert twin.sealing.seal(twin.packets.latest(), silent=["logger"]) == 0
 
 
 def test_a_clock_that_runs_back_changes_no_row(tmp_path: Path, model: Model) -> None:
@@ -327,7 +327,7 @@ def test_a_clock_that_runs_back_changes_no_row(tmp_path: Path, model: Model) -> 
                 assert send(now + ahead * MINUTE, now + MINUTE, 99.0) == "refused"
             assert send(now, now + 2 * MINUTE, 99.0) == "refused"
         send(now + 3 * MINUTE, now + 3 * MINUTE, 60.0)
-        twin.sealing.seal(silent=["logger"])
+        twin.sealing.seal(twin.packets.latest(), silent=["logger"])
         rows.append(twin.rows())
         account = sum(twin.packets.account().values(), Account())
         assert (account.difference, account.refused) == (0, 4 if wrong else 0)
@@ -360,7 +360,7 @@ def test_what_cannot_be_used_is_refused_before_it_is_kept(twin: Twin) -> None:
         one = arrival_of(sent, arrived, "topic", reader, ClockWatch(ClockRule()))
         assert one.refused is not None
         assert one.refused.startswith(f"{words}: set the clock")
-    assert twin.sealing.seal(silent=["logger"]) == 0
+    assert twin.sealing.seal(twin.packets.latest(), silent=["logger"]) == 0
 
 
 def packet_of(channel: str) -> bytes:
@@ -374,10 +374,10 @@ def packet_of(channel: str) -> bytes:
 def test_a_twin_that_has_ended_takes_no_more(twin: Twin) -> None:
     sent = payloads(readings())
     twin.send("logger", sent[0])
-    twin.sealing.seal(silent=["logger"])
+    twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     twin.inbox.end()
     twin.send("logger", sent[20])
     with pytest.raises(InputError, match="ended"):
-        twin.sealing.seal(silent=["logger"])
+        twin.sealing.seal(twin.packets.latest(), silent=["logger"])
     account = sum(twin.packets.account().values(), Account())
     assert account == Account(received=2, used=1, waiting=1)

@@ -45,10 +45,11 @@ class Sealing:
         self._inbox, self._packets, self._model = inbox, packets, model
         self._readers, self._grid = readers, grid
 
-    def seal(self, silent: Collection[str]) -> int:
+    def seal(self, latest: Mapping[str, int | None], silent: Collection[str]) -> int:
         """Give the twin all rows that are final.
 
         Args:
+            latest: moment that each source has sent [µs since 1970]; None: it has sent nothing.
             silent: sources that nothing has been heard of for too long.
 
         Returns:
@@ -57,7 +58,7 @@ class Sealing:
         Raises:
             InputError: nothing can be written, or the twin has ended.
         """
-        until = self._grid.final_until(self._packets.latest(), silent)
+        until = self._grid.final_until(latest, silent)
         if until is None:
             return 0
         rows = 0
