@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rga.planning.planner import plan
     from rga.planning.result import Plan
     from rga.records import Record, RecordMapping, load_record
-    from rga.simulation import Results, Simulator, results
+    from rga.simulation import Modes, Results, Simulator, modes, results
     from rga.twin import Twin
 
 __version__ = version("rga")
@@ -40,6 +40,7 @@ _HOMES = {
     "ImportedModel": "rga.importing",
     "Model": "rga.model",
     "ModelBuilder": "rga.building",
+    "Modes": "rga.simulation",
     "Plan": "rga.planning.result",
     "Record": "rga.records",
     "RecordMapping": "rga.records",
@@ -57,6 +58,7 @@ _HOMES = {
     "load_findings": "rga.findings",
     "load_model": "rga.model",
     "load_record": "rga.records",
+    "modes": "rga.simulation",
     "plan": "rga.planning.planner",
     "plot_findings": "rga.drawing.charts",
     "plot_model": "rga.drawing",
@@ -76,6 +78,7 @@ __all__ = [
     "LiveTwin",
     "Model",
     "ModelBuilder",
+    "Modes",
     "Plan",
     "Record",
     "RecordMapping",
@@ -94,6 +97,7 @@ __all__ = [
     "load_findings",
     "load_model",
     "load_record",
+    "modes",
     "plan",
     "plot_findings",
     "plot_model",

@@ -7,7 +7,7 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rga.arrays import LoadArrays, OutputArrays, StructureArrays
+from rga.arrays import LoadArrays, MassArrays, OutputArrays, StructureArrays
 
 __all__ = [
     "ChangeStatistics",
@@ -72,6 +72,11 @@ class NotConverged(ArithmeticError):
 
     row: int
     """The row of the time series."""
+
+def modes(
+    structure: StructureArrays, masses: MassArrays, count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Modes: eigenvalues [c], shapes [c, n, 6], participation [c, 3] and the mass [3]."""
 
 def respond(
     structure: StructureArrays,

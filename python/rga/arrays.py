@@ -46,6 +46,14 @@ class StructureArrays(MemberArrays, RestraintArrays):
     """A structure."""
 
 
+class MassArrays(TypedDict):
+    """What a structure weighs in motion; `help(rga._core.modes)` has shapes and units."""
+
+    line: FloatArray
+    section: FloatArray
+    nodal: FloatArray
+
+
 class LoadArrays(TypedDict):
     """Load patterns on a structure."""
 
@@ -72,6 +80,8 @@ class OutputArrays(TypedDict):
     total: BoolArray
 
 
-def by_name(arrays: StructureArrays | LoadArrays | OutputArrays) -> dict[str, NDArray[Any]]:
+def by_name(
+    arrays: StructureArrays | MassArrays | LoadArrays | OutputArrays,
+) -> dict[str, NDArray[Any]]:
     """The same arrays, where all are treated alike."""
     return cast("dict[str, NDArray[Any]]", arrays)

@@ -250,6 +250,12 @@ class StructureBuilder:
         }
         return self._add("masses", name or node, checked(Mass, given, where))
 
+    def mass_along(self, group: str, per_length: Amount, *, name: str | None = None) -> Self:
+        """A mass along the members of a group [kg/m]: a deck, asphalt, a railing."""
+        where = f"mass {name or group!r}"
+        given = {"group": group, "per_length": amount(per_length, "kg/m", where)}
+        return self._add("masses", name or group, checked(Mass, given, where))
+
     def _add(self, table: str, name: str, part: Any) -> Self:
         if not isinstance(name, str) or not name:
             raise InputError(f"{name!r} is no name", f"{table} of {self._where}", "give a text")

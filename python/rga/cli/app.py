@@ -30,6 +30,7 @@ from rga.cli.preparation.import_model import import_model
 from rga.cli.preparation.import_record import import_record
 from rga.cli.schema import schema
 from rga.cli.simulation.dataset import dataset
+from rga.cli.simulation.modes import modes
 from rga.cli.simulation.results import results
 from rga.cli.simulation.simulate import simulate
 from rga.cli.simulation.verify import verify
@@ -46,7 +47,7 @@ app = typer.Typer(
 )
 for command in (
     example, import_model, import_record, check, draw, diagnose, diagnose_many, plan, run, status,
-    replay, accept, reject, rollback, export, serve, user, feed, simulate, results, whatif,
+    replay, accept, reject, rollback, export, serve, user, feed, simulate, results, modes, whatif,
     dataset, verify, schema, doctor,
 ):  # fmt: skip
     app.command("import" if command is import_model else None)(command)

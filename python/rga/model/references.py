@@ -93,7 +93,8 @@ def mistakes(model: "Model", unread: Unread = EVERYTHING_READ) -> Iterator[Mista
     for number, tie in enumerate(model.ties):
         yield from names.missing("nodes", tie.nodes, (f"ties[{number}]",))
     for name, mass in model.masses.items():
-        yield from names.missing("nodes", [mass.node], ("masses", name, "node"))
+        yield from names.missing("nodes", listed(mass.node), ("masses", name, "node"))
+        yield from names.missing("groups", listed(mass.group), ("masses", name, "group"))
     yield from _columns(model)
     for name, sensor in model.sensors.items():
         yield from names.missing("members", listed(sensor.member), ("sensors", name, "member"))

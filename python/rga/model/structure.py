@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rga.arrays import (
     FloatArray,
     IntArray,
+    MassArrays,
     OutputArrays,
     StructureArrays,
     by_name,
@@ -17,7 +18,7 @@ from rga.arrays import (
 from rga.model.copied_when_read import CopiedWhenRead
 from rga.model.parameter import SMALLEST, listed
 from rga.model.schema import Model, Vector
-from rga.model.structure_arrays import member_arrays, restraint_arrays, sensor_output
+from rga.model.structure_arrays import mass_arrays, member_arrays, restraint_arrays, sensor_output
 from rga.model.units import per_si
 
 T = TypeVar("T")
@@ -110,6 +111,7 @@ class Structure:
         materials: material of every member of the model.
         drawn_frames: numbers of the members that are frames in the model, whatever effects make.
         arrays: coordinates [m], member properties, supports, springs, ties.
+        masses: along members and at nodes, as the core takes them.
         outputs: one row a sensor, as the core takes them.
         per_si: sensor units per SI unit, float[sensors].
         alpha: thermal expansion [1/K], float[members].
@@ -127,6 +129,7 @@ class Structure:
     materials: tuple[str, ...]
     drawn_frames: IntArray
     arrays: StructureArrays
+    masses: MassArrays
     outputs: OutputArrays
     per_si: FloatArray
     alpha: FloatArray
@@ -173,6 +176,7 @@ class Structure:
             self.materials,
             self.drawn_frames,
             cast(StructureArrays, CopiedWhenRead(by_name(self.arrays))),
+            cast(MassArrays, CopiedWhenRead(by_name(self.masses))),
             cast(OutputArrays, CopiedWhenRead(by_name(self.outputs))),
             self.per_si,
             self.alpha.copy(),
@@ -217,16 +221,22 @@ class Structure:
         self.arrays["coordinates"] = np.vstack([self.arrays["coordinates"], coordinates])
         held = np.zeros((len(coordinates), 6), dtype=bool)
         self.arrays["fixed"] = np.vstack([self.arrays["fixed"], held])
+        self.masses["nodal"] = np.vstack([self.masses["nodal"], np.zeros((len(coordinates), 6))])
         return np.arange(first, first + len(coordinates))
 
     def add_bars(self, ends: IntArray, area: float, hosts: IntArray) -> None:
-        """Add bars int[k, 2] of an area [m2] with modulus and temperature of their hosts."""
+        """Add bars int[k, 2] of an area [m2] with modulus and temperature of their hosts.
+
+        They stand for a stiffness, and have no mass.
+        """
         arrays = self.arrays
         for name in OF_MEMBERS:
             arrays[name] = np.concatenate([arrays[name], arrays[name][hosts]])
         arrays["A"][-len(hosts) :] = area
         arrays["ends"] = np.vstack([arrays["ends"], ends])
         arrays["frame"] = np.concatenate([arrays["frame"], np.zeros(len(hosts), dtype=bool)])
+        self.masses["line"] = np.append(self.masses["line"], np.zeros(len(hosts)))
+        self.masses["section"] = np.vstack([self.masses["section"], np.zeros((len(hosts), 3))])
         self.alpha = np.concatenate([self.alpha, self.alpha[hosts]])
         self.host = np.concatenate([self.host, self.host[hosts]])
 
@@ -300,6 +310,7 @@ def build_structure(model: Model) -> Structure:
         materials=tuple(member.material for member in model.members.values()),
         drawn_frames=np.flatnonzero(arrays["frame"]),
         arrays=arrays,
+        masses=mass_arrays(model, nodes, members),
         outputs={
             "kind": np.array([row[0] for row in outputs], dtype=np.int64),
             "index": np.array([row[1] for row in outputs], dtype=np.int64),

@@ -6,7 +6,7 @@
 //! stiffens are held (`free_rotations`), and structures that move freely are refused with the
 //! motion's node (`stability`): `sparse` knows matrices alone. A state is balanced
 //! (`equilibrium`), and outputs are read off it (`outputs`). `deformed_member` is a member under
-//! large displacements.
+//! large displacements, and `mass` what members and nodes weigh in motion.
 
 pub(crate) mod assembly;
 pub(crate) mod axes;
@@ -17,6 +17,7 @@ pub(crate) mod element;
 pub(crate) mod equilibrium;
 pub(crate) mod free_rotations;
 pub(crate) mod load;
+pub(crate) mod mass;
 pub(crate) mod member;
 pub(crate) mod model;
 pub(crate) mod outputs;

@@ -60,6 +60,17 @@ impl Structure<'_> {
     }
 }
 
+/// What a structure weighs in motion.
+#[derive(Debug, Clone, Copy)]
+pub struct Masses<'a> {
+    /// `[m]` along a member
+    pub line: Array<'a, f64>,
+    /// `[m, 3]` of the section about the local axes, per length
+    pub section: Array<'a, f64>,
+    /// `[n, 6]` at the nodes: of motions along the global axes and of rotations about them
+    pub nodal: Array<'a, f64>,
+}
+
 /// p patterns, each solved on its own; q member loads.
 #[derive(Debug, Clone, Copy)]
 pub struct Loads<'a> {

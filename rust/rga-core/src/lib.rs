@@ -1,4 +1,4 @@
-//! Static analysis of three-dimensional truss and frame structures.
+//! Static and modal analysis of three-dimensional truss and frame structures.
 //!
 //! Every node has six degrees of freedom (dofs) in the order
 //! ux uy uz rx ry rz. The tree, from the ground up:
@@ -8,7 +8,7 @@
 //! - `sparse`: symmetric matrices and their factors; knows nothing of structures.
 //! - `fe`: finite elements, from the arrays to a balanced state and its outputs.
 //! - `validate`: checks of the arrays, before any step uses them.
-//! - `paths`: the analyses: linear, condensed, batch, nonlinear, unilateral, and friction.
+//! - `paths`: the analyses: linear, modes, condensed, batch, nonlinear, unilateral, and friction.
 //!
 //! SIMD lanes and the view of arrays are those of `rga_simd`.
 
@@ -24,13 +24,14 @@ mod validate;
 pub use rga_simd::{Array, instructions};
 
 pub use error::{Error, Result};
-pub use input::{Loads, OutputKind, Outputs, Structure};
+pub use input::{Loads, Masses, OutputKind, Outputs, Structure};
 pub use paths::batch::{BatchSolver, Samples};
 pub use paths::condensation::{Condensation, UnitResponses};
 pub use paths::condensed::Condensed;
 pub use paths::directions::Directions;
 pub use paths::friction::{Bearings, slide};
 pub use paths::linear::respond;
+pub use paths::modes::{Modes, modes};
 pub use paths::nonlinear::respond_nonlinear;
 pub use paths::rank_one_terms::{Varied, count_terms};
 pub use paths::reanalysis::{Loaded, Reanalysis, StiffnessDifference};

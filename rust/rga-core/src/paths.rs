@@ -1,6 +1,7 @@
 //! Paths from a structure and its loads to outputs: which one is quickest depends on what varies.
 //!
 //! - `linear`: one structure, many load patterns.
+//! - `modes`: natural frequencies and mode shapes of one structure.
 //! - `condensation`: a structure condensed onto few stiffnesses that vary, or none; `condensed` are
 //!   its samples.
 //! - `reanalysis`: structures near one that is solved.
@@ -17,6 +18,7 @@ pub(crate) mod condensed;
 pub(crate) mod directions;
 pub(crate) mod friction;
 pub(crate) mod linear;
+pub(crate) mod modes;
 pub(crate) mod nonlinear;
 mod parallel;
 pub(crate) mod rank_one_terms;

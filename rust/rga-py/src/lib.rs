@@ -44,6 +44,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<reanalysis::StiffnessDifference>()?;
     module.add_function(wrap_pyfunction!(functions::count_terms, module)?)?;
     module.add_function(wrap_pyfunction!(functions::instructions, module)?)?;
+    module.add_function(wrap_pyfunction!(functions::modes, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond, module)?)?;
     module.add_function(wrap_pyfunction!(functions::respond_nonlinear, module)?)?;
     module.add_function(wrap_pyfunction!(functions::slide, module)?)

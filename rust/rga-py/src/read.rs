@@ -55,6 +55,16 @@ macro_rules! read_loads {
     };
 }
 
+macro_rules! read_masses {
+    ($weights:ident from $masses:ident) => {
+        crate::read::read!($weights = Masses from $masses {
+            line: "line",
+            section: "section",
+            nodal: "nodal",
+        });
+    };
+}
+
 macro_rules! read_outputs {
     ($wanted:ident from $outputs:ident) => {
         crate::read::read!($wanted = Outputs from $outputs {
@@ -76,4 +86,4 @@ macro_rules! read_problem {
     };
 }
 
-pub(crate) use {read, read_loads, read_outputs, read_problem, read_structure};
+pub(crate) use {read, read_loads, read_masses, read_outputs, read_problem, read_structure};

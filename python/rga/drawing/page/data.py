@@ -63,6 +63,7 @@ def page_data(content: Content, response: DrawnResponse | None) -> dict[str, Any
         "masses": [
             {"node": scene.nodes[one.node], "words": f"mass {name}\n{one.mass:g} kg"}
             for name, one in scene.model.masses.items()
+            if one.node is not None
         ],
         "sensors": [
             {

@@ -48,7 +48,8 @@ def draw_ties(canvas: Canvas, scene: Scene) -> None:
 def draw_masses(canvas: Canvas, scene: Scene) -> None:
     """A filled square at every mass."""
     shown = set(canvas.view.nodes.tolist())
-    nodes = {scene.nodes[mass.node] for mass in scene.model.masses.values()} & shown
+    masses = scene.model.masses.values()
+    nodes = {scene.nodes[mass.node] for mass in masses if mass.node is not None} & shown
     if nodes:
         places = canvas.inches(scene.points[sorted(nodes)]) * canvas.unit
         canvas.axes.plot(

@@ -220,6 +220,17 @@ impl Frame {
         }
     }
 
+    /// A form of the motions of the bare beam's ends, as one of the motions of the nodes.
+    pub(crate) fn from_beam(&self, form: &Matrix12) -> Matrix12 {
+        let mut behind = Matrix12::identity();
+        for mut motions in behind.column_iter_mut() {
+            let inner = self.connection.inner(&motions.clone_owned());
+            motions.copy_from(&inner);
+        }
+        let motions = behind * rigid_arm(self.rigid);
+        motions.tr_mul(&(form * motions))
+    }
+
     /// Motions of the faces of the rigid zones, from those of the nodes.
     pub(crate) fn node_to_face(&self, motions: &Vector12) -> Vector12 {
         rigid_arm(self.rigid) * motions

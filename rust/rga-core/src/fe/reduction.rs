@@ -71,6 +71,24 @@ impl Reduction {
         &self.entries[self.first[dof]..self.first[dof + 1]]
     }
 
+    /// What an entry of a matrix of all dofs adds to the lower triangle of that of the unknowns.
+    pub(crate) fn pass_on(
+        &self,
+        (row, column, value): (usize, usize, f64),
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
+        if value == 0.0 {
+            return;
+        }
+        for &(i, left) in self.entries(row) {
+            for &(j, right) in self.entries(column) {
+                if i >= j {
+                    add(i, j, left * value * right);
+                }
+            }
+        }
+    }
+
     /// `displacements` += T `unknowns`.
     pub(crate) fn expand(&self, unknowns: &[f64], displacements: &mut [f64]) {
         for (dof, displacement) in displacements.iter_mut().enumerate() {

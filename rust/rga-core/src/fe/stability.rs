@@ -97,6 +97,10 @@ impl Solver {
         })
     }
 
+    pub(crate) fn free_rotations(&self) -> &[FreeRotation] {
+        &self.free_rotations
+    }
+
     /// Holds them in new values of K.
     pub(crate) fn hold_free_rotations(&mut self) {
         for rotation in &self.free_rotations {

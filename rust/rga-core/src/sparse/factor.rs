@@ -47,16 +47,7 @@ impl Factor {
         places: &[[f64; 3]],
         repeats: f64,
     ) -> Result<Self> {
-        let size = matrix.size();
-        let order = fill_reducing(matrix, places, repeats).ok_or_else(|| too_large(size))?;
-        let inverse = inverse(&order);
-        let symbolic = factorize_symbolic_cholesky(
-            matrix.pattern(),
-            Side::Lower,
-            SymmetricOrdering::Custom(PermRef::new_checked(&order, &inverse, size)),
-            CholeskySymbolicParams::default(),
-        )
-        .map_err(|_| too_large(size))?;
+        let (symbolic, inverse) = symbolic(matrix, places, repeats)?;
         let fronts = match symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(_) => None,
             SymbolicCholeskyRaw::Supernodal(raw) => Some(Fronts::new(raw, matrix, &inverse)),
@@ -176,6 +167,25 @@ impl Drop for Factor {
             *spare = mem::take(&mut self.values);
         }
     }
+}
+
+/// The analysis of a pattern, and where each unknown stands in its factor.
+pub(super) fn symbolic(
+    matrix: &LowerTriangle,
+    places: &[[f64; 3]],
+    repeats: f64,
+) -> Result<(SymbolicCholesky<usize>, Vec<usize>)> {
+    let size = matrix.size();
+    let order = fill_reducing(matrix, places, repeats).ok_or_else(|| too_large(size))?;
+    let inverse = inverse(&order);
+    let symbolic = factorize_symbolic_cholesky(
+        matrix.pattern(),
+        Side::Lower,
+        SymmetricOrdering::Custom(PermRef::new_checked(&order, &inverse, size)),
+        CholeskySymbolicParams::default(),
+    )
+    .map_err(|_| too_large(size))?;
+    Ok((symbolic, inverse))
 }
 
 fn too_large(size: usize) -> Error {

@@ -1,0 +1,201 @@
+//! Largest eigenvalues of K^-1 M by a block Lanczos method, orthogonal in the product of K.
+//!
+//! M may be singular: K^-1 M is self-adjoint in the product of K all the same, and what has no mass
+//! stays out of the space (Ericsson and Ruhe, The spectral transformation Lanczos method, Math.
+//! Comp. 35, 1980; Nour-Omid, Parlett, Ericsson and Jensen, How to implement the spectral
+//! transformation, Math. Comp. 48, 1987). All vectors are kept orthogonal, twice (Parlett, The
+//! Symmetric Eigenvalue Problem, 1980, section 6.9).
+
+use faer::{Mat, Side};
+
+use crate::error::{Error, Result};
+
+/// Vectors that a step adds: eigenvalues of that multiplicity are found at once.
+const BLOCK: usize = 4;
+/// A vector that orthogonalisation leaves less of was in the space already.
+const DEPENDENT: f64 = 1e-10;
+/// Residual of an eigenvector, in the norm of K, over its eigenvalue.
+const CONVERGED: f64 = 1e-11;
+/// Steps between two looks at what has converged.
+const LOOK: usize = 3;
+
+/// K and M as what is asked of them.
+pub(crate) trait Pencil {
+    fn size(&self) -> usize;
+    /// Solves K x = f in place, for columns one behind the other.
+    fn solve(&self, right: &mut [f64]) -> Result<()>;
+    /// M x
+    fn mass_times(&self, x: &[f64]) -> Vec<f64>;
+}
+
+/// A space of vectors that K makes orthogonal and long as one, with what K and M make of them.
+pub(crate) struct Lanczos<'a, P: Pencil> {
+    pencil: &'a P,
+    vectors: Vec<Vec<f64>>,
+    stiff: Vec<Vec<f64>>,
+    heavy: Vec<Vec<f64>>,
+    /// V' M V, its lower triangle by rows.
+    projected: Vec<Vec<f64>>,
+    /// Vectors, from the first on, whose image under K^-1 M lies in the space.
+    extended: usize,
+    /// What the next irregular number follows from.
+    drawn: u64,
+    /// Nothing is left outside of the space.
+    pub exhausted: bool,
+}
+
+/// Eigenvalues of K^-1 M, the largest first, with vectors of length 1 in the norm of K.
+#[derive(Default)]
+pub(crate) struct RitzPairs {
+    pub values: Vec<f64>,
+    pub vectors: Vec<Vec<f64>>,
+    /// How many, from the first on, have converged.
+    pub converged: usize,
+}
+
+impl<'a, P: Pencil> Lanczos<'a, P> {
+    pub(crate) fn new(pencil: &'a P) -> Self {
+        Self {
+            pencil,
+            vectors: Vec::new(),
+            stiff: Vec::new(),
+            heavy: Vec::new(),
+            projected: Vec::new(),
+            extended: 0,
+            drawn: 0,
+            exhausted: false,
+        }
+    }
+
+    /// Grows the space until so many pairs have converged, or all that there are.
+    pub(crate) fn grow(&mut self, count: usize) -> Result<RitzPairs> {
+        loop {
+            for _ in 0..LOOK {
+                if !self.exhausted {
+                    self.step()?;
+                }
+            }
+            if self.extended >= count || self.exhausted {
+                let found = self.pairs(count)?;
+                if found.converged >= count || self.exhausted {
+                    return Ok(found);
+                }
+            }
+        }
+    }
+
+    /// Adds irregular vectors to the space: copies of eigenvalues that it lacks come with them.
+    pub(crate) fn start_anew(&mut self) -> Result<()> {
+        let size = self.pencil.size();
+        let mut forces = Vec::with_capacity(BLOCK);
+        for _ in 0..BLOCK.min(size) {
+            let irregular: Vec<f64> = (0..size).map(|_| self.irregular()).collect();
+            forces.push(self.pencil.mass_times(&irregular));
+        }
+        self.add(forces)
+    }
+
+    /// Numbers between -0.5 and 0.5, the same in every run (Steele, Lea and Flood, Fast splittable
+    /// pseudorandom number generators, OOPSLA 2014).
+    fn irregular(&mut self) -> f64 {
+        self.drawn = self.drawn.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.drawn;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+        (bits >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+
+    /// Takes in what K^-1 M makes of the newest vectors.
+    fn step(&mut self) -> Result<()> {
+        let before = self.vectors.len();
+        if self.extended == before {
+            self.start_anew()?;
+            self.exhausted = self.vectors.len() == before;
+            return Ok(());
+        }
+        let forces = self.heavy[self.extended..].to_vec();
+        self.add(forces)?;
+        self.extended = before;
+        Ok(())
+    }
+
+    /// Adds K^-1 of forces.
+    fn add(&mut self, forces: Vec<Vec<f64>>) -> Result<()> {
+        let mut solved = forces.concat();
+        self.pencil.solve(&mut solved)?;
+        let columns = solved.chunks_exact(self.pencil.size());
+        for (vector, force) in columns.zip(forces) {
+            self.add_one(vector.to_vec(), force);
+        }
+        Ok(())
+    }
+
+    fn add_one(&mut self, mut vector: Vec<f64>, mut stiff: Vec<f64>) {
+        let before = dot(&vector, &stiff).max(0.0).sqrt();
+        for _ in 0..2 {
+            for (other, other_stiff) in self.vectors.iter().zip(&self.stiff) {
+                let share = dot(other_stiff, &vector);
+                subtract(&mut vector, share, other);
+                subtract(&mut stiff, share, other_stiff);
+            }
+        }
+        let norm = dot(&vector, &stiff).max(0.0).sqrt();
+        if norm <= DEPENDENT * before || norm == 0.0 {
+            return;
+        }
+        vector.iter_mut().for_each(|value| *value /= norm);
+        stiff.iter_mut().for_each(|value| *value /= norm);
+        let heavy = self.pencil.mass_times(&vector);
+        let mut row: Vec<f64> = self
+            .vectors
+            .iter()
+            .map(|other| dot(other, &heavy))
+            .collect();
+        row.push(dot(&vector, &heavy));
+        self.projected.push(row);
+        self.vectors.push(vector);
+        self.stiff.push(stiff);
+        self.heavy.push(heavy);
+    }
+
+    /// The largest of those whose vectors K^-1 M has been applied to.
+    fn pairs(&self, count: usize) -> Result<RitzPairs> {
+        let size = self.extended;
+        let projected = Mat::from_fn(size, size, |row, column| {
+            self.projected[row.max(column)][row.min(column)]
+        });
+        let eigen = projected
+            .self_adjoint_eigen(Side::Lower)
+            .map_err(|_| Error::invalid("the modes do not converge; check the masses"))?;
+        let mut found = RitzPairs::default();
+        let mut all_so_far = true;
+        for at in (0..size).rev().take(count) {
+            let (value, shares) = (eigen.S()[at], eigen.U().col(at));
+            let outside = self.projected[size..].iter().map(|row| {
+                let products = row[..size].iter().zip(shares.iter());
+                products.map(|(one, other)| one * other).sum::<f64>()
+            });
+            let residual = outside.map(|part| part * part).sum::<f64>().sqrt();
+            all_so_far &= residual <= CONVERGED * value;
+            found.converged += usize::from(all_so_far);
+            let mut vector = vec![0.0; self.pencil.size()];
+            for (share, one) in shares.iter().zip(&self.vectors) {
+                subtract(&mut vector, -share, one);
+            }
+            found.values.push(value);
+            found.vectors.push(vector);
+        }
+        Ok(found)
+    }
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| one * other).sum()
+}
+
+fn subtract(from: &mut [f64], share: f64, other: &[f64]) {
+    for (value, part) in from.iter_mut().zip(other) {
+        *value -= share * part;
+    }
+}

@@ -1,0 +1,190 @@
+//! Natural frequencies with closed forms, clusters of equal ones, and masses that are singular.
+
+mod common;
+
+use common::*;
+use rga_core::{Array, Error, Masses, Modes, Result, modes};
+
+const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
+const LINE: f64 = 60.0;
+const L: f64 = 4.0;
+
+/// Modes of a case with `line` kg/m along every member and masses on nodes.
+fn found(case: &Case, line: f64, nodal: &[(usize, [f64; 6])], count: usize) -> Result<Modes> {
+    let (n, m) = (case.nodes.len(), case.ends.len());
+    let (line, section) = (vec![line; m], vec![0.0; 3 * m]);
+    let mut masses = vec![0.0; 6 * n];
+    for (node, mass) in nodal {
+        masses[6 * node..6 * node + 6].copy_from_slice(mass);
+    }
+    let (members, sections, nodes) = ([m], [m, 3], [n, 6]);
+    let masses = Masses {
+        line: Array::new(&line, &members),
+        section: Array::new(&section, &sections),
+        nodal: Array::new(&masses, &nodes),
+    };
+    case.lend(&[], |structure, _, _| modes(structure, &masses, count))
+}
+
+fn mass(mass: f64) -> [f64; 6] {
+    [mass, mass, mass, 0.0, 0.0, 0.0]
+}
+
+#[test]
+fn mass_on_a_weightless_bar() -> Result<()> {
+    let bar = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], false)]);
+    let bar = bar.fix(0, &[0, 1, 2]).fix(1, &[1, 2]);
+    let modes = found(&bar, 0.0, &[(1, mass(500.0))], 3)?;
+    assert_eq!(modes.eigenvalues.len(), 1);
+    close(modes.eigenvalues[0], E * AREA / L / 500.0);
+    close(modes.shapes[6], 1.0 / 500.0_f64.sqrt());
+    Ok(())
+}
+
+#[test]
+fn bar_with_its_own_mass() -> Result<()> {
+    let bar = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], false)]);
+    let bar = bar.fix(0, &[0, 1, 2]).fix(1, &[1, 2]);
+    let modes = found(&bar, LINE, &[], 1)?;
+    close(modes.eigenvalues[0], 3.0 * E * AREA / (LINE * L * L));
+    Ok(())
+}
+
+/// One element of a cantilever, whose consistent mass gives 140 x^2 - 408 x + 12 = 0 with
+/// x = rho A L^4 w^2 / (420 E I).
+#[test]
+fn cantilever_of_one_element() -> Result<()> {
+    let held = [0, 2, 3, 4];
+    let beam = Case::beam(L).fix(0, &ALL).fix(1, &held);
+    let modes = found(&beam, LINE, &[], 2)?;
+    let root = (408.0_f64.powi(2) - 4.0 * 140.0 * 12.0).sqrt();
+    for (value, x) in modes.eigenvalues.iter().zip([408.0 - root, 408.0 + root]) {
+        close(*value, x / 280.0 * 420.0 * E * IZ / (LINE * L.powi(4)));
+    }
+    Ok(())
+}
+
+/// Both planes of a cantilever of many elements: 1.8751 and 4.6941 (Blevins, Formulas for Natural
+/// Frequency and Mode Shape, 1979, table 8-1).
+#[test]
+fn cantilever_of_many_elements() -> Result<()> {
+    let count = 16;
+    let nodes: Vec<[f64; 3]> = (0..=count)
+        .map(|at| [L * at as f64 / count as f64, 0.0, 0.0])
+        .collect();
+    let members: Vec<([i64; 2], bool)> = (0..count).map(|at| ([at, at + 1], true)).collect();
+    let beam = Case::new(&nodes, &members).fix(0, &ALL);
+    let modes = found(&beam, LINE, &[], 4)?;
+    let exact = |root: f64, inertia: f64| root.powi(4) * E * inertia / (LINE * L.powi(4));
+    let mut expected =
+        [1.875_104_069, 4.694_091_133].map(|root| [exact(root, IY), exact(root, IZ)]);
+    let expected = expected.as_flattened_mut();
+    expected.sort_by(f64::total_cmp);
+    for (value, exact) in modes.eigenvalues.iter().zip(expected) {
+        assert!(
+            (value / *exact - 1.0).abs() < 2e-5,
+            "{value} instead of {exact}"
+        );
+    }
+    Ok(())
+}
+
+/// Rigid zones and releases: a rigid rod on a pin with a spring at its middle.
+#[test]
+fn members_between_rigid_zones_move_as_a_body() -> Result<()> {
+    let mut rod = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], true)]);
+    rod.rigid_end = vec![[0.4 * L, 0.5 * L]];
+    rod.springs = vec![([1, -1], 1, 1e3)];
+    let rod = rod.fix(0, &[0, 1, 2, 3, 4]).fix(1, &[0, 2, 3, 4]);
+    let modes = found(&rod, LINE, &[], 1)?;
+    let expected = 1e3 * L * L / (LINE * L.powi(3) / 3.0);
+    // What is left between the zones yields a little under the spring.
+    assert!((modes.eigenvalues[0] / expected - 1.0).abs() < 1e-3);
+    Ok(())
+}
+
+#[test]
+fn released_ends_swing_without_their_node() -> Result<()> {
+    // Pinned to a heavy node: the beam alone turns, as on a support.
+    let pinned = |case: Case| case.fix(0, &[0, 1, 2, 3, 4]).fix(1, &[0, 2, 3, 4]);
+    let mut own = pinned(Case::beam(L));
+    own.springs = vec![([1, -1], 1, 1e3)];
+    let mut released = Case::beam(L).fix(0, &ALL).fix(1, &[0, 2, 3, 4]);
+    released.springs = vec![([1, -1], 1, 1e3)];
+    let released = released.connect(0, 5, 0.0);
+    let (own, released) = (found(&own, LINE, &[], 3)?, found(&released, LINE, &[], 3)?);
+    // What a release passes on is condensed as in statics: the lowest mode, a body's, hardly changes.
+    assert!((own.eigenvalues[0] / released.eigenvalues[0] - 1.0).abs() < 1e-5);
+    Ok(())
+}
+
+/// More equal modes than a block of vectors finds at once.
+#[test]
+fn no_copy_of_equal_modes_is_missed() -> Result<()> {
+    let count = 11;
+    let mut nodes = Vec::new();
+    let mut members = Vec::new();
+    for at in 0..count {
+        nodes.extend([[0.0, at as f64, 0.0], [L, at as f64, 0.0]]);
+        members.push(([2 * at as i64, 2 * at as i64 + 1], false));
+    }
+    let mut bars = Case::new(&nodes, &members);
+    for at in 0..count {
+        bars = bars.fix(2 * at, &[0, 1, 2]).fix(2 * at + 1, &[1, 2]);
+    }
+    let expected = 3.0 * E * AREA / (LINE * L * L);
+    for wanted in [1, 5, 11, 14] {
+        let modes = found(&bars, LINE, &[], wanted)?;
+        assert_eq!(modes.eigenvalues.len(), wanted.min(count));
+        modes
+            .eigenvalues
+            .iter()
+            .for_each(|&value| close(value, expected));
+    }
+    Ok(())
+}
+
+/// Shapes are orthogonal in the mass, pairs of equal frequency too.
+#[test]
+fn shapes_of_a_square_column_are_orthogonal() -> Result<()> {
+    let column = Case::new(&[[0.0; 3], [0.0, 0.0, L]], &[([0, 1], false)]);
+    let mut column = column.fix(0, &[0, 1, 2]);
+    column.springs = vec![([1, -1], 0, 5e4), ([1, -1], 1, 5e4)];
+    let modes = found(&column, 0.0, &[(1, mass(200.0))], 3)?;
+    close(modes.eigenvalues[0], 250.0);
+    close(modes.eigenvalues[1], 250.0);
+    let of = |mode: usize| &modes.shapes[12 * mode + 6..12 * mode + 9];
+    for (one, other, product) in [(0, 0, 1.0), (0, 1, 0.0), (0, 2, 0.0), (1, 1, 1.0)] {
+        let sum: f64 = of(one).iter().zip(of(other)).map(|(a, b)| a * b).sum();
+        close(200.0 * sum, product);
+    }
+    Ok(())
+}
+
+/// An inertia about what nothing stiffens is no mode, and changes none.
+#[test]
+fn inertia_of_a_free_rotation_does_nothing() -> Result<()> {
+    let bar = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], false)]);
+    let bar = bar.fix(0, &[0, 1, 2]).fix(1, &[1, 2]);
+    let turning = [500.0, 500.0, 500.0, 7.0, 8.0, 9.0];
+    let modes = found(&bar, 0.0, &[(1, turning)], 3)?;
+    assert_eq!(modes.eigenvalues.len(), 1);
+    close(modes.eigenvalues[0], E * AREA / L / 500.0);
+    Ok(())
+}
+
+#[test]
+fn masses_that_are_none_are_refused() {
+    let bar = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], false)]);
+    let bar = bar.fix(0, &[0, 1, 2]).fix(1, &[1, 2]);
+    for (line, nodal) in [(0.0, 0.0), (-1.0, 0.0), (f64::NAN, 0.0), (1.0, -2.0)] {
+        let refused = found(&bar, line, &[(1, mass(nodal))], 1);
+        assert!(
+            matches!(refused, Err(Error::InvalidInput(_))),
+            "{refused:?}"
+        );
+    }
+    let free = Case::new(&[[0.0; 3], [L, 0.0, 0.0]], &[([0, 1], false)]);
+    let refused = found(&free, LINE, &[], 1);
+    assert!(matches!(refused, Err(Error::UnstableStructure { .. })));
+}
