@@ -4,7 +4,7 @@ import re
 
 from rga.errors import InputError
 from rga.model.schema import DOFS
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 
 MOVES, TURNS = DOFS[:3], DOFS[3:]
 _ROLLER = re.compile(r"roller along ([xyz])(?: and ([xyz]))?")

@@ -8,7 +8,7 @@ import numpy as np
 
 from rga.experiments.truck import STANDS, Lane, Truck
 from rga.model.schema import Model, Sensor
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 from rga.model.units import UNITS
 
 Kind = Literal["displacement", "rotation", "strain"]

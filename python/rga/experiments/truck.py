@@ -16,7 +16,7 @@ from rga.model.effects.loads.axle_load import AxleLoad
 from rga.model.effects.loads.nodal_load import NodalLoad
 from rga.model.parameter import Driven
 from rga.model.schema import Model
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 from rga.quantities import plain
 
 #: places along a lane at which a truck may stand, at most

@@ -5,7 +5,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.model.axes import member_axes
 from rga.model.schema import DOFS, Model
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 
 #: share of a unit axis that counts as none
 ACROSS = 1e-6

@@ -95,7 +95,8 @@ class Place:
     """Marks a field of an effect as its place: the part of the model that it names.
 
     Attributes:
-        of: "member", "group", "support", "sensor", "context", "effect", "material", or "" for a
+        of: "member", "group", "node", "support", "mass", "sensor", "context", "effect",
+            "material", or "" for a
             word that stands in no part of the model (a degree of freedom, a direction).
     """
 

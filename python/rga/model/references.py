@@ -187,6 +187,7 @@ class _Names:
             "member": model.members,
             "group": model.groups,
             "support": model.supports,
+            "mass": model.masses,
             "sensor": model.sensors,
             "context": model.context,
             "effect": model.effects,
@@ -200,7 +201,7 @@ class _Names:
             return True
         if of == "group":
             return self._unread.touches("members")
-        part = of if of == "context" else f"{of}s"
+        part = {"context": "context", "mass": "masses"}.get(of, f"{of}s")
         return part in self._unread.tables or (part, name) in self._unread.entries
 
     def missing(self, table: str, names: Any, place: tuple[str, ...]) -> Iterator[Mistake]:

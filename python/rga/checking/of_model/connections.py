@@ -12,7 +12,7 @@ from rga.checking.finding import Finding, named, parts
 from rga.checking.over_ranges import OverRanges
 from rga.errors import InputError
 from rga.model.structure import Structure
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 from rga.simulation.paths.response import node_name
 
 #: parts of a structure that are told one by one

@@ -8,7 +8,7 @@ from rga.checking.finding import Finding, parts
 from rga.checking.over_ranges import OverRanges
 from rga.errors import InputError
 from rga.model.schema import DOFS, Model
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 
 
 def supports(over: OverRanges) -> Iterator[Finding]:

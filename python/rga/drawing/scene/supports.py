@@ -8,7 +8,7 @@ import numpy as np
 from rga.arrays import FloatArray
 from rga.drawing.scene.scene import Scene
 from rga.model.schema import DOFS, Support
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 
 
 @dataclass(frozen=True)

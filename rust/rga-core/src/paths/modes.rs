@@ -96,6 +96,12 @@ impl Motion {
         let reduction = Reduction::new(&constraints, &model.diagonal()?);
         let solver = Solver::new(&model, &reduction)?;
         let mass = assemble_mass(&model, &reduction, masses);
+        if let Some(at) = mass.diagonal().iter().position(|&value| value < 0.0) {
+            return Err(Error::invalid(format!(
+                "more mass is taken off node {} than there is",
+                reduction.unknowns[at] / 6
+            )));
+        }
         if mass.values.iter().all(|&value| value == 0.0) {
             return Err(Error::invalid(
                 "nothing that can move has a mass; state densities or masses",

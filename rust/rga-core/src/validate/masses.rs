@@ -14,8 +14,7 @@ pub(crate) fn check_masses(structure: &Structure, masses: &Masses) -> Result<()>
         ("section mass", &masses.section),
         ("nodal mass", &masses.nodal),
     ] {
-        let right = "a finite number, not below zero";
-        array.check_each(name, right, |mass| mass.is_finite() && mass >= 0.0)?;
+        array.check_finite(name)?;
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ from rga.model.effects.loads.line_forces import line_forces
 from rga.model.parameter import Normal, Number, Parameter, Place, Prior, Value
 from rga.model.schema import Model
 from rga.model.structure import Load, Structure, check_direction
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 
 USUAL = Normal(0.0, 1000.0)
 

@@ -7,7 +7,7 @@ from rga.model.bending import bending_at
 from rga.model.parameter import Place, listed
 from rga.model.schema import DOFS, Dof, Model
 from rga.model.structure import Structure
-from rga.model.structure_arrays import HELD_BY_PLANE
+from rga.model.structure.arrays import HELD_BY_PLANE
 
 Supports = Annotated[str | list[str], Place("support")]
 Direction = Annotated[Dof, Place("")]

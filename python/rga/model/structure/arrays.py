@@ -3,8 +3,7 @@
 import numpy as np
 
 from rga._core import OutputKind
-from rga.arrays import MassArrays, MemberArrays, RestraintArrays
-from rga.model.parameter import listed
+from rga.arrays import MemberArrays, RestraintArrays
 from rga.model.schema import DOFS, Model, Sensor
 
 #: what a sensor of each kind reads
@@ -82,33 +81,6 @@ def restraint_arrays(model: Model, nodes: dict[str, int]) -> RestraintArrays:
         ).reshape(-1, 2),
         "tie_dof": np.array([DOFS.index(dof) for _, dof in ties], dtype=np.int64),
     }
-
-
-def mass_arrays(model: Model, nodes: dict[str, int], members: dict[str, int]) -> MassArrays:
-    """Masses of members, by density and area, and those that the model states beside them.
-
-    A section turns with its member about the local x axis; about the others where the member
-    deforms in shear, without which this is as small (Timoshenko, On the correction for shear of the
-    differential equation for transverse vibrations of prismatic bars, Phil. Mag. 41, 1921).
-    """
-    chosen = list(model.members.values())
-    density = np.array([model.materials[member.material].density for member in chosen])
-    sections = [model.sections[member.section] for member in chosen]
-    line = density * np.array([section.A for section in sections])
-    turning = np.array(
-        [
-            (one.Iy + one.Iz, one.Iy if one.Asz else 0.0, one.Iz if one.Asy else 0.0)
-            for one in sections
-        ]
-    ).reshape(-1, 3)
-    nodal = np.zeros((len(nodes), 6))
-    for mass in model.masses.values():
-        if mass.node is not None and mass.mass is not None:
-            nodal[nodes[mass.node]] += [mass.mass] * 3 + list(mass.inertia)
-        elif mass.per_length is not None:
-            named = {name for group in listed(mass.group) for name in model.groups[group]}
-            line[[members[name] for name in sorted(named)]] += mass.per_length
-    return {"line": line, "section": density[:, None] * turning, "nodal": nodal}
 
 
 def sensor_output(

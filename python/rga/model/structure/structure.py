@@ -1,6 +1,6 @@
 """A structure as arrays: what effects change and what the core solves."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeVar, cast
 
@@ -18,7 +18,8 @@ from rga.arrays import (
 from rga.model.copied_when_read import CopiedWhenRead
 from rga.model.parameter import SMALLEST, listed
 from rga.model.schema import Model, Vector
-from rga.model.structure_arrays import mass_arrays, member_arrays, restraint_arrays, sensor_output
+from rga.model.structure.arrays import member_arrays, restraint_arrays, sensor_output
+from rga.model.structure.masses import masses_of
 from rga.model.units import per_si
 
 T = TypeVar("T")
@@ -112,6 +113,7 @@ class Structure:
         drawn_frames: numbers of the members that are frames in the model, whatever effects make.
         arrays: coordinates [m], member properties, supports, springs, ties.
         masses: along members and at nodes, as the core takes them.
+        weigh: masses of some materials, and of some masses by name, of the model.
         outputs: one row a sensor, as the core takes them.
         per_si: sensor units per SI unit, float[sensors].
         alpha: thermal expansion [1/K], float[members].
@@ -130,6 +132,7 @@ class Structure:
     drawn_frames: IntArray
     arrays: StructureArrays
     masses: MassArrays
+    weigh: Callable[[Sequence[str], Sequence[str]], MassArrays]
     outputs: OutputArrays
     per_si: FloatArray
     alpha: FloatArray
@@ -177,6 +180,7 @@ class Structure:
             self.drawn_frames,
             cast(StructureArrays, CopiedWhenRead(by_name(self.arrays))),
             cast(MassArrays, CopiedWhenRead(by_name(self.masses))),
+            self.weigh,
             cast(OutputArrays, CopiedWhenRead(by_name(self.outputs))),
             self.per_si,
             self.alpha.copy(),
@@ -310,7 +314,8 @@ def build_structure(model: Model) -> Structure:
         materials=tuple(member.material for member in model.members.values()),
         drawn_frames=np.flatnonzero(arrays["frame"]),
         arrays=arrays,
-        masses=mass_arrays(model, nodes, members),
+        masses=masses_of(model),
+        weigh=lambda materials, names: masses_of(model, materials, names),
         outputs={
             "kind": np.array([row[0] for row in outputs], dtype=np.int64),
             "index": np.array([row[1] for row in outputs], dtype=np.int64),

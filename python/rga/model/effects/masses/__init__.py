@@ -1,0 +1,1 @@
+"""Masses that the model does not have, or has with another size."""
