@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reference_solver import solve_case
+from independent.reference_solver import solve_case
 from rga import _core
 from rga._core import Condensation, DependentTerms, OutputKind
 from rga.simulation.verification_input import FrameCase, Loads, output_arrays

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reference_solver import Frame
+from independent.reference_solver import Frame
 from rga.model import Model, Sensor
 from rga.simulation import Simulator
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rga
-from dense_modes import dense_modes
+from independent.dense_modes import dense_modes
 from rga.model import Model
 
 TIGHT = 1e-9

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from reference_solver import solve_case
+from independent.reference_solver import solve_case
 from rga.simulation.verification import verify_case, verify_folder
 
 FOLDER = Path(__file__).parents[2] / "verification"

@@ -7,7 +7,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from reference_solver import solve_case
+from independent.reference_solver import solve_case
 from rga.arrays import FloatArray
 from rga.errors import InputError, UnstableStructureError
 from rga.model import Model, read_model

@@ -1,0 +1,1 @@
+"""What the product is held against: code that shares nothing with it."""
