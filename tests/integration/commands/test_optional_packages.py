@@ -72,7 +72,7 @@ def test_what_is_missed_is_reported(model_file: Path) -> None:
         "from rga.inference import train": ("torch", "networks"),
         "rga.Twin": ("sqlalchemy", "twin"),
         "rga.run": ("sqlalchemy", "twin"),
-        "from rga.twin import History": ("sqlalchemy", "twin"),
+        "from rga.twin import carry_out": ("sqlalchemy", "twin"),
     }
     code = f"""
 import rga
