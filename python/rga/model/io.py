@@ -130,7 +130,8 @@ def model_content(model: Model) -> dict[str, Any]:
     }
     for name, member in model.members.items():
         content["members"][name]["kind"] = member.kind
-    return content
+    modal = content.pop("modal_sensors", {})
+    return {**content, "sensors": {**content.get("sensors", {}), **modal}} if modal else content
 
 
 def _parse(raw: bytes, suffix: str) -> Any:

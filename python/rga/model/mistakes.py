@@ -47,7 +47,9 @@ def refusal(error: ValidationError, content: Any, where: str) -> InputError:
 
 def _misnamed(error: ValidationError, content: Any) -> dict[tuple[str | int, ...], str]:
     """Mistakes of the parts that can be read, by their places."""
-    places = [one["loc"] for one in error.errors(include_url=False) if one["type"] != REFERENCE]
+    places = [
+        _in_file(one["loc"]) for one in error.errors(include_url=False) if one["type"] != REFERENCE
+    ]
     if not isinstance(content, dict) or not places or () in places:
         return {}
     rest, unread = _without(content, places)
@@ -86,15 +88,21 @@ def _words(error: ValidationError, content: Any) -> dict[tuple[str | int, ...], 
     """A sentence for each mistake, by its place: the first of those that it may be."""
     best: dict[tuple[str | int, ...], tuple[int, str]] = {}
     for one in error.errors(include_url=False):
+        loc = _in_file(one["loc"])
         if one["type"] == REFERENCE:  # a place may hold several of them
-            best[(*one["loc"], one["msg"])] = 0, _sentence(one["loc"], one)
+            best[(*loc, one["msg"])] = 0, _sentence(loc, one)
             continue
-        place = _place(one["loc"], one["type"] == "missing", content)
+        place = _place(loc, one["type"] == "missing", content)
         # Of the forms that a value may have, that to which it comes nearest.
-        depth = len(one["loc"])
+        depth = len(loc)
         if place.alternative not in best or depth > best[place.alternative][0]:
             best[place.alternative] = depth, _sentence(place.keys, one)
     return {place: words for place, (_, words) in best.items()}
+
+
+def _in_file(loc: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """Where a part of a model stands in its file: sensors of both sorts stand together."""
+    return ("sensors", *loc[1:]) if loc[:1] == ("modal_sensors",) else loc
 
 
 def _place(loc: tuple[str | int, ...], missing: bool, content: Any) -> _Place:

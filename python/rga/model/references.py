@@ -48,7 +48,7 @@ LONGEST_NAME = 200
 #: parts of a model whose entries have names
 NAMED = (
     "materials", "sections", "nodes", "members", "supports", "masses", "context", "effects",
-    "sensors",
+    "points", "modes", "sensors", "modal_sensors",
 )  # fmt: skip
 
 
@@ -100,8 +100,29 @@ def mistakes(model: "Model", unread: Unread = EVERYTHING_READ) -> Iterator[Mista
         yield from names.missing("members", listed(sensor.member), ("sensors", name, "member"))
         places = [place for place in (sensor.node, sensor.relative_to) if place is not None]
         yield from names.missing("nodes", places, ("sensors", name))
+    yield from _modal(model, names)
     for name, effect in model.effects.items():
         yield from effect_mistakes(model, effect, ("effects", name), unread)
+
+
+def _modal(model: "Model", names: "_Names") -> Iterator[Mistake]:
+    """What points, modes and their sensors name that there is not."""
+    for name, point in model.points.items():
+        yield from names.missing("nodes", [point.node], ("points", name, "node"))
+    for name, mode in model.modes.items():
+        yield from names.missing("points", mode.shape, ("modes", name, "shape"))
+        yield from names.missing("modes", mode.cluster, ("modes", name, "cluster"))
+    for name, sensor in model.modal_sensors.items():
+        place = ("sensors", name)
+        yield from names.missing("modes", [sensor.mode], (*place, "mode"))
+        yield from names.missing("points", listed(sensor.point), (*place, "point"))
+        read = model.modes.get(sensor.mode)
+        if sensor.point is None or read is None or read.computed is not None:
+            continue
+        if not read.shape:
+            yield place, f"mode {sensor.mode!r} has no shape: give 'shape' or 'computed'"
+        elif sensor.point not in read.shape:
+            yield place, f"mode {sensor.mode!r} has no motion at point {sensor.point!r}"
 
 
 def _unwritable(model: "Model") -> Iterator[Mistake]:
@@ -192,6 +213,8 @@ class _Names:
             "context": model.context,
             "effect": model.effects,
             "material": model.materials,
+            "point": model.points,
+            "mode": model.modes,
             "section": model.sections,
             "node": model.nodes,
         }

@@ -1,11 +1,16 @@
 """`rga modes`: natural frequencies and mode shapes."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rga.cli.options import GivenContexts, JsonTarget, ModelFile, settings, whole
+
+if TYPE_CHECKING:
+    from rga.arrays import FloatArray
+    from rga.simulation import ModalSimulator
+    from rga.simulation.modal.pairing import Pairing
 
 Count = Annotated[
     int,
@@ -17,6 +22,27 @@ Shapes = Annotated[
         "--output", "-o", metavar="FILE", help="Write the shapes of all nodes (CSV or Parquet)."
     ),
 ]
+
+
+def pairing_words(
+    simulator: "ModalSimulator", pairing: "Pairing", frequencies: "FloatArray"
+) -> str:
+    """Which computed mode each expected one is, a line each."""
+    lines = ["expected   near [Hz]   computed     f [Hz]   off [%]    MAC"]
+    for (name, one), at, alike in zip(
+        simulator.expected.items(), pairing.computed, pairing.mac, strict=True
+    ):
+        if at < 0:
+            lines.append(f"{name:<10} {one.near:9.4f}   none is left for it")
+            continue
+        off = 100 * (frequencies[at] / one.near - 1)
+        mac = f"{alike[at]:6.3f}" if len(one.shape) else "by frequency only"
+        lines.append(
+            f"{name:<10} {one.near:9.4f}   {at + 1:8} {frequencies[at]:10.4f}  {off:+8.2f} {mac}"
+        )
+    if pairing.others:
+        lines.append(f"{len(pairing.others)} other pairings are nearly as probable.")
+    return "\n".join(lines)
 
 
 def modes(
@@ -32,9 +58,11 @@ def modes(
     """
     from rga.cli.output import write_json
     from rga.model import load_model
+    from rga.simulation import ModalSimulator
     from rga.simulation import modes as modes_of
 
-    found = modes_of(load_model(model), count, settings(contexts, "--contexts"))
+    structure, given = load_model(model), settings(contexts, "--contexts")
+    found = modes_of(structure, count, given)
     if json is not None:
         write_json(found.content(), json)
     if output is not None:
@@ -47,4 +75,7 @@ def modes(
         most = f"{line['most at']} along {line['most along']}"
         typer.echo(f"{line['mode']:4} {line['f']:10.4f}   {shares}   {most}")
     tons = ", ".join(f"{mass / 1000:.4g}" for mass in found.mass)
+    if structure.modes:
+        simulator = ModalSimulator(structure)
+        typer.echo(pairing_words(simulator, *simulator.pair(given)[:2]))
     typer.echo(f"Mass that moves along x, y, z: {tons} t, that of held nodes included.")

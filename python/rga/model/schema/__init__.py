@@ -1,6 +1,7 @@
 """The model file, part by part."""
 
 from rga.model.schema.context_variable import ContextVariable
+from rga.model.schema.modal import ExpectedMode, MeasuringPoint, ModalSensor
 from rga.model.schema.model_file import UNREAD, Analysis, Model, model_schema, read_effect
 from rga.model.schema.parts import (
     DOFS,
@@ -28,9 +29,12 @@ __all__ = [
     "Dof",
     "EndSprings",
     "Ends",
+    "ExpectedMode",
     "Mass",
     "Material",
+    "MeasuringPoint",
     "Member",
+    "ModalSensor",
     "Model",
     "Section",
     "Sensor",

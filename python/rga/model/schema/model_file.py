@@ -22,6 +22,7 @@ from rga.model.parameter import listed
 from rga.model.pictured import Pictured
 from rga.model.references import EVERYTHING_READ, Mistake, effect_mistakes, mistakes, refuse
 from rga.model.schema.context_variable import ContextVariable
+from rga.model.schema.modal import ExpectedMode, MeasuringPoint, ModalSensor, is_modal
 from rga.model.schema.parts import (
     About,
     Mass,
@@ -74,6 +75,9 @@ class Model(Pictured, Part):
 
     Attributes:
         schema_file: the JSON Schema by which an editor completes the file (`"$schema"`).
+        sensors: of what the structure does under loads.
+        modal_sensors: of its natural frequencies and mode shapes; they stand among `sensors` in the
+            file.
     """
 
     model_config = ConfigDict(serialize_by_alias=True, validate_by_name=True)
@@ -93,11 +97,25 @@ class Model(Pictured, Part):
     masses: dict[str, Mass] = {}
     context: dict[str, ContextVariable] = {}
     effects: dict[str, Annotated[SerializeAsAny[Effect], BeforeValidator(_of_vocabulary)]] = {}
+    points: dict[str, MeasuringPoint] = {}
+    modes: dict[str, ExpectedMode] = {}
     sensors: dict[str, Sensor] = {}
+    modal_sensors: dict[str, ModalSensor] = {}
     analysis: Analysis = Analysis()
 
     _sha256: str = PrivateAttr(default="")
     _path: Path | None = PrivateAttr(default=None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _sensors_apart(cls, given: Any) -> Any:
+        if not isinstance(given, dict) or not isinstance(given.get("sensors"), Mapping):
+            return given
+        modal = {name: one for name, one in given["sensors"].items() if is_modal(one)}
+        if not modal:
+            return given
+        static = {name: one for name, one in given["sensors"].items() if name not in modal}
+        return {**given, "sensors": static, "modal_sensors": modal}
 
     @model_validator(mode="after")
     def _references(self, info: ValidationInfo) -> "Model":
@@ -191,6 +209,11 @@ def model_schema() -> dict[str, Any]:
             definition["description"] = kind_text(kind)
             for name, text in field_texts(kind).items():
                 properties[name]["description"] = text
+    sensors = schema["properties"]["sensors"]
+    modal = schema["properties"].pop("modal_sensors")
+    sensors["additionalProperties"] = {
+        "anyOf": [sensors["additionalProperties"], modal["additionalProperties"]]
+    }
     schema["$defs"] = {**schema["$defs"], **effects.pop("$defs")}
     schema["$defs"].pop("Effect", None)
     schema["properties"]["effects"]["additionalProperties"] = effects

@@ -162,11 +162,16 @@ def structure_under(model: Model, contexts: Contexts | None) -> Structure:
     simulator = Simulator(silent, build_structure(silent))
     request = simulator.assembly.request(simulator.parameters(given), 1)
     structure = request.change(request.states[request.state_of_row[0]])
+    refuse_nonlinear(structure, model.name)
+    return structure
+
+
+def refuse_nonlinear(structure: Structure, name: str) -> None:
+    """Refuse a structure that has no natural frequency of its own (InputError)."""
     if not structure.linear:
         raise InputError(
             "the structure has friction, play, slack or large displacements, and so no natural "
             "frequency that is the same for every motion",
-            f"model {model.name!r}",
+            f"model {name!r}",
             "leave out these effects, or put stiffnesses in their place",
         )
-    return structure

@@ -1,0 +1,1 @@
+"""Modes: natural frequencies and shapes of a structure, and which is which."""

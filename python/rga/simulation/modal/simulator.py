@@ -1,0 +1,168 @@
+"""Contexts in, natural frequencies and mode shapes out."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rga import _core
+from rga.arrays import FloatArray, IntArray
+from rga.errors import InputError
+from rga.model import as_model
+from rga.model.effect import when_all_act
+from rga.model.schema import ExpectedMode, Model
+from rga.model.structure import Structure, build_structure
+from rga.simulation.contexts import Contexts, contexts_by_name
+from rga.simulation.modal.analysis import refuse_nonlinear
+from rga.simulation.modal.pairing import Expected, Pairing, paired, turned
+from rga.simulation.paths.response import refused
+from rga.simulation.simulator import Simulator
+
+#: modes beyond the expected ones that are computed, so that none is missed in its place
+BEYOND = 4
+#: shares of its frequency, in those that a mode may well differ by, within which it is looked for
+REACH = 3.0
+#: modes of a structure that are looked at, at most
+MOST = 200
+
+
+class ModalSimulator:
+    """What frequency and mode_shape sensors read of a model.
+
+    A mode is known by its shape: the computed mode that it is may have any number, and another one
+    under other contexts.
+
+    Args:
+        model: the structure with its effects, points, modes and sensors, or its file.
+
+    Attributes:
+        model: itself.
+        expected: modes of the model by name, those computed among them with their shapes.
+
+    Raises:
+        InputError: the model expects no mode, or one that cannot be computed.
+    """
+
+    def __init__(self, model: Model | str | Path) -> None:
+        self.model = as_model(model)
+        if not self.model.modes:
+            raise InputError("no mode is expected", f"model {self.model.name!r}", "state its modes")
+        bare = {name: one for name, one in self.model.effects.items() if not one.at_sensors()}
+        silent = self.model.model_copy(update={"sensors": {}, "effects": bare})
+        self._begun = when_all_act(bare.values())
+        self._simulator = Simulator(silent, build_structure(silent))
+        names = list(self.model.points)
+        self._points = {name: number for number, name in enumerate(names)}
+        nodes = {name: number for number, name in enumerate(self.model.nodes)}
+        points = self.model.points.values()
+        self._nodes = np.array([nodes[one.node] for one in points], dtype=np.int64)
+        directions = np.array([one.direction for one in points], dtype=float).reshape(-1, 3)
+        self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        self.expected = {name: self._look(name, one) for name, one in self.model.modes.items()}
+
+    def predict(self, contexts: Contexts | None = None) -> FloatArray:
+        """What the sensors read.
+
+        Args:
+            contexts: as for `Simulator.predict`; None for a model that no context drives.
+
+        Returns:
+            float[rows, modal sensors] in their units, in the order of the model. A mode shape is to
+            the scale of what is expected of the mode.
+
+        Raises:
+            InputError: as for `Simulator.predict`; the structure is not linear, or leaves no mode
+                for one that is expected.
+            UnstableStructureError: the structure can move; names node and direction.
+        """
+        states = self._states(contexts)
+        found = np.array([self._read(structure) for structure in states[0]])
+        return found.reshape(len(states[0]), len(self.model.modal_sensors))[states[1]]
+
+    def pair(self, contexts: Contexts | None = None) -> tuple[Pairing, FloatArray, FloatArray]:
+        """Which computed mode is which, under one row of contexts.
+
+        Returns:
+            The pairing; computed frequencies [Hz], float[computed]; their shapes at the points of
+            the model for a modal mass of 1 kg, float[computed, points].
+
+        Raises:
+            InputError: as `predict`; there is more than one row.
+        """
+        structures, rows = self._states(contexts)
+        if len(rows) != 1:
+            raise InputError("there is more than one row", "contexts of modes", "give one row")
+        frequencies, shapes = self._computed(structures[0])
+        return paired(list(self.expected.values()), frequencies, shapes), frequencies, shapes
+
+    def _look(self, name: str, mode: ExpectedMode) -> Expected:
+        at = np.array([self._points[point] for point in mode.shape], dtype=np.int64)
+        shape = np.array(list(mode.shape.values()), dtype=float)
+        if mode.computed is not None:
+            structures, _ = self._states(self._middle())
+            frequencies, shapes = self._at_points(structures[0], mode.computed)
+            if len(frequencies) < mode.computed:
+                raise InputError(
+                    f"the model has {len(frequencies)} modes, and mode {name!r} is number "
+                    f"{mode.computed}",
+                    f"modes of model {self.model.name!r}",
+                    "state a lower number, or more masses",
+                )
+            at, shape = np.arange(len(self._points)), shapes[mode.computed - 1]
+        return Expected(mode.near, mode.within, at, shape)
+
+    def _middle(self) -> dict[str, float]:
+        """Contexts in the middle of their ranges."""
+        return {name: sum(one.range) / 2 for name, one in self.model.context.items()}
+
+    def _states(self, contexts: Contexts | None) -> tuple[list[Structure], IntArray]:
+        """The structures of some rows, and the number of each row's own."""
+        given = {} if contexts is None else dict(contexts_by_name(contexts, self.model.context))
+        if self._begun is not None and "time" not in given:
+            given["time"] = self._begun
+        values = self._simulator.parameters(given)
+        rows = max((np.size(column) for column in given.values()), default=1)
+        request = self._simulator.assembly.request(values, rows)
+        structures = [request.change(state) for state in request.states]
+        for structure in structures:
+            refuse_nonlinear(structure, self.model.name)
+        return structures, request.state_of_row
+
+    def _read(self, structure: Structure) -> FloatArray:
+        frequencies, shapes = self._computed(structure)
+        modes = list(self.expected.values())
+        pairing = paired(modes, frequencies, shapes)
+        at_points = turned(modes, pairing, frequencies, shapes)
+        numbers = {name: number for number, name in enumerate(self.expected)}
+        found = np.empty(len(self.model.modal_sensors))
+        for at, (name, sensor) in enumerate(self.model.modal_sensors.items()):
+            mode = numbers[sensor.mode]
+            if pairing.computed[mode] < 0:
+                raise InputError(
+                    f"no computed mode is left for {sensor.mode!r}",
+                    f"sensor {name!r}",
+                    "state modes that the model has, and masses for them",
+                )
+            found[at] = (
+                frequencies[pairing.computed[mode]]
+                if sensor.point is None
+                else at_points[mode, self._points[sensor.point]]
+            )
+        return found
+
+    def _computed(self, structure: Structure) -> tuple[FloatArray, FloatArray]:
+        """Modes up to where the expected ones may be, and some beyond."""
+        reach = max(one.near * np.exp(REACH * one.within) for one in self.expected.values())
+        count = len(self.expected) + BEYOND
+        while True:
+            frequencies, shapes = self._at_points(structure, count)
+            if len(frequencies) < count or frequencies[-1] > reach or count >= MOST:
+                return frequencies, shapes
+            count = min(2 * count, MOST)
+
+    def _at_points(self, structure: Structure, count: int) -> tuple[FloatArray, FloatArray]:
+        try:
+            squares, shapes, *_ = _core.modes(structure.arrays, structure.masses, count)
+        except (_core.UnstableStructure, _core.InvalidInput) as error:
+            raise refused(structure, error) from None
+        moved = np.einsum("mpk,pk->mp", shapes[:, self._nodes, :3], self._directions)
+        return np.sqrt(squares) / (2 * np.pi), moved
