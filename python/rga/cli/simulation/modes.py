@@ -9,12 +9,19 @@ from rga.cli.options import GivenContexts, JsonTarget, ModelFile, settings, whol
 
 if TYPE_CHECKING:
     from rga.arrays import FloatArray
+    from rga.model import Model
     from rga.simulation import ModalSimulator
     from rga.simulation.modal.pairing import Pairing
 
 Count = Annotated[
     int,
     typer.Option("--count", metavar="N", parser=whole(), help="How many modes: 1 to 1000."),
+]
+Modal = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="[MODAL]", help="Modes found in windows of time: which of those expected they are."
+    ),
 ]
 Shapes = Annotated[
     Path | None,
@@ -45,8 +52,36 @@ def pairing_words(
     return "\n".join(lines)
 
 
+def record_words(structure: "Model", file: Path, simulator: "ModalSimulator") -> str:
+    """Which modes of a record are which, and how often each was found."""
+    from rga.quantities import counted
+    from rga.records.modal.read import load_modal_record
+    from rga.simulation.modal.windows import named_modes, summary
+
+    record = load_modal_record(file, structure)
+    named = named_modes(record, structure, simulator.expected)
+    lines = ["measured   near [Hz]   found [%]     f [Hz]   scatter [%]    MAC"]
+    for line in summary(named, record, simulator.expected).iter_rows(named=True):
+        shown = f"{line['mode']:<10} {line['near']:9.4f}   {100 * line['found']:9.1f}"
+        if line["f"] is not None:
+            shown += f" {line['f']:10.4f}"
+            shown += " " * 14 if line["scatter"] is None else f"   {line['scatter']:11.3f}"
+            shown += "  by frequency only" if line["MAC"] is None else f" {line['MAC']:6.3f}"
+        lines.append(shown)
+    none = int((named.mode < 0).sum())
+    lines.append(
+        f"{counted(len(named.time), 'window')}, {len(record)} modes found in them, {none} of which "
+        f"are none of those expected; in {counted(len(named.doubtful), 'window')} another pairing "
+        "is nearly as probable."
+    )
+    if record.left_out:
+        lines.append(f"Columns that are not used: {', '.join(record.left_out)}.")
+    return "\n".join(lines)
+
+
 def modes(
     model: ModelFile,
+    record: Modal = None,
     count: Count = 10,
     contexts: GivenContexts = None,
     output: Shapes = None,
@@ -75,7 +110,9 @@ def modes(
         most = f"{line['most at']} along {line['most along']}"
         typer.echo(f"{line['mode']:4} {line['f']:10.4f}   {shares}   {most}")
     tons = ", ".join(f"{mass / 1000:.4g}" for mass in found.mass)
-    if structure.modes:
+    if structure.modes or record is not None:
         simulator = ModalSimulator(structure)
         typer.echo(pairing_words(simulator, *simulator.pair(given)[:2]))
+        if record is not None:
+            typer.echo(record_words(structure, record, simulator))
     typer.echo(f"Mass that moves along x, y, z: {tons} t, that of held nodes included.")

@@ -65,13 +65,19 @@ def mac(one: FloatArray, other: FloatArray) -> float:
     return float((one @ other) ** 2 / lengths) if lengths > 0 else 0.0
 
 
-def paired(expected: Sequence[Expected], frequencies: FloatArray, shapes: FloatArray) -> Pairing:
+def paired(
+    expected: Sequence[Expected],
+    frequencies: FloatArray,
+    shapes: FloatArray,
+    unpaired: float = IMPOSSIBLE,
+) -> Pairing:
     """The most probable pairing of all modes at once.
 
     Args:
         expected: modes.
-        frequencies: of computed modes [Hz], float[computed].
-        shapes: of these at all points, float[computed, points].
+        frequencies: of computed modes, or of those of a window [Hz], float[computed].
+        shapes: of these at all points, float[computed, points]; NaN where one did not measure.
+        unpaired: cost of a mode without a pair, as a negative logarithm of a probability.
     """
     table = np.array([[_mac(one, shape) for shape in shapes] for one in expected]).reshape(
         len(expected), len(shapes)
@@ -80,18 +86,18 @@ def paired(expected: Sequence[Expected], frequencies: FloatArray, shapes: FloatA
     within = np.array([one.within for one in expected])[:, None]
     cost = 0.5 * (np.log(frequencies / near) / within) ** 2
     cost = np.minimum(cost + np.nan_to_num(1.0 - table) / SHAPE_ERROR, IMPOSSIBLE)
-    best = _assigned(cost)
-    total = _cost(cost, best)
+    best = _assigned(cost, unpaired)
+    total = _cost(cost, best, unpaired)
     others: list[tuple[IntArray, float]] = []
     for number, chosen in enumerate(best):
         if chosen < 0:
             continue
         without = cost.copy()
         without[number, chosen] = IMPOSSIBLE
-        other = _assigned(without)
-        known = any(np.array_equal(other, one) for one, _ in others)
-        if _cost(cost, other) - total < DOUBTFUL and not known:
-            others.append((other, _cost(cost, other)))
+        other = _assigned(without, unpaired)
+        dearer = _cost(cost, other, unpaired) - total
+        if dearer < DOUBTFUL and not any(np.array_equal(other, one) for one, _ in others):
+            others.append((other, total + dearer))
     return Pairing(best, table, total, tuple(sorted(others, key=lambda one: one[1])))
 
 
@@ -127,18 +133,18 @@ def turned(
 
 
 def _mac(one: Expected, shape: FloatArray) -> float:
-    return mac(one.shape, shape[one.at]) if len(one.shape) else np.nan
+    seen = np.isfinite(shape[one.at])
+    return mac(one.shape[seen], shape[one.at][seen]) if seen.any() else np.nan
 
 
-def _assigned(cost: FloatArray) -> IntArray:
-    found = np.full(len(cost), -1, dtype=np.int64)
-    rows, columns = scipy.optimize.linear_sum_assignment(cost)
-    possible = cost[rows, columns] < IMPOSSIBLE
-    found[rows[possible]] = columns[possible]
-    return found
+def _assigned(cost: FloatArray, unpaired: float) -> IntArray:
+    count, computed = cost.shape
+    alone = np.full((count, count), unpaired)
+    _, columns = scipy.optimize.linear_sum_assignment(np.hstack([cost, alone]))
+    return np.where(columns < computed, columns, -1)
 
 
-def _cost(cost: FloatArray, chosen: IntArray) -> float:
+def _cost(cost: FloatArray, chosen: IntArray, unpaired: float) -> float:
     pairs = [(row, column) for row, column in enumerate(chosen) if column >= 0]
     lost = len(chosen) - len(pairs)
-    return float(sum(cost[pair] for pair in pairs)) + lost * IMPOSSIBLE
+    return float(sum(cost[pair] for pair in pairs)) + lost * unpaired

@@ -1,0 +1,1 @@
+"""Modal records: natural frequencies and mode shapes that were found in windows of time."""

@@ -1,0 +1,160 @@
+"""Reading a modal record: a long table, one line a mode found in a window."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from rga.arrays import FloatArray
+from rga.errors import InputError
+from rga.model import Model
+from rga.records.mapping import TimeColumns
+from rga.records.modal.record import ModalRecord
+from rga.records.read import read_table
+from rga.records.table import Table
+from rga.records.times import read_clock
+
+#: columns beside points and contexts
+TIME, DURATION, FREQUENCY, DEVIATION, DAMPING, HINT = (
+    "time", "duration", "f", "f_sd", "zeta", "mode",
+)  # fmt: skip
+#: ending of a column with the imaginary part of a shape at a point
+IMAGINARY = "_im"
+
+
+def load_modal_record(path: str | Path, model: Model) -> ModalRecord:
+    """Read modes found in windows: columns time, f and, where there are any, the others.
+
+    `time` is the middle of the window, `f` [Hz] the frequency; `duration` [s], `f_sd` [Hz], `zeta`
+    [-] and `mode`, a hint, may be there, and columns named after points and context variables of
+    the model. The imaginary part of a shape at point A1 is in a column A1_im.
+
+    Args:
+        path: CSV, Parquet or any other format of records.
+        model: whose points and contexts name columns.
+
+    Raises:
+        InputError: a column is missing or holds no number; a frequency is not above zero, as those
+            that are normalised; an imaginary part stands alone; or no entry is there.
+    """
+    known = (TIME, DURATION, FREQUENCY, DEVIATION, DAMPING, HINT, *model.points, *model.context)
+    table = read_table(path, known=known)
+    columns = table.frame.columns
+    if FREQUENCY not in columns:
+        raise InputError(
+            f"there is no column {FREQUENCY!r}",
+            f"{table.path}, columns {', '.join(columns[:12])}",
+            "give natural frequencies in Hz in a column f, one line a mode and window",
+        )
+    frequency = table.numbers(FREQUENCY)
+    bad = ~(frequency > 0)
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise InputError(
+            "there is no frequency" if np.isnan(frequency[row]) else f"{frequency[row]:g} is none",
+            table.where(row, FREQUENCY),
+            "give frequencies in Hz, not normalised; leave out the line of a mode not found",
+        )
+    points = tuple(name for name in model.points if name in columns)
+    alone = [name for name in model.points if name + IMAGINARY in columns and name not in columns]
+    if alone:
+        raise InputError(
+            f"column {alone[0] + IMAGINARY!r} has an imaginary part, and there is no {alone[0]!r}",
+            str(table.path),
+            "give the real part as well: without it the phase is not known",
+        )
+    shapes, realness = _shapes(table, points)
+    time, start = _time(table)
+    contexts = {name: table.numbers(name) for name in model.context if name in columns}
+    used = {*known, *(name + IMAGINARY for name in points)}
+    return ModalRecord(
+        time=time,
+        start=start,
+        duration=_above_zero(table, DURATION),
+        frequency=frequency,
+        frequency_sd=_above_zero(table, DEVIATION),
+        damping=_given(table, DAMPING),
+        points=points,
+        shapes=shapes,
+        realness=realness,
+        hint=tuple(
+            "" if one is None else str(one)
+            for one in (table.frame[HINT] if HINT in columns else [None] * len(frequency))
+        ),
+        contexts=contexts,
+        left_out=tuple(name for name in columns if name not in used),
+        sha256=table.sha256,
+    )
+
+
+def as_real(shapes: np.ndarray) -> tuple[FloatArray, FloatArray]:
+    """Complex shapes turned so that the sum of the squares of their real parts is largest.
+
+    Args:
+        shapes: complex[entries, points]; NaN where a point did not measure.
+
+    Returns:
+        float[entries, points], and the share of each that is real.
+
+    >>> turned, share = as_real(np.array([[1j, -2j]]))
+    >>> np.abs(turned.round(9)).tolist(), share.tolist()
+    ([[1.0, 2.0]], [1.0])
+    """
+    angle = 0.5 * np.angle(np.nansum(shapes**2, axis=1))
+    turned = shapes * np.exp(-1j * angle)[:, None]
+    whole = np.nansum(np.abs(turned) ** 2, axis=1)
+    real = np.nansum(turned.real**2, axis=1)
+    return turned.real, np.divide(real, whole, out=np.ones_like(whole), where=whole > 0)
+
+
+def _shapes(table: Table, points: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
+    rows = table.frame.height
+    real = np.array([table.numbers(name) for name in points]).reshape(-1, rows).T
+    phased = [name for name in points if name + IMAGINARY in table.frame.columns]
+    if not phased:
+        return real, np.ones(rows)
+    if len(phased) < len(points):
+        lacking = next(name for name in points if name not in phased)
+        raise InputError(
+            f"there is no column {lacking + IMAGINARY!r}, and other points have an imaginary part",
+            str(table.path),
+            "give it for all points, or for none",
+        )
+    imaginary = np.array([table.numbers(name + IMAGINARY) for name in points])
+    return as_real(real + 1j * imaginary.reshape(-1, rows).T)
+
+
+def _time(table: Table) -> tuple[FloatArray, str | float]:
+    """Times of all lines; several modes of one window have the same."""
+    if TIME not in table.frame.columns:
+        raise InputError(
+            f"there is no column {TIME!r}",
+            f"{table.path}, columns {', '.join(table.frame.columns[:12])}",
+            "give the middle of each window in a column time",
+        )
+    stamps = table.frame[TIME]
+    if stamps.null_count():
+        row = int(np.argmax(stamps.is_null().to_numpy()))
+        raise InputError("there is no time", table.where(row, TIME), "give one")
+    once = table.frame.unique(TIME, keep="first", maintain_order=True).sort(TIME)
+    clock = read_clock(replace(table, frame=once), TimeColumns())
+    number = {stamp: row for row, stamp in enumerate(once[TIME])}
+    rows = np.array([number[stamp] for stamp in stamps], dtype=np.int64)
+    return clock.seconds[rows], clock.start
+
+
+def _given(table: Table, column: str) -> FloatArray:
+    if column not in table.frame.columns:
+        return np.full(table.frame.height, np.nan)
+    return table.numbers(column)
+
+
+def _above_zero(table: Table, column: str) -> FloatArray:
+    found = _given(table, column)
+    bad = found <= 0
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise InputError(
+            f"{found[row]:g} is not above zero", table.where(row, column), "leave the cell empty"
+        )
+    return found

@@ -1,0 +1,54 @@
+"""Modes that were found in windows of time, before anybody knows which is which."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rga.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class ModalRecord:
+    """One entry for each mode that was found in a window; one that was not found has none.
+
+    Attributes:
+        time: middle of the window [s], float[entries], on the scale of `start`.
+        start: ISO 8601 time stamp of time 0, or a number of seconds.
+        duration: of the window [s], float[entries]; NaN where it is not said.
+        frequency: [Hz], float[entries].
+        frequency_sd: standard deviation that the identification states [Hz], float[entries]; NaN
+            where it states none. It weighs windows against each other, and is not believed.
+        damping: share of the critical one, float[entries]; NaN where it is not said.
+        points: names of the model's points at which shapes were measured.
+        shapes: motion there, float[entries, points], turned to be as real as it can be; NaN where
+            a point did not measure.
+        realness: share of a shape that is in phase, float[entries]; 1 where only real parts are
+            given.
+        hint: what the file calls the mode, one text an entry; empty where it says nothing.
+        contexts: context variables that the file has beside, float[entries] each.
+        left_out: columns that say nothing of this.
+        sha256: hash of the file.
+    """
+
+    time: FloatArray
+    start: str | float
+    duration: FloatArray
+    frequency: FloatArray
+    frequency_sd: FloatArray
+    damping: FloatArray
+    points: tuple[str, ...]
+    shapes: FloatArray
+    realness: FloatArray
+    hint: tuple[str, ...]
+    contexts: dict[str, FloatArray]
+    left_out: tuple[str, ...]
+    sha256: str
+
+    def __len__(self) -> int:
+        return len(self.frequency)
+
+    @property
+    def windows(self) -> IntArray:
+        """Number of the window of each entry, int[entries], in the order of time."""
+        _, number = np.unique(self.time, return_inverse=True)
+        return np.asarray(number.ravel(), dtype=np.int64)

@@ -1,0 +1,116 @@
+"""Modes of a record by name: in every window the most probable pairing with what is expected."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+from rga.arrays import FloatArray, IntArray
+from rga.model.schema import Model
+from rga.records.modal.record import ModalRecord
+from rga.simulation.modal.pairing import Expected, paired
+
+#: cost of a pair beyond which an entry is none of the expected modes: four standard deviations in
+#: frequency, say, or a MAC below 0.6
+MOST_COST = 8.0
+#: median size of the difference of two normal variables, in their standard deviation
+MEDIAN_STEP = 0.6744897501960817 * np.sqrt(2)
+
+
+@dataclass(frozen=True)
+class NamedModes:
+    """Modes of a record, named.
+
+    Attributes:
+        time: of the windows [s], float[windows].
+        mode: number of the expected mode of each entry, int[entries]; -1: it is none of them.
+        readings: of the modal sensors of the model, float[windows, sensors]; NaN where a mode was
+            not found.
+        mac: of the entries with their modes, float[entries]; NaN without shape.
+        doubtful: windows of which another pairing is nearly as probable, int.
+    """
+
+    time: FloatArray
+    mode: IntArray
+    readings: FloatArray
+    mac: FloatArray
+    doubtful: IntArray
+
+
+def summary(
+    named: NamedModes, record: ModalRecord, expected: Mapping[str, Expected]
+) -> pl.DataFrame:
+    """One line an expected mode: how often it was found, where, and how it scatters.
+
+    Columns: mode, near [Hz], found [share of the windows], f (median) [Hz], scatter [% of f, of one
+    window beside the next], MAC (median).
+    """
+    lines = []
+    for number, (name, look) in enumerate(expected.items()):
+        own = named.mode == number
+        frequency = record.frequency[own]
+        middle = float(np.median(frequency)) if own.any() else None
+        steps = np.diff(frequency[np.argsort(record.time[own])])
+        lines.append(
+            {
+                "mode": name,
+                "near": look.near,
+                "found": own.sum() / len(named.time),
+                "f": middle,
+                "scatter": (
+                    100 * float(np.median(np.abs(steps))) / MEDIAN_STEP / middle
+                    if middle is not None and len(steps)
+                    else None
+                ),
+                "MAC": float(np.median(named.mac[own])) if own.any() and len(look.shape) else None,
+            }
+        )
+    return pl.DataFrame(lines, infer_schema_length=None)
+
+
+def named_modes(record: ModalRecord, model: Model, expected: Mapping[str, Expected]) -> NamedModes:
+    """Name the modes of a record by their shapes, and by frequency where they have none.
+
+    Args:
+        record: of this model.
+        model: with modal sensors.
+        expected: modes of the model, as a `ModalSimulator` has them.
+    """
+    looks, names = list(expected.values()), list(expected)
+    known = {name: number for number, name in enumerate(model.points)}
+    shapes = np.full((len(record), len(model.points)), np.nan)
+    shapes[:, [known[name] for name in record.points]] = record.shapes
+    mode = np.full(len(record), -1, dtype=np.int64)
+    alike = np.full(len(record), np.nan)
+    windows = record.windows
+    doubtful = []
+    for window in range(windows.max(initial=-1) + 1):
+        entries = np.flatnonzero(windows == window)
+        pairing = paired(looks, record.frequency[entries], shapes[entries], MOST_COST)
+        if pairing.others:
+            doubtful.append(window)
+        for number, chosen in enumerate(pairing.computed):
+            if chosen >= 0:
+                mode[entries[chosen]] = number
+                alike[entries[chosen]] = pairing.mac[number, chosen]
+    readings = np.full((windows.max(initial=-1) + 1, len(model.modal_sensors)), np.nan)
+    for at, sensor in enumerate(model.modal_sensors.values()):
+        of_mode = np.flatnonzero(mode == names.index(sensor.mode))
+        if sensor.point is None:
+            readings[windows[of_mode], at] = record.frequency[of_mode]
+            continue
+        point = known[sensor.point]
+        look = expected[sensor.mode]
+        for entry in of_mode:
+            readings[windows[entry], at] = shapes[entry, point] * _scale(look, shapes[entry])
+    times = np.array([record.time[windows == one][0] for one in range(len(readings))])
+    return NamedModes(times, mode, readings, alike, np.array(doubtful, dtype=np.int64))
+
+
+def _scale(look: Expected, shape: FloatArray) -> float:
+    """Modal scale factor: by it a shape comes nearest to what is expected (least squares)."""
+    seen = np.isfinite(shape[look.at])
+    own = shape[look.at][seen]
+    length = float(own @ own)
+    return float(look.shape[seen] @ own) / length if length > 0 else np.nan

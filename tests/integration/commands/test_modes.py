@@ -1,0 +1,100 @@
+"""`rga modes`: frequencies, which mode is which, and those that were measured."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+import rga as package
+from rga.model.io import model_content
+
+
+def expected(way: str, sizes: dict[int, float]) -> dict[str, Any]:
+    shape = {f"{way}{at}": size for at, size in sizes.items()}
+    shape |= {f"{other}{at}": 0.0 for other in "XY" if other != way for at in sizes}
+    return {"near": 2.0, "within": 0.5, "shape": shape}
+
+
+@pytest.fixture
+def mast(tmp_path: Path) -> Path:
+    """A column on a stiff foot, sway in both directions expected by shape."""
+    build = package.ModelBuilder("mast").add_material("steel", E=210e9, density=7850)
+    build.add_section("tube", A=8e-3, Iy=2e-5, Iz=6e-5, J=4e-5)
+    for at in range(4):
+        build.add_node(f"n{at}", z=2.0 * at)
+        if at:
+            build.add_member(f"n{at - 1}", f"n{at}", "tube", kind="frame")
+    build.support("n0", "fixed").mass("n3", 400)
+    content: dict[str, Any] = model_content(build.build())
+    shape = {1: 0.15, 2: 0.52, 3: 1.0}
+    content["points"] = {
+        f"{way}{at}": {"node": f"n{at}", "direction": direction}
+        for way, direction in (("X", [1, 0, 0]), ("Y", [0, 1, 0]))
+        for at in shape
+    }
+    content["modes"] = {f"sway {way}": expected(way, shape) for way in "XY"}
+    path = tmp_path / "mast.json"
+    path.write_text(json.dumps(content))
+    return path
+
+
+def test_frequencies_and_the_mode_of_each_name(rga: Callable[..., Any], mast: Path) -> None:
+    done = rga("modes", mast, "--count", 4)
+    assert done.code == 0
+    assert "Mass that moves along x, y, z: 0.7768, 0.7768, 0.7768 t" in done.out
+    lines = {line.split("  ")[0]: line.split() for line in done.out.splitlines()}
+    assert {lines["sway X"][3], lines["sway Y"][3]} == {"1", "2"}
+    assert float(lines["sway X"][-1]) > 0.99
+
+
+def test_content_and_shapes(rga: Callable[..., Any], mast: Path, tmp_path: Path) -> None:
+    shapes = tmp_path / "shapes.csv"
+    done = rga("modes", mast, "--count", 3, "--json", "-", "-o", shapes)
+    content = json.loads(done.out)
+    assert [one["mode"] for one in content["modes"]] == [1, 2, 3]
+    assert content["model"]["sha256"] == package.load_model(mast).sha256
+    frame = pl.read_csv(shapes)
+    assert frame.shape == (3 * 4 * 6, 4)
+    found = package.modes(mast, 3)
+    np.testing.assert_allclose(frame["value"].to_numpy(), found.shapes.ravel())
+
+
+def test_measured_modes_get_their_names(
+    rga: Callable[..., Any], mast: Path, tmp_path: Path
+) -> None:
+    record = tmp_path / "modes.csv"
+    columns = [f"{way}{at}" for way in "XY" for at in (1, 2, 3)]
+    lines = ["time,f," + ",".join(columns)]
+    lines += [f"2026-03-01T12:{10 * k}:00,2.1,0,0,0,0.3,1.0,2.0" for k in range(1, 4)]
+    lines += ["2026-03-01T12:10:00,1.9,-0.1,-0.5,-1,0,0,0", "2026-03-01T12:10:00,9,1,1,-1,0,0,0"]
+    record.write_text("\n".join(lines) + "\n")
+    done = rga("modes", mast, record)
+    assert done.code == 0
+    measured = done.out[done.out.index("measured") :].splitlines()
+    assert measured[1].split()[:5] == ["sway", "X", "2.0000", "33.3", "1.9000"]
+    assert measured[2].split()[:5] == ["sway", "Y", "2.0000", "100.0", "2.1000"]
+    assert "3 windows, 5 modes found in them, 1 of which" in measured[3]
+
+
+def test_a_record_needs_modes_that_are_expected(
+    rga: Callable[..., Any], mast: Path, tmp_path: Path
+) -> None:
+    content = json.loads(mast.read_text())
+    del content["modes"]
+    mast.write_text(json.dumps(content))
+    record = tmp_path / "modes.csv"
+    record.write_text("time,f\n0,2.0\n")
+    done = rga("modes", mast, record)
+    assert done.code == 2
+    assert "no mode is expected" in done.err
+
+
+@pytest.mark.parametrize("count", ["0", "1001", "many"])
+def test_counts_that_are_none(rga: Callable[..., Any], mast: Path, count: str) -> None:
+    done = rga("modes", mast, "--count", count)
+    assert done.code == 2
+    assert "Traceback" not in done.err

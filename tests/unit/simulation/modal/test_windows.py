@@ -1,0 +1,152 @@
+"""Modes found in windows get their names by their shapes, whatever their order and number."""
+
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+import rga
+from rga.arrays import FloatArray
+from rga.model import Model, read_model
+from rga.records.modal.read import load_modal_record
+from rga.simulation.modal.simulator import ModalSimulator
+from rga.simulation.modal.windows import named_modes
+
+COUNT = 6
+POINTS = tuple(f"A{at}" for at in range(COUNT))
+ALONG = np.linspace(0.1, 0.9, COUNT)
+SHAPES = np.array([np.sin((k + 1) * np.pi * ALONG) for k in range(3)])
+NEAR = (4.0, 4.3, 9.0)
+START = "2026-03-01T12:00:00"
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    build = rga.ModelBuilder("beam", plane="xz").add_material("steel", E=210e9, density=7850)
+    build.add_section("box", A=0.02, Iy=4e-4)
+    for at, x in enumerate([0.0, *(10 * ALONG), 10.0]):
+        build.add_node(f"n{at}", x)
+        if at:
+            build.add_member(f"n{at - 1}", f"n{at}", "box", kind="frame")
+    build.support("n0", "pinned").support(f"n{COUNT + 1}", "uz")
+    build.context("air", "degC", (-20.0, 40.0))
+    content = build.build().model_dump(mode="json", exclude_defaults=True)
+    content["points"] = {
+        name: {"node": f"n{at + 1}", "direction": [0, 0, 1]} for at, name in enumerate(POINTS)
+    }
+    content["modes"] = {
+        f"m{k}": {"near": near, "shape": dict(zip(POINTS, SHAPES[k].tolist(), strict=True))}
+        for k, near in enumerate(NEAR)
+    }
+    content["sensors"] = {
+        **{f"f{k}": {"kind": "frequency", "mode": f"m{k}", "unit": "Hz"} for k in range(3)},
+        "a": {"kind": "mode_shape", "mode": "m1", "point": "A1", "unit": "-"},
+    }
+    return read_model(content, "a test")
+
+
+def table(entries: list[tuple[int, float, FloatArray]], **more: object) -> pl.DataFrame:
+    """Entries as (window, frequency, shape)."""
+    return pl.DataFrame(
+        {
+            "time": [f"2026-03-01T{12 + window}:00:00" for window, _, _ in entries],
+            "f": [frequency for _, frequency, _ in entries],
+            **{name: [shape[at] for _, _, shape in entries] for at, name in enumerate(POINTS)},
+            **more,
+        }
+    )
+
+
+def read(frame: pl.DataFrame, folder: Path, model: Model) -> rga.records.modal.record.ModalRecord:
+    file = folder / "modes.csv"
+    frame.write_csv(file)
+    return load_modal_record(file, model)
+
+
+def test_shapes_name_modes_that_trade_places(tmp_path: Path, model: Model) -> None:
+    entries = [
+        (0, 4.0, SHAPES[0]), (0, 4.3, 2 * SHAPES[1]), (0, 9.1, -SHAPES[2]),
+        (1, 4.1, -3 * SHAPES[1]), (1, 4.2, SHAPES[0]),
+    ]  # fmt: skip
+    record = read(table(entries), tmp_path, model)
+    assert record.windows.tolist() == [0, 0, 0, 1, 1]
+    assert (record.start, record.time[-1]) == (START, 3600.0)
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.mode.tolist() == [0, 1, 2, 1, 0]
+    expected = [[4.0, 4.3, 9.1, SHAPES[1, 1]], [4.2, 4.1, np.nan, SHAPES[1, 1]]]
+    np.testing.assert_allclose(found.readings, expected, rtol=1e-9)
+    assert not len(found.doubtful)
+
+
+def test_what_is_no_expected_mode_has_no_name(tmp_path: Path, model: Model) -> None:
+    odd = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
+    record = read(
+        table([(0, 4.05, SHAPES[0]), (0, 4.2, odd), (0, 30.0, SHAPES[2])]), tmp_path, model
+    )
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.mode.tolist() == [0, -1, -1]
+
+
+def test_points_that_did_not_measure_are_left_aside(tmp_path: Path, model: Model) -> None:
+    shape = SHAPES[1].copy()
+    shape[[0, 4]] = np.nan
+    record = read(table([(0, 4.3, shape)]), tmp_path, model)
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.mode.tolist() == [1]
+    assert found.mac[0] == pytest.approx(1.0)
+
+
+def test_complex_shapes_are_turned(tmp_path: Path, model: Model) -> None:
+    turned = SHAPES[1] * np.exp(0.8j)
+    frame = table([(0, 4.3, turned.real)]).with_columns(
+        **{f"{name}_im": pl.Series([turned[at].imag]) for at, name in enumerate(POINTS)}
+    )
+    record = read(frame, tmp_path, model)
+    assert record.realness.tolist() == pytest.approx([1.0])
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    assert found.readings[0, 3] == pytest.approx(SHAPES[1, 1])
+
+
+def test_contexts_and_other_columns(tmp_path: Path, model: Model) -> None:
+    record = read(table([(0, 4.0, SHAPES[0])], air=[3.5], operator=["Ada"]), tmp_path, model)
+    assert record.contexts["air"].tolist() == [3.5]
+    assert record.left_out == ("operator",)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"f": pl.lit(-0.4)}, "not normalised"),
+        ({"f": pl.lit(None)}, "there is no frequency"),
+        ({"f": pl.lit("x")}, "is no number"),
+        ({"time": pl.lit(None)}, "there is no time"),
+        ({"duration": pl.lit(0.0)}, "is not above zero"),
+        ({"f_sd": pl.lit(-1.0)}, "is not above zero"),
+        ({"A0_im": pl.lit(1.0)}, "other points have an imaginary part"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(
+    tmp_path: Path, model: Model, change: dict[str, pl.Expr], told: str
+) -> None:
+    frame = table([(0, 4.0, SHAPES[0]), (0, 4.3, SHAPES[1])]).with_columns(**change)
+    with pytest.raises(rga.InputError) as refused:
+        read(frame, tmp_path, model)
+    assert told in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("columns", "told"),
+    [
+        (["time", *POINTS], "no column 'f'"),
+        (["f", *POINTS], "no column 'time'"),
+        (["time", "f", "A0_im"], "there is no 'A0'"),
+    ],
+)
+def test_columns_that_are_missing(
+    tmp_path: Path, model: Model, columns: list[str], told: str
+) -> None:
+    frame = table([(0, 4.0, SHAPES[0])], A0_im=[0.0]).select(columns)
+    with pytest.raises(rga.InputError, match="there is no") as refused:
+        read(frame, tmp_path, model)
+    assert told in str(refused.value)
