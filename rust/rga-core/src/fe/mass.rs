@@ -16,7 +16,7 @@ use crate::input::Masses;
 const POINTS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_13, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
@@ -75,7 +75,7 @@ fn member_mass(member: &Member, line: LineMass, mut add: impl FnMut(usize, usize
 
 /// Between the nodes, in local axes.
 fn frame_mass(frame: &Frame, line: LineMass) -> Matrix12 {
-    let mut mass = frame.from_beam(&beam_mass(&frame.beam, line));
+    let mut mass = frame.at_nodes(&beam_mass(&frame.beam, line));
     for (end, reach) in [(0, frame.rigid[0]), (1, -frame.rigid[1])] {
         mass += zone_mass(end, reach, line);
     }

@@ -221,7 +221,7 @@ impl Frame {
     }
 
     /// A form of the motions of the bare beam's ends, as one of the motions of the nodes.
-    pub(crate) fn from_beam(&self, form: &Matrix12) -> Matrix12 {
+    pub(crate) fn at_nodes(&self, form: &Matrix12) -> Matrix12 {
         let mut behind = Matrix12::identity();
         for mut motions in behind.column_iter_mut() {
             let inner = self.connection.inner(&motions.clone_owned());
