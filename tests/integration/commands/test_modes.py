@@ -78,6 +78,8 @@ def test_measured_modes_get_their_names(
     assert measured[1].split()[:5] == ["sway", "X", "2.0000", "33.3", "1.9000"]
     assert measured[2].split()[:5] == ["sway", "Y", "2.0000", "100.0", "2.1000"]
     assert "3 windows, 5 modes found in them, 1 of which" in measured[3]
+    content = json.loads(rga("modes", mast, record, "--json", "-").out)
+    assert [one["found"] for one in content["measured"]] == pytest.approx([1 / 3, 1.0])
 
 
 def test_a_record_needs_modes_that_are_expected(

@@ -8,10 +8,13 @@ import typer
 from rga.cli.options import GivenContexts, JsonTarget, ModelFile, settings, whole
 
 if TYPE_CHECKING:
+    from polars import DataFrame
+
     from rga.arrays import FloatArray
-    from rga.model import Model
+    from rga.records.modal.record import ModalRecord
     from rga.simulation import ModalSimulator
     from rga.simulation.modal.pairing import Pairing
+    from rga.simulation.modal.windows import NamedModes
 
 Count = Annotated[
     int,
@@ -52,16 +55,12 @@ def pairing_words(
     return "\n".join(lines)
 
 
-def record_words(structure: "Model", file: Path, simulator: "ModalSimulator") -> str:
+def measured_words(measured: "DataFrame", named: "NamedModes", record: "ModalRecord") -> str:
     """Which modes of a record are which, and how often each was found."""
     from rga.quantities import counted
-    from rga.records.modal.read import load_modal_record
-    from rga.simulation.modal.windows import named_modes, summary
 
-    record = load_modal_record(file, structure)
-    named = named_modes(record, structure, simulator.expected)
     lines = ["measured   near [Hz]   found [%]     f [Hz]   scatter [%]    MAC"]
-    for line in summary(named, record, simulator.expected).iter_rows(named=True):
+    for line in measured.iter_rows(named=True):
         shown = f"{line['mode']:<10} {line['near']:9.4f}   {100 * line['found']:9.1f}"
         if line["f"] is not None:
             shown += f" {line['f']:10.4f}"
@@ -93,13 +92,25 @@ def modes(
     """
     from rga.cli.output import write_json
     from rga.model import load_model
+    from rga.records.modal.read import load_modal_record
     from rga.simulation import ModalSimulator
     from rga.simulation import modes as modes_of
+    from rga.simulation.modal.windows import named_modes, summary
 
     structure, given = load_model(model), settings(contexts, "--contexts")
     found = modes_of(structure, count, given)
+    simulator = ModalSimulator(structure) if structure.modes or record is not None else None
+    words, content = [], found.content()
+    if simulator is not None:
+        words.append(pairing_words(simulator, *simulator.pair(given)[:2]))
+    if simulator is not None and record is not None:
+        read = load_modal_record(record, structure)
+        named = named_modes(read, structure, simulator.expected)
+        measured = summary(named, read, simulator.expected)
+        words.append(measured_words(measured, named, read))
+        content |= {"record": {"sha256": read.sha256}, "measured": measured.to_dicts()}
     if json is not None:
-        write_json(found.content(), json)
+        write_json(content, json)
     if output is not None:
         found.write(output)
     if json == "-":
@@ -110,9 +121,6 @@ def modes(
         most = f"{line['most at']} along {line['most along']}"
         typer.echo(f"{line['mode']:4} {line['f']:10.4f}   {shares}   {most}")
     tons = ", ".join(f"{mass / 1000:.4g}" for mass in found.mass)
-    if structure.modes or record is not None:
-        simulator = ModalSimulator(structure)
-        typer.echo(pairing_words(simulator, *simulator.pair(given)[:2]))
-        if record is not None:
-            typer.echo(record_words(structure, record, simulator))
+    for one in words:
+        typer.echo(one)
     typer.echo(f"Mass that moves along x, y, z: {tons} t, that of held nodes included.")

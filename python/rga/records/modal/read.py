@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 
 from rga.arrays import FloatArray
 from rga.errors import InputError
@@ -136,11 +137,21 @@ def _time(table: Table) -> tuple[FloatArray, str | float]:
     if stamps.null_count():
         row = int(np.argmax(stamps.is_null().to_numpy()))
         raise InputError("there is no time", table.where(row, TIME), "give one")
-    once = table.frame.unique(TIME, keep="first", maintain_order=True).sort(TIME)
+    once = _in_time(table.frame.unique(TIME, keep="first", maintain_order=True))
     clock = read_clock(replace(table, frame=once), TimeColumns())
     number = {stamp: row for row, stamp in enumerate(once[TIME])}
     rows = np.array([number[stamp] for stamp in stamps], dtype=np.int64)
     return clock.seconds[rows], clock.start
+
+
+def _in_time(once: pl.DataFrame) -> pl.DataFrame:
+    """Lines in the order of their times, where that of these is told without a calendar."""
+    stamps = once[TIME]
+    number = stamps.cast(pl.Float64, strict=False)
+    if not number.null_count():
+        return once[number.arg_sort()]
+    year_first = stamps.cast(pl.String).str.contains(r"^\d{4}-").all()
+    return once.sort(TIME) if year_first else once
 
 
 def _given(table: Table, column: str) -> FloatArray:

@@ -7,20 +7,16 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from rga import _core
 from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.files import write_table
 from rga.model import as_model
-from rga.model.effect import when_all_act
 from rga.model.schema import DOFS, Model
-from rga.model.structure import Structure, build_structure
 from rga.notebook import short_html
 from rga.provenance import versions
 from rga.quantities import counted
-from rga.simulation.contexts import Contexts, contexts_by_name
-from rga.simulation.paths.response import refused
-from rga.simulation.simulator import Simulator
+from rga.simulation.contexts import Contexts
+from rga.simulation.modal.structures import ModalStructures, computed_modes
 
 #: modes that may be asked for
 MOST = 1000
@@ -132,46 +128,9 @@ def modes(model: Model | str | Path, count: int = 10, contexts: Contexts | None 
     model = as_model(model)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
         raise InputError(f"there cannot be {count!r} modes", "modes", f"give 1 to {MOST}")
-    structure = structure_under(model, contexts)
-    try:
-        squares, shapes, participation, mass = _core.modes(
-            structure.arrays, structure.masses, count
-        )
-    except (_core.UnstableStructure, _core.InvalidInput) as error:
-        raise refused(structure, error) from None
-    nodes = len(model.nodes)
+    structure = ModalStructures(model).one_under(contexts)
+    frequencies, shapes, participation, mass = computed_modes(structure, count)
     with np.errstate(divide="ignore", invalid="ignore"):
         participating = np.where(mass > 0, participation**2 / mass, 0.0)
-    return Modes(model, np.sqrt(squares) / (2 * np.pi), shapes[:, :nodes], mass, participating)
-
-
-def structure_under(model: Model, contexts: Contexts | None) -> Structure:
-    """The structure that effects make of a model under one row of contexts.
-
-    Raises:
-        InputError: as `modes`.
-    """
-    bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
-    silent = model.model_copy(update={"sensors": {}, "effects": bare})
-    given = {} if contexts is None else dict(contexts_by_name(contexts, model.context))
-    if any(np.size(column) != 1 for column in given.values()):
-        raise InputError("there is more than one row", "contexts of modes", "give one row")
-    begun = when_all_act(bare.values())
-    if begun is not None and "time" not in given:
-        given["time"] = begun
-    simulator = Simulator(silent, build_structure(silent))
-    request = simulator.assembly.request(simulator.parameters(given), 1)
-    structure = request.change(request.states[request.state_of_row[0]])
-    refuse_nonlinear(structure, model.name)
-    return structure
-
-
-def refuse_nonlinear(structure: Structure, name: str) -> None:
-    """Refuse a structure that has no natural frequency of its own (InputError)."""
-    if not structure.linear:
-        raise InputError(
-            "the structure has friction, play, slack or large displacements, and so no natural "
-            "frequency that is the same for every motion",
-            f"model {name!r}",
-            "leave out these effects, or put stiffnesses in their place",
-        )
+    # Nodes that effects have added are none of the model.
+    return Modes(model, frequencies, shapes[:, : len(model.nodes)], mass, participating)

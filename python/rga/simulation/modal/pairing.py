@@ -8,7 +8,7 @@ import scipy
 
 from rga.arrays import FloatArray, IntArray
 
-#: standard deviation of 1 - MAC of a mode and itself, where the model errs and sensors are noisy
+#: what 1 - MAC of a mode and itself is, on average, where the model errs and sensors are noisy
 SHAPE_ERROR = 0.05
 #: pairings that are as good but for this are all carried: a factor of a hundred in probability
 DOUBTFUL = 4.6

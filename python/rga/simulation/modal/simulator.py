@@ -4,18 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
-from rga import _core
-from rga.arrays import FloatArray, IntArray
+from rga.arrays import FloatArray
 from rga.errors import InputError
 from rga.model import as_model
-from rga.model.effect import when_all_act
 from rga.model.schema import ExpectedMode, Model
-from rga.model.structure import Structure, build_structure
-from rga.simulation.contexts import Contexts, contexts_by_name
-from rga.simulation.modal.analysis import refuse_nonlinear
+from rga.model.structure import Structure
+from rga.simulation.contexts import Contexts
 from rga.simulation.modal.pairing import Expected, Pairing, paired, turned
-from rga.simulation.paths.response import refused
-from rga.simulation.simulator import Simulator
+from rga.simulation.modal.structures import ModalStructures, computed_modes
 
 #: modes beyond the expected ones that are computed, so that none is missed in its place
 BEYOND = 4
@@ -46,10 +42,7 @@ class ModalSimulator:
         self.model = as_model(model)
         if not self.model.modes:
             raise InputError("no mode is expected", f"model {self.model.name!r}", "state its modes")
-        bare = {name: one for name, one in self.model.effects.items() if not one.at_sensors()}
-        silent = self.model.model_copy(update={"sensors": {}, "effects": bare})
-        self._begun = when_all_act(bare.values())
-        self._simulator = Simulator(silent, build_structure(silent))
+        self._structures = ModalStructures(self.model)
         names = list(self.model.points)
         self._points = {name: number for number, name in enumerate(names)}
         nodes = {name: number for number, name in enumerate(self.model.nodes)}
@@ -74,9 +67,9 @@ class ModalSimulator:
                 for one that is expected.
             UnstableStructureError: the structure can move; names node and direction.
         """
-        states = self._states(contexts)
-        found = np.array([self._read(structure) for structure in states[0]])
-        return found.reshape(len(states[0]), len(self.model.modal_sensors))[states[1]]
+        structures, of_row = self._structures.under(contexts)
+        found = np.array([self._read(structure) for structure in structures])
+        return found.reshape(len(structures), len(self.model.modal_sensors))[of_row]
 
     def pair(self, contexts: Contexts | None = None) -> tuple[Pairing, FloatArray, FloatArray]:
         """Which computed mode is which, under one row of contexts.
@@ -88,18 +81,16 @@ class ModalSimulator:
         Raises:
             InputError: as `predict`; there is more than one row.
         """
-        structures, rows = self._states(contexts)
-        if len(rows) != 1:
-            raise InputError("there is more than one row", "contexts of modes", "give one row")
-        frequencies, shapes = self._computed(structures[0])
+        frequencies, shapes = self._computed(self._structures.one_under(contexts))
         return paired(list(self.expected.values()), frequencies, shapes), frequencies, shapes
 
     def _look(self, name: str, mode: ExpectedMode) -> Expected:
         at = np.array([self._points[point] for point in mode.shape], dtype=np.int64)
         shape = np.array(list(mode.shape.values()), dtype=float)
         if mode.computed is not None:
-            structures, _ = self._states(self._middle())
-            frequencies, shapes = self._at_points(structures[0], mode.computed)
+            middle = {name: sum(one.range) / 2 for name, one in self.model.context.items()}
+            structure = self._structures.one_under(middle)
+            frequencies, shapes = self._at_points(structure, mode.computed)
             if len(frequencies) < mode.computed:
                 raise InputError(
                     f"the model has {len(frequencies)} modes, and mode {name!r} is number "
@@ -109,23 +100,6 @@ class ModalSimulator:
                 )
             at, shape = np.arange(len(self._points)), shapes[mode.computed - 1]
         return Expected(mode.near, mode.within, at, shape)
-
-    def _middle(self) -> dict[str, float]:
-        """Contexts in the middle of their ranges."""
-        return {name: sum(one.range) / 2 for name, one in self.model.context.items()}
-
-    def _states(self, contexts: Contexts | None) -> tuple[list[Structure], IntArray]:
-        """The structures of some rows, and the number of each row's own."""
-        given = {} if contexts is None else dict(contexts_by_name(contexts, self.model.context))
-        if self._begun is not None and "time" not in given:
-            given["time"] = self._begun
-        values = self._simulator.parameters(given)
-        rows = max((np.size(column) for column in given.values()), default=1)
-        request = self._simulator.assembly.request(values, rows)
-        structures = [request.change(state) for state in request.states]
-        for structure in structures:
-            refuse_nonlinear(structure, self.model.name)
-        return structures, request.state_of_row
 
     def _read(self, structure: Structure) -> FloatArray:
         frequencies, shapes = self._computed(structure)
@@ -160,9 +134,5 @@ class ModalSimulator:
             count = min(2 * count, MOST)
 
     def _at_points(self, structure: Structure, count: int) -> tuple[FloatArray, FloatArray]:
-        try:
-            squares, shapes, *_ = _core.modes(structure.arrays, structure.masses, count)
-        except (_core.UnstableStructure, _core.InvalidInput) as error:
-            raise refused(structure, error) from None
-        moved = np.einsum("mpk,pk->mp", shapes[:, self._nodes, :3], self._directions)
-        return np.sqrt(squares) / (2 * np.pi), moved
+        frequencies, shapes, _, _ = computed_modes(structure, count)
+        return frequencies, np.einsum("mpk,pk->mp", shapes[:, self._nodes, :3], self._directions)

@@ -3,14 +3,13 @@
 use crate::error::{Error, Result};
 use crate::fe::assembly::{assemble_mass, assemble_shifted};
 use crate::fe::constraint::Constraints;
-use crate::fe::free_rotations::FreeRotation;
 use crate::fe::mass::for_each_mass;
 use crate::fe::model::Model;
 use crate::fe::reduction::Reduction;
 use crate::fe::stability::Solver;
 use crate::input::{Masses, Structure};
 use crate::sparse::inertia::negative_eigenvalues;
-use crate::sparse::lanczos::{Lanczos, Pencil, RitzPairs};
+use crate::sparse::lanczos::{Lanczos, Pencil, RitzPairs, dot};
 use crate::sparse::lower_triangle::LowerTriangle;
 use crate::validate::masses::check_masses;
 use crate::validate::structure::check_structure;
@@ -86,7 +85,6 @@ struct Motion {
     reduction: Reduction,
     solver: Solver,
     mass: LowerTriangle,
-    free_rotations: Vec<FreeRotation>,
 }
 
 impl Motion {
@@ -111,7 +109,6 @@ impl Motion {
             return Err(Error::invalid("the masses overflow; check their sizes"));
         }
         Ok(Self {
-            free_rotations: solver.free_rotations().to_vec(),
             model,
             reduction,
             solver,
@@ -122,7 +119,7 @@ impl Motion {
     /// Modes below a shift.
     fn below(&self, shift: f64, masses: &Masses) -> Result<usize> {
         let mut shifted = assemble_shifted(&self.model, &self.reduction, masses, shift);
-        for rotation in &self.free_rotations {
+        for rotation in self.solver.free_rotations() {
             rotation.hold(&mut shifted);
         }
         let places = self.reduction.places(&self.model.nodes);
@@ -189,7 +186,7 @@ impl Pencil for Motion {
 
 impl Motion {
     fn hold(&self, motion: &mut [f64]) {
-        for rotation in &self.free_rotations {
+        for rotation in self.solver.free_rotations() {
             let turned: f64 = rotation
                 .terms
                 .iter()
@@ -211,8 +208,4 @@ fn sign(shape: &[f64], arm: f64) -> f64 {
         .enumerate()
         .find(|&one| size(one) >= AS_LARGE * most);
     first.map_or(1.0, |(_, value)| 1.0_f64.copysign(*value))
-}
-
-fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| one * other).sum()
 }

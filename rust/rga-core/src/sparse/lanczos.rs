@@ -190,7 +190,7 @@ impl<'a, P: Pencil> Lanczos<'a, P> {
     }
 }
 
-fn dot(one: &[f64], other: &[f64]) -> f64 {
+pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one * other).sum()
 }
 

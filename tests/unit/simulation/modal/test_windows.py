@@ -108,6 +108,16 @@ def test_complex_shapes_are_turned(tmp_path: Path, model: Model) -> None:
     assert found.readings[0, 3] == pytest.approx(SHAPES[1, 1])
 
 
+@pytest.mark.parametrize("times", [[8.0, 9.5, 10.0, 100.0], ["2026-03-01", "2026-03-02"]])
+def test_lines_stand_in_any_order(tmp_path: Path, model: Model, times: list[object]) -> None:
+    frame = table([(0, 4.0 + 0.01 * k, SHAPES[0]) for k in range(len(times))])
+    shuffled = frame.with_columns(time=pl.Series(times))[::-1]
+    record = read(shuffled, tmp_path, model)
+    assert record.windows.tolist() == list(range(len(times)))[::-1]
+    found = named_modes(record, model, ModalSimulator(model).expected)
+    np.testing.assert_allclose(found.readings[:, 0], [4.0 + 0.01 * k for k in range(len(times))])
+
+
 def test_contexts_and_other_columns(tmp_path: Path, model: Model) -> None:
     record = read(table([(0, 4.0, SHAPES[0])], air=[3.5], operator=["Ada"]), tmp_path, model)
     assert record.contexts["air"].tolist() == [3.5]

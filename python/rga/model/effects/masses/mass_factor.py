@@ -43,7 +43,7 @@ class MassFactor(Effect):
         return {"factor": USUAL}
 
     def change_structure(self, structure: Structure, value: Mapping[str, float]) -> None:
-        stated = structure.once(
+        stated = structure.once_for_geometry(
             lambda: structure.weigh(listed(self.material), listed(self.mass)), self
         )
         add_masses(structure, stated, value["factor"] - 1.0)

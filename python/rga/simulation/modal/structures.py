@@ -1,0 +1,81 @@
+"""The structures whose modes are computed, and what the core computes of them."""
+
+import numpy as np
+
+from rga import _core
+from rga.arrays import FloatArray, IntArray
+from rga.errors import InputError
+from rga.model.effect import when_all_act
+from rga.model.schema import Model
+from rga.model.structure import Structure, build_structure
+from rga.simulation.contexts import Contexts, contexts_by_name
+from rga.simulation.paths.response import refused
+from rga.simulation.simulator import Simulator
+
+
+class ModalStructures:
+    """What effects make of a structure that is to swing.
+
+    Args:
+        model: the structure with its effects; those on sensors change nothing of it.
+    """
+
+    def __init__(self, model: Model) -> None:
+        bare = {name: one for name, one in model.effects.items() if not one.at_sensors()}
+        silent = model.model_copy(update={"sensors": {}, "effects": bare})
+        self._model, self._begun = model, when_all_act(bare.values())
+        self._simulator = Simulator(silent, build_structure(silent))
+
+    def under(self, contexts: Contexts | None) -> tuple[list[Structure], IntArray]:
+        """Structures under rows of contexts, and the number of each row's own, int[rows].
+
+        Args:
+            contexts: as for `results`.
+
+        Raises:
+            InputError: as `results`; or one has no natural frequency of its own.
+        """
+        given = {} if contexts is None else dict(contexts_by_name(contexts, self._model.context))
+        if self._begun is not None and "time" not in given:
+            given["time"] = self._begun
+        values = self._simulator.parameters(given)
+        rows = max((np.size(column) for column in given.values()), default=1)
+        request = self._simulator.assembly.request(values, rows)
+        structures = [request.change(state) for state in request.states]
+        if not all(structure.linear for structure in structures):
+            raise InputError(
+                "the structure has friction, play, slack or large displacements, and so no natural "
+                "frequency that is the same for every motion",
+                f"model {self._model.name!r}",
+                "leave out these effects, or put stiffnesses in their place",
+            )
+        return structures, request.state_of_row
+
+    def one_under(self, contexts: Contexts | None) -> Structure:
+        """The structure under one row of contexts, with the errors of `under` (InputError)."""
+        structures, rows = self.under(contexts)
+        if len(rows) != 1:
+            raise InputError("there is more than one row", "contexts of modes", "give one row")
+        return structures[0]
+
+
+def computed_modes(
+    structure: Structure, count: int
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """The lowest modes of a structure, or all where there are fewer.
+
+    Returns:
+        Frequencies [Hz], float[modes]; shapes for a modal mass of 1 kg, float[modes, nodes, 6];
+        roots of their effective masses along the axes, float[modes, 3]; the mass that moves, [kg],
+        float[3].
+
+    Raises:
+        InputError: nothing has a mass, or a property that the core refuses.
+        UnstableStructureError: the structure can move; names node and direction.
+    """
+    try:
+        squares, *rest = _core.modes(structure.arrays, structure.masses, count)
+    except (_core.UnstableStructure, _core.InvalidInput) as error:
+        raise refused(structure, error) from None
+    shapes, participation, mass = rest
+    return np.sqrt(squares) / (2 * np.pi), shapes, participation, mass
