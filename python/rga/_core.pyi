@@ -25,6 +25,7 @@ __all__ = [
     "UnstableStructure",
     "count_terms",
     "instructions",
+    "modes",
     "respond",
     "respond_nonlinear",
     "slide",
